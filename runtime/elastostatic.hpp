@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime/model.hpp"
+
+namespace greenloop {
+
+/// What a body must be able to do, fixed before the loop starts.
+struct Limits {
+  std::uint32_t max_contacts = 64;   ///< 1..4096, contacts per step
+  std::uint32_t cached_factors = 8;  ///< 1..1024, capacitance factors kept
+};
+
+/// Work a step may spend, in work units: one unit is one multiply-add of the algorithm (one block times a vector is 9).
+struct Budget {
+  std::uint64_t work = 0;
+};
+
+/// A node held at a prescribed displacement.
+struct Contact {
+  std::uint32_t node = 0;      ///< file index of a touchable node
+  float displacement[3] = {};  ///< m
+};
+
+enum class Status : std::uint8_t {
+  ok,                    ///< answered at the finest constraint level and the finest field level
+  coarser,               ///< answered within the budget at a coarser level
+  held_not_finite,       ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
+  held_out_of_range,     ///< a contact names no node of the model, or more contacts than Limits allow
+  held_not_touchable,    ///< a contact names a node without a column
+  held_duplicate,        ///< two contacts name the same node
+  held_response_size,    ///< a response buffer has the wrong size
+  held_over_budget,      ///< the budget is below Requirement::least_work: refused
+  held_singular,         ///< the capacitance matrix is singular to working precision
+  held_overflow,         ///< the answer would not be finite
+};
+
+/// The answer of a step; the caller owns the memory. On any `held_` status the contents are those of the last good step.
+struct Response {
+  std::span<float> force;         ///< [3 * contacts] N, the force that holds each contact, in the order of the contacts
+  std::span<float> displacement;  ///< [4 * node_count] m, x y z 0 per node, 16-byte aligned; empty: no field is wanted
+};
+
+struct StepReport {
+  Status status = Status::ok;
+  std::uint32_t constraint_level = 0;  ///< level at which the contacts were resolved
+  std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
+  float error = 0;                     ///< Level::worst_column_error of that constraint level, as measured offline
+  std::uint64_t work = 0;              ///< units spent, never more than the budget
+  bool cached_factor = false;          ///< the capacitance factor came from the cache
+};
+
+/// What Limits cost, in closed form, before anything is allocated.
+struct Requirement {
+  std::size_t bytes = 0;      ///< of the arena
+  std::size_t alignment = 64;
+  std::uint64_t least_work = 0;  ///< the smallest budget `step` accepts: coarsest level, all contacts, whole field
+  std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step that is resolved at that constraint level
+};
+
+enum class CreateError : std::uint8_t { none, arena_too_small, arena_misaligned, bad_limits };
+
+/// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions
+/// (James & Pai 2003, sections 3.2, 5.4 and 7).
+class Elastostatic {
+ public:
+  struct Created;
+
+  /// Bytes and worst-case work for `limits`. Start-up; work linear in the model's columns. Zero bytes if limits are bad.
+  [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
+
+  /// Carves `memory` with the routine that `required` counts with. `model` and `memory` must outlive the body.
+  [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
+
+  /// One cycle of the loop: finds the forces that hold `contacts` where they are and the displacement of every node,
+  /// at the finest level whose closed-form work fits the budget. No heap, lock, system call, exception or clock;
+  /// same model, limits, history, contacts and budget give the same bits. Work: at most budget.work.
+  StepReport step(std::span<const Contact> contacts, Budget budget, const Response& response) noexcept;
+
+ private:
+  struct Memory;
+  const Model* model_ = nullptr;
+  Memory* memory_ = nullptr;
+};
+
+struct Elastostatic::Created {
+  CreateError error = CreateError::none;
+  std::size_t requested = 0, available = 0, missing = 0;  ///< bytes
+  Elastostatic body;
+  explicit operator bool() const noexcept { return error == CreateError::none; }
+};
+
+}  // namespace greenloop

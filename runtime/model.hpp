@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "formats/verify.hpp"
+#include "formats/view.hpp"
+
+namespace greenloop {
+
+/// A precomputed body, read in place. Immutable: any number of bodies and threads may share one.
+/// The caller's bytes must outlive it and stay unchanged; they must be 64-byte aligned.
+class Model {
+ public:
+  struct Opened;
+
+  /// Verifies every field once. Start-up only; work linear in the bytes; no heap, no exception.
+  [[nodiscard]] static Opened open(std::span<const std::byte> bytes) noexcept;
+
+  [[nodiscard]] const ModelView& view() const noexcept { return view_; }
+  [[nodiscard]] std::uint32_t node_count() const noexcept { return view_.node_count; }
+  [[nodiscard]] std::uint32_t level_count() const noexcept { return view_.levels; }
+
+ private:
+  ModelView view_;
+};
+
+struct Model::Opened {
+  VerifyResult result;  ///< says which field is wrong, if any
+  Model model;          ///< usable only if result.ok()
+  explicit operator bool() const noexcept { return result.ok(); }
+};
+
+}  // namespace greenloop
