@@ -1,0 +1,50 @@
+// Runs the README's example for a few cycles on the model named on the command line.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <runtime/elastostatic.hpp>
+#include <span>
+#include <vector>
+
+int control_loop(std::span<const std::byte> file, bool (*sense)(greenloop::Contact&), void (*actuate)(const float*));
+
+namespace {
+
+int cycles = 0;
+double total_force = 0;
+std::uint32_t touched_node = 0;
+
+bool sense(greenloop::Contact& contact) {
+  contact = {touched_node, {0.0F, 0.0F, 1e-6F * static_cast<float>(cycles)}};
+  return cycles++ < 100;
+}
+
+void actuate(const float* force) { total_force += std::hypot(force[0], force[1], force[2]); }
+
+std::span<const std::byte> read_aligned(const char* path) {
+  std::ifstream stream(path, std::ios::binary);
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
+  auto* memory = static_cast<std::byte*>(std::aligned_alloc(64, (bytes.size() + 63) / 64 * 64));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    memory[i] = static_cast<std::byte>(bytes[i]);
+  }
+  return {memory, bytes.size()};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    return 64;
+  }
+  const auto file = read_aligned(argv[1]);
+  const auto opened = greenloop::Model::open(file);
+  if (!opened) {
+    return 65;
+  }
+  touched_node = opened.model.view().level[0].columns[0].node;
+  const int status = control_loop(file, sense, actuate);
+  std::printf("status %d after %d cycles, total force %g N\n", status, cycles, total_force);
+  return status == 0 && cycles == 101 && total_force > 0 ? 0 : 1;
+}
