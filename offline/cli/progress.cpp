@@ -1,0 +1,71 @@
+#include "offline/cli/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace greenloop::offline {
+namespace {
+
+constexpr int bar_width = 30;
+constexpr auto redraw_interval = std::chrono::milliseconds(100);
+
+double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+std::string duration_text(double seconds) {
+  return seconds < 60
+             ? fmt::format("{:.0f} s", seconds)
+             : fmt::format("{:d} min {:02d} s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
+}
+
+}  // namespace
+
+Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void Progress::begin(std::string_view stage) {
+  if (running_) {
+    end();
+  }
+  stage_ = stage;
+  running_ = true;
+  first_fraction_ = -1;
+  started_ = drawn_ = Clock::now();
+  draw(0, {});
+}
+
+void Progress::update(double fraction, std::string_view detail) {
+  if (first_fraction_ < 0) {
+    first_fraction_ = fraction;
+  }
+  if (Clock::now() - drawn_ >= redraw_interval) {
+    draw(std::clamp(fraction, 0.0, 1.0), detail);
+  }
+}
+
+void Progress::end(std::string_view note) {
+  const double seconds = seconds_between(started_, Clock::now());
+  stages_.push_back({stage_, seconds});
+  running_ = false;
+  if (!quiet_) {
+    fmt::print(stderr, "{}{:<12} {:>6.1f} s  {}\n", terminal_ ? "\r\033[K" : "", stage_, seconds, note);
+  }
+}
+
+void Progress::draw(double fraction, std::string_view detail) {
+  if (quiet_ || !terminal_) {
+    return;
+  }
+  drawn_ = Clock::now();
+  const int filled = static_cast<int>(fraction * bar_width);
+  const double covered = fraction - std::max(first_fraction_, 0.0);
+  const double remaining = covered > 0 ? seconds_between(started_, drawn_) * (1 - fraction) / covered : -1;
+  fmt::print(stderr, "\r\033[K{:<12} [{:#<{}}{: <{}}] {:3.0f} %{} {}", stage_, "", filled, "", bar_width - filled,
+             100 * fraction, remaining >= 0 ? fmt::format(", {} left", duration_text(remaining)) : "", detail);
+  std::fflush(stderr);
+}
+
+}  // namespace greenloop::offline

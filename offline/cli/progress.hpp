@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace greenloop::offline {
+
+/// What a finished stage cost, for the build's report.
+struct StageTime {
+  std::string name;
+  double seconds = 0;  ///< wall time
+};
+
+/// Tells people on standard error how far a long computation is: a bar with the remaining time on a terminal, one line
+/// a stage elsewhere, nothing when quiet. Not thread-safe; offline only.
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+
+  /// Ends the stage under way, if any, and starts the next.
+  void begin(std::string_view stage);
+
+  /// How much of the stage is done, 0..1; cheap enough to be called often.
+  void update(double fraction, std::string_view detail = {});
+
+  /// Ends the stage under way with a short note of what came out.
+  void end(std::string_view note = {});
+
+  [[nodiscard]] const std::vector<StageTime>& stages() const { return stages_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void draw(double fraction, std::string_view detail);
+
+  bool quiet_;
+  bool terminal_;
+  bool running_ = false;
+  std::string stage_;
+  double first_fraction_ = -1;  ///< where a resumed stage started, so that the remaining time is honest
+  Clock::time_point started_, drawn_;
+  std::vector<StageTime> stages_;
+};
+
+}  // namespace greenloop::offline
