@@ -1,6 +1,7 @@
 #pragma once
 
-// The model file, `.gloop`: little-endian, read in place, every section on a 64-byte boundary with zero padding between.
+// The model file, `.gloop`: little-endian, read in place, every section on a 64-byte boundary with zero padding
+// between.
 //
 //   offset 0    Header          64 bytes
 //   offset 64   SectionEntry    32 bytes each, header.section_count of them, in file order
@@ -18,6 +19,7 @@
 //       Blocks(c, q)          for c = 0..q               wavelet coefficients: columns of level c, rows of level q
 //       Blocks(q, r)          for r = 0..q-1
 //
+// A constraint level without columns has none of Columns, Representatives and Blocks.
 // So the first sections of a file, cut after any level, are again a valid and coarser model once the header says so.
 // A node is named by its place in the file: coarse to fine, and within a level the *domain* (nodes whose displacement
 // is stored: free and needed by the scene, closed under free parents) comes first. All other nodes do not move or are
@@ -81,36 +83,36 @@ enum class Problem : std::uint32_t { elastostatic = 1 };
 enum class Wavelet : std::uint32_t { lifted_linear = 1 };
 
 struct Info {
-  std::uint32_t problem;      ///< Problem
-  std::uint32_t wavelet;      ///< Wavelet
-  std::uint32_t components;   ///< 3: displacements and forces are vectors
-  std::uint32_t levels;       ///< mesh levels of the complete model, L + 1
-  double young;               ///< Pa
-  double poisson;             ///< -
-  double epsilon;             ///< block threshold at the finest level, relative to each column's largest block
-  double store_asymmetry;     ///< largest relative asymmetry of the exact compliance
-  float box_min[3];           ///< m
-  float box_max[3];           ///< m
-  float rate;                 ///< Hz: the loop the scene asked for
-  std::uint32_t max_contacts; ///< the scene's
-  std::uint64_t step_work;    ///< work units per step the scene asked for
+  std::uint32_t problem;       ///< Problem
+  std::uint32_t wavelet;       ///< Wavelet
+  std::uint32_t components;    ///< 3: displacements and forces are vectors
+  std::uint32_t levels;        ///< mesh levels of the complete model, L + 1
+  double young;                ///< Pa
+  double poisson;              ///< -
+  double epsilon;              ///< block threshold at the finest level, relative to each column's largest block
+  double store_asymmetry;      ///< largest relative asymmetry of the exact compliance
+  float box_min[3];            ///< m
+  float box_max[3];            ///< m
+  float rate;                  ///< Hz: the loop the scene asked for
+  std::uint32_t max_contacts;  ///< the scene's
+  std::uint64_t step_work;     ///< work units per step the scene asked for
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
-  std::uint8_t reserved[144];
+  std::uint8_t reserved[160];
 };
 static_assert(sizeof(Info) == 256);
 
 /// The model cut off after this level; errors against the exact compliance, over all columns of constraint level q.
 struct Level {
-  std::uint32_t node_count;    ///< |M(q)|
-  std::uint32_t domain_count;  ///< domain nodes of M(q): the first ones
-  std::uint32_t column_count;  ///< columns of constraint level q; 0 below Info::coarsest_constraint_level
+  std::uint32_t node_count;           ///< |M(q)|
+  std::uint32_t domain_count;         ///< domain nodes of M(q): the first ones
+  std::uint32_t column_count;         ///< columns of constraint level q; 0 below Info::coarsest_constraint_level
   std::uint32_t base_triangle_count;  ///< q = 0 only, else 0
-  std::uint64_t kept_blocks;   ///< blocks of constraint level q, rows of every level of the complete model
-  std::uint64_t dense_blocks;  ///< columns of constraint level q times domain nodes of the complete model
-  float rms_error;             ///< ||Xi^ - Xi||_F / ||Xi||_F, traction form
-  float worst_column_error;    ///< max_j ||Xi^_j - Xi_j||_inf / ||Xi_j||_inf, block-wise Frobenius
-  float force_error;           ///< worst relative error of the total force of a sampled patch held at this level
+  std::uint64_t kept_blocks;          ///< blocks of constraint level q, rows of every level of the complete model
+  std::uint64_t dense_blocks;         ///< columns of constraint level q times domain nodes of the complete model
+  float rms_error;                    ///< ||Xi^ - Xi||_F / ||Xi||_F, traction form
+  float worst_column_error;           ///< max_j ||Xi^_j - Xi_j||_inf / ||Xi_j||_inf, block-wise Frobenius
+  float force_error;                  ///< worst relative error of the total force of a sampled patch held at this level
   std::uint32_t reserved[5];
 };
 static_assert(sizeof(Level) == 64);
@@ -146,7 +148,8 @@ static_assert(sizeof(ColumnRecord) == 8);
 ///   scale  f32 [n]         m/N per quantum, >= 0
 ///   index  u16|u32 [m]     row within the level's domain nodes, increasing within a column; absent if index_bytes = 0
 ///   value  i8|i16 [9 m]    blocks by columns: value[9 b + 3 c + r] = displacement r per force c; then >= 16 zero bytes
-/// index_bytes = 0: every column keeps every row (begin[j] = j * rows).
+/// Each array starts at the first multiple of 64 after the one before it; no value is -128 (i8) or -32768 (i16).
+/// index_bytes = 0: every column keeps every row (begin[j] = j * rows), index_offset = 0.
 struct BlocksHeader {
   std::uint32_t columns;
   std::uint32_t rows;         ///< Level::domain_count of level r

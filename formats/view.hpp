@@ -23,7 +23,8 @@ struct BlocksView {
 /// One level of the mesh, in place.
 struct LevelView {
   const layout::Level* counts = nullptr;
-  std::uint32_t node_begin = 0;  ///< file index of its first node; its domain is [node_begin, node_begin + domain_count)
+  std::uint32_t node_begin =
+      0;  ///< file index of its first node; its domain is [node_begin, node_begin + domain_count)
   const layout::NodeRecord* nodes = nullptr;
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
   const layout::ColumnRecord* columns = nullptr;         ///< GFs of the constraint level of the same number
@@ -35,12 +36,12 @@ struct ModelView {
   const layout::Header* header = nullptr;
   const layout::Info* info = nullptr;
   std::span<const char> provenance;
-  std::uint32_t levels = 0;             ///< levels present
-  std::uint32_t node_count = 0;         ///< over all levels present
-  std::uint32_t domain_count = 0;       ///< over all levels present
+  std::uint32_t levels = 0;        ///< levels present
+  std::uint32_t node_count = 0;    ///< over all levels present
+  std::uint32_t domain_count = 0;  ///< over all levels present
   const std::uint32_t* base_triangles = nullptr;
   LevelView level[layout::max_levels];
-  BlocksView blocks[layout::max_levels][layout::max_levels];                    ///< [constraint level][row level]
+  BlocksView blocks[layout::max_levels][layout::max_levels];                     ///< [constraint level][row level]
   const std::uint32_t* representatives[layout::max_levels][layout::max_levels];  ///< [constraint level][mesh level]
 };
 

@@ -24,10 +24,11 @@ struct BlocksData {
 struct LevelData {
   layout::Level counts{};
   std::vector<layout::NodeRecord> nodes;
-  std::vector<layout::RefinementRecord> refinement;         ///< empty on level 0
-  std::vector<layout::ColumnRecord> columns;                ///< GFs of this constraint level; may be empty
-  std::vector<std::vector<std::uint32_t>> representatives;  ///< [mesh level][node in that level], every mesh level; empty without columns
-  std::vector<BlocksData> blocks;                           ///< [row level], every mesh level; empty without columns
+  std::vector<layout::RefinementRecord> refinement;  ///< empty on level 0
+  std::vector<layout::ColumnRecord> columns;         ///< GFs of this constraint level; may be empty
+  std::vector<std::vector<std::uint32_t>>
+      representatives;             ///< [mesh level][node in that level], every mesh level; empty without columns
+  std::vector<BlocksData> blocks;  ///< [row level], every mesh level; empty without columns
 };
 
 /// A whole model before encoding. Offline only.
@@ -39,7 +40,8 @@ struct ModelData {
 };
 
 /// The bytes of a model file: deterministic, complete, checksummed. Throws std::invalid_argument naming the field that
-/// does not fit. The counts in Level are filled in from the vectors' sizes.
+/// does not fit. Filled in from the vectors, whatever stands there: Info::levels, finest_constraint_level and the box;
+/// Level's node, domain, column, triangle, kept and dense counts. The result has passed verify.
 [[nodiscard]] std::vector<std::byte> encode(const ModelData& model);
 
 /// The same model cut off after level q: a prefix with its header rewritten. Throws std::invalid_argument if q is not

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "formats/verify.hpp"
+
+namespace greenloop {
+
+/// "Nodes(2)": the section's name with its indices as in layout.hpp. Offline only.
+[[nodiscard]] std::string section_name(layout::SectionKind kind, std::uint32_t a, std::uint32_t b);
+
+/// "section_checksum": the rule's name as in VerifyRule. Offline only.
+[[nodiscard]] std::string_view rule_name(VerifyRule rule);
+
+/// One sentence for people: the section, field, index, value and limit of the first fault, and how to mend the file.
+/// Offline only.
+[[nodiscard]] std::string describe(const VerifyResult& result);
+
+}  // namespace greenloop

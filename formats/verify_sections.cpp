@@ -1,0 +1,311 @@
+#include "formats/verify_sections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace greenloop {
+namespace {
+
+using layout::ColumnRecord;
+using layout::NodeRecord;
+using layout::RefinementRecord;
+
+constexpr std::uint32_t known_flags =
+    layout::node_domain | layout::node_touchable | layout::node_fixed | layout::node_read;
+
+bool require_size(SectionCheck& check, const Section& section, std::uint64_t count, std::uint64_t record_bytes) {
+  const std::uint64_t expected = count * record_bytes;  // a 32-bit count times a small constant: no overflow
+  return check.require(section.bytes == expected, VerifyRule::section_size, "bytes", 0,
+                       static_cast<double>(section.bytes), static_cast<double>(expected));
+}
+
+bool require_finite(SectionCheck& check, const char* field, std::uint64_t index, double value) {
+  return check.require(std::isfinite(value), VerifyRule::not_finite, field, index, value, 0);
+}
+
+bool require_above(SectionCheck& check, const char* field, std::uint64_t index, double value, double limit) {
+  return require_finite(check, field, index, value) &&
+         check.require(value > limit, VerifyRule::out_of_range, field, index, value, limit);
+}
+
+bool require_at_least(SectionCheck& check, const char* field, std::uint64_t index, double value, double limit) {
+  return require_finite(check, field, index, value) &&
+         check.require(value >= limit, VerifyRule::out_of_range, field, index, value, limit);
+}
+
+bool require_at_most(SectionCheck& check, const char* field, std::uint64_t index, double value, double limit) {
+  return check.require(value <= limit, VerifyRule::out_of_range, field, index, value, limit);
+}
+
+bool require_equal(SectionCheck& check, const char* field, std::uint64_t index, double value, double limit) {
+  return check.require(value == limit, VerifyRule::inconsistent, field, index, value, limit);
+}
+
+bool require_enum(SectionCheck& check, const char* field, std::uint32_t value, std::uint32_t only) {
+  return check.require(value == only, VerifyRule::bad_enum, field, 0, value, only);
+}
+
+bool has_flag(const NodeRecord& node, layout::NodeFlag flag) { return (node.flags & flag) != 0; }
+
+// the node of a file index below view.node_count
+const NodeRecord& node_at(const ModelView& view, std::uint32_t index) {
+  std::uint32_t q = 0;
+  while (index - view.level[q].node_begin >= view.level[q].counts->node_count) ++q;
+  return view.level[q].nodes[index - view.level[q].node_begin];
+}
+
+bool verify_box(SectionCheck& check, const layout::Info& info) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if (!require_finite(check, "box_min", k, info.box_min[k]) ||
+        !require_at_least(check, "box_max", k, info.box_max[k], info.box_min[k])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool verify_info(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  if (!require_size(check, section, 1, sizeof(layout::Info))) return false;
+  const auto& info = *section.as<layout::Info>();
+  const std::uint32_t present = context.view.header->levels;
+  context.view.info = &info;
+  return require_enum(check, "problem", info.problem, static_cast<std::uint32_t>(layout::Problem::elastostatic)) &&
+         require_enum(check, "wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::lifted_linear)) &&
+         require_equal(check, "components", 0, info.components, 3) &&
+         require_at_most(check, "levels", 0, info.levels, layout::max_levels) &&
+         check.require(info.levels >= present, VerifyRule::inconsistent, "levels", 0, info.levels, present) &&
+         require_above(check, "young", 0, info.young, 0) && require_above(check, "poisson", 0, info.poisson, -1) &&
+         check.require(info.poisson < 0.5, VerifyRule::out_of_range, "poisson", 0, info.poisson, 0.5) &&
+         require_at_least(check, "epsilon", 0, info.epsilon, 0) &&
+         require_at_least(check, "store_asymmetry", 0, info.store_asymmetry, 0) && verify_box(check, info) &&
+         require_above(check, "rate", 0, info.rate, 0) &&
+         require_at_least(check, "max_contacts", 0, info.max_contacts, 1) &&
+         require_at_most(check, "coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
+         require_equal(check, "finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
+         check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
+                       VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
+}
+
+namespace {
+
+bool verify_level_counts(SectionCheck& check, const layout::Level& counts, const Section& section,
+                         const VerifyContext& context) {
+  const ModelView& view = context.view;
+  const std::uint64_t nodes = std::uint64_t{view.node_count} + counts.node_count;
+  const std::uint32_t domain = view.domain_count + std::min(counts.domain_count, counts.node_count);
+  const bool constrained = section.a >= view.info->coarsest_constraint_level;
+  return require_at_least(check, "node_count", 0, counts.node_count, 1) &&
+         check.require(nodes < layout::none, VerifyRule::out_of_range, "node_count", 0, static_cast<double>(nodes),
+                       layout::none - 1.0) &&
+         require_at_most(check, "domain_count", 0, counts.domain_count, counts.node_count) &&
+         check.require((counts.column_count > 0) == constrained, VerifyRule::inconsistent, "column_count", 0,
+                       counts.column_count, constrained ? 1 : 0) &&
+         require_at_most(check, "column_count", 0, counts.column_count, domain) &&
+         check.require((counts.base_triangle_count > 0) == (section.a == 0), VerifyRule::inconsistent,
+                       "base_triangle_count", 0, counts.base_triangle_count, section.a == 0 ? 1 : 0);
+}
+
+}  // namespace
+
+bool verify_level(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  if (!require_size(check, section, 1, sizeof(layout::Level))) return false;
+  const auto& counts = *section.as<layout::Level>();
+  LevelView& level = context.view.level[section.a];
+  if (!verify_level_counts(check, counts, section, context) ||
+      !check.require(counts.kept_blocks <= counts.dense_blocks, VerifyRule::out_of_range, "kept_blocks", 0,
+                     static_cast<double>(counts.kept_blocks), static_cast<double>(counts.dense_blocks)) ||
+      !require_at_least(check, "rms_error", 0, counts.rms_error, 0) ||
+      !require_at_least(check, "worst_column_error", 0, counts.worst_column_error, 0) ||
+      !require_at_least(check, "force_error", 0, counts.force_error, 0) ||
+      !check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(counts.reserved))),
+                     VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
+    return false;
+  }
+  level.counts = &counts;
+  level.node_begin = context.view.node_count;
+  context.view.node_count += counts.node_count;
+  context.view.domain_count += counts.domain_count;
+  context.view.levels = section.a + 1u;
+  return true;
+}
+
+namespace {
+
+bool verify_node(SectionCheck& check, const layout::Info& info, const NodeRecord& node, std::uint32_t i,
+                 bool in_domain) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    if (!require_at_least(check, "position", i, node.position[k], info.box_min[k]) ||
+        !require_at_most(check, "position", i, node.position[k], info.box_max[k])) {
+      return false;
+    }
+  }
+  const std::uint32_t flags = node.flags;
+  const bool fixed = has_flag(node, layout::node_fixed);
+  return require_at_least(check, "area", i, node.area, 0) &&
+         check.require((flags & ~known_flags) == 0, VerifyRule::bad_enum, "flags", i, flags, known_flags) &&
+         check.require(has_flag(node, layout::node_domain) == in_domain, VerifyRule::inconsistent, "flags.domain", i,
+                       flags, in_domain ? 1 : 0) &&
+         check.require(!(in_domain && fixed), VerifyRule::inconsistent, "flags.fixed", i, flags, 0) &&
+         check.require(in_domain || !has_flag(node, layout::node_touchable), VerifyRule::inconsistent,
+                       "flags.touchable", i, flags, 0) &&
+         check.require(in_domain || fixed || !has_flag(node, layout::node_read), VerifyRule::inconsistent, "flags.read",
+                       i, flags, 0);
+}
+
+}  // namespace
+
+bool verify_nodes(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  LevelView& level = context.view.level[section.a];
+  const auto* nodes = section.as<NodeRecord>();
+  if (!require_size(check, section, level.counts->node_count, sizeof(NodeRecord))) return false;
+  for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+    if (!verify_node(check, *context.view.info, nodes[i], i, i < level.counts->domain_count)) return false;
+  }
+  level.nodes = nodes;
+  return true;
+}
+
+bool verify_base_triangles(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  const layout::Level& counts = *context.view.level[0].counts;
+  const auto* corners = section.as<std::uint32_t>();
+  if (!require_size(check, section, counts.base_triangle_count, 3 * sizeof(std::uint32_t))) return false;
+  for (std::uint64_t t = 0; t < counts.base_triangle_count; ++t) {
+    const std::uint32_t* corner = corners + 3 * t;
+    for (std::uint64_t k = 0; k < 3; ++k) {
+      if (!require_at_most(check, "corner", 3 * t + k, corner[k], counts.node_count - 1.0) ||
+          !check.require(corner[k] != corner[(k + 1) % 3], VerifyRule::inconsistent, "corner", 3 * t + k, corner[k],
+                         corner[(k + 1) % 3])) {
+        return false;
+      }
+    }
+  }
+  context.view.base_triangles = corners;
+  return true;
+}
+
+namespace {
+
+bool verify_parent(SectionCheck& check, const ModelView& view, const RefinementRecord& record, std::uint32_t i,
+                   std::uint32_t k, std::uint32_t first_of_level, bool in_domain) {
+  if (!require_at_most(check, "parent", i, record.parent[k], first_of_level - 1.0) ||
+      !require_finite(check, "lift", i, record.lift[k])) {
+    return false;
+  }
+  const NodeRecord& parent = node_at(view, record.parent[k]);
+  const bool parent_in_domain = has_flag(parent, layout::node_domain);
+  return check.require(parent_in_domain || record.lift[k] == 0, VerifyRule::inconsistent, "lift", i, record.lift[k],
+                       0) &&
+         check.require(!in_domain || parent_in_domain || has_flag(parent, layout::node_fixed), VerifyRule::inconsistent,
+                       "parent", i, record.parent[k], layout::none);
+}
+
+}  // namespace
+
+bool verify_refinement(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  LevelView& level = context.view.level[section.a];
+  const auto* records = section.as<RefinementRecord>();
+  if (!require_size(check, section, level.counts->node_count, sizeof(RefinementRecord))) return false;
+  for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+    const bool in_domain = i < level.counts->domain_count;
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      if (!verify_parent(check, context.view, records[i], i, k, level.node_begin, in_domain)) return false;
+    }
+    if (!check.require(records[i].parent[0] != records[i].parent[1], VerifyRule::inconsistent, "parent", i,
+                       records[i].parent[1], records[i].parent[0])) {
+      return false;
+    }
+  }
+  level.refinement = records;
+  return true;
+}
+
+bool verify_columns(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  const ModelView& view = context.view;
+  LevelView& level = context.view.level[section.a];
+  const auto* columns = section.as<ColumnRecord>();
+  if (!require_size(check, section, level.counts->column_count, sizeof(ColumnRecord))) return false;
+  for (std::uint32_t j = 0; j < level.counts->column_count; ++j) {
+    const std::uint32_t node = columns[j].node;
+    if (!require_at_most(check, "node", j, node, view.node_count - 1.0) ||
+        !check.require(j == 0 || node > columns[j - 1].node, VerifyRule::not_increasing, "node", j, node,
+                       j == 0 ? 0 : columns[j - 1].node) ||
+        !check.require(has_flag(node_at(view, node), layout::node_domain), VerifyRule::inconsistent, "node", j, node,
+                       layout::node_domain) ||
+        !require_above(check, "area", j, columns[j].area, 0)) {
+      return false;
+    }
+  }
+  level.columns = columns;
+  return true;
+}
+
+namespace {
+
+// a node that is the centre of a column is represented by that column
+bool verify_own_columns(SectionCheck& check, const LevelView& constraint, const LevelView& level,
+                        const std::uint32_t* column_of) {
+  const ColumnRecord* end = constraint.columns + constraint.counts->column_count;
+  const auto before = [](const ColumnRecord& column, std::uint32_t node) { return column.node < node; };
+  const ColumnRecord* own = std::lower_bound(constraint.columns, end, level.node_begin, before);
+  for (; own != end && own->node - level.node_begin < level.counts->node_count; ++own) {
+    const std::uint32_t i = own->node - level.node_begin;
+    const auto j = static_cast<std::uint32_t>(own - constraint.columns);
+    if (!require_equal(check, "column", i, column_of[i], j)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool verify_representatives(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  const LevelView& constraint = context.view.level[section.a];
+  const LevelView& level = context.view.level[section.b];
+  const auto* column_of = section.as<std::uint32_t>();
+  if (!require_size(check, section, level.counts->node_count, sizeof(std::uint32_t))) return false;
+  for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+    const bool needed = section.b <= section.a && has_flag(level.nodes[i], layout::node_touchable);
+    if (!check.require(column_of[i] < constraint.counts->column_count || column_of[i] == layout::none,
+                       VerifyRule::out_of_range, "column", i, column_of[i], constraint.counts->column_count - 1.0) ||
+        !check.require(!needed || column_of[i] != layout::none, VerifyRule::inconsistent, "column", i, column_of[i],
+                       constraint.counts->column_count - 1.0)) {
+      return false;
+    }
+  }
+  context.view.representatives[section.a][section.b] = column_of;
+  return verify_own_columns(check, constraint, level, column_of);
+}
+
+bool verify_counts(VerifyContext& context) {
+  const ModelView& view = context.view;
+  const bool complete = view.levels == view.info->levels;
+  std::uint64_t rows = complete ? view.domain_count : 0;  // of the complete model; 0: not known yet
+  for (std::uint32_t c = 0; c < view.levels; ++c) {
+    const layout::Level& counts = *view.level[c].counts;
+    const Section section{layout::SectionKind::level, static_cast<std::uint16_t>(c), 0, nullptr, 0};
+    SectionCheck check(section, context.result);
+    const std::uint64_t present = context.present_blocks[c];
+    const auto kept = static_cast<double>(counts.kept_blocks);
+    if (!check.require(complete ? counts.kept_blocks == present : counts.kept_blocks >= present,
+                       VerifyRule::inconsistent, "kept_blocks", 0, kept, static_cast<double>(present))) {
+      return false;
+    }
+    if (rows == 0 && counts.column_count > 0) rows = counts.dense_blocks / counts.column_count;
+    const std::uint64_t dense = counts.column_count * std::max<std::uint64_t>(rows, view.domain_count);
+    if (!check.require(counts.dense_blocks == dense, VerifyRule::inconsistent, "dense_blocks", 0,
+                       static_cast<double>(counts.dense_blocks), static_cast<double>(dense))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace greenloop
