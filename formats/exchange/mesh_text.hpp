@@ -1,0 +1,107 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+namespace greenloop {
+
+/// A mesh file that cannot be read or written. The message names file, line, what was found and what was expected.
+class MeshFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The bytes of a file. Throws MeshFileError if it cannot be read.
+[[nodiscard]] std::string read_file(const std::filesystem::path& file);
+
+/// Replaces the file by these bytes. Throws MeshFileError if it cannot be written.
+void write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// The extension in lower case with its dot, "" if none.
+[[nodiscard]] std::string lower_extension(const std::filesystem::path& file);
+
+/// Appends the shortest decimal form that reads back as the same double.
+void append_number(std::string& text, double value);
+void append_number(std::string& text, std::int64_t value);
+
+/// Appends "x y z".
+void append_point(std::string& text, const Eigen::Vector3d& point);
+
+/// Reads white-space separated tokens of a text file and knows the line it is on. Every reading function throws
+/// MeshFileError with file, line, the token found and what was expected; none reads past the end.
+class MeshText {
+ public:
+  /// comment: from this character to the end of a line is skipped ('\0': there are no comments).
+  MeshText(std::filesystem::path file, std::string content, char comment);
+
+  /// Skips white space and comments; true if no token is left.
+  [[nodiscard]] bool at_end();
+  /// True if another token stands on the current line.
+  [[nodiscard]] bool more_on_line();
+  /// Goes to the beginning of the next line.
+  void skip_line();
+  /// What is left of the current line, without its end; goes to the next line.
+  [[nodiscard]] std::string_view line();
+
+  /// The next token; views stay valid as long as this object.
+  [[nodiscard]] std::string_view token(std::string_view expected);
+  /// The next token without taking it, "" at the end of the file.
+  [[nodiscard]] std::string_view peek();
+  /// Takes the next token, which has to be this word.
+  void word(std::string_view expected);
+  /// A finite number.
+  [[nodiscard]] double real(std::string_view expected);
+  /// A whole number in [low, high].
+  [[nodiscard]] std::int64_t integer(std::string_view expected, std::int64_t low, std::int64_t high);
+  /// A number of items that each still need at least `bytes_each` bytes of this file; more than fit are refused, so
+  /// that a caller may allocate what it says.
+  [[nodiscard]] std::size_t count(std::string_view expected, std::size_t bytes_each);
+  /// Three finite numbers.
+  [[nodiscard]] Eigen::Vector3d point();
+
+  /// Bytes not read yet.
+  [[nodiscard]] std::string_view rest() const { return std::string_view(content_).substr(position_); }
+  /// Goes forward by so many bytes, at most to the end, counting lines.
+  void skip_bytes(std::size_t bytes);
+
+  /// Throws for the token read last.
+  [[noreturn]] void fail(std::string_view found, std::string_view expected) const;
+
+ private:
+  void skip_space(bool across_lines);
+
+  std::filesystem::path file_;
+  std::string content_;
+  std::size_t position_ = 0;
+  std::size_t line_ = 1;
+  std::size_t token_line_ = 1;
+  char comment_;
+};
+
+/// The numbers a file gives its nodes, and their order in it. Files that number from 0, from 1 or with gaps read alike.
+class NodeNumbers {
+ public:
+  void reserve(std::size_t count) { index_.reserve(count); }
+  /// False if the number is taken already.
+  [[nodiscard]] bool add(std::int64_t number) { return index_.emplace(number, static_cast<int>(index_.size())).second; }
+  [[nodiscard]] std::optional<int> find(std::int64_t number) const;
+
+ private:
+  std::unordered_map<std::int64_t, int> index_;
+};
+
+/// "quoted" form of a piece of a file for a message: unprintable bytes replaced, long ones cut.
+[[nodiscard]] std::string in_quotes(std::string_view text);
+
+/// Largest number of vertices or faces a mesh may have: indices are int.
+inline constexpr std::int64_t largest_index = 2147483646;
+
+}  // namespace greenloop

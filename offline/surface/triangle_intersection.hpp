@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "formats/exchange/triangle_mesh.hpp"
+
+namespace greenloop::offline {
+
+/// Corners of a triangle that is not degenerate.
+using Triangle = std::array<Eigen::Vector3d, 3>;
+
+/// True if the two triangles have a point in common, boundaries included. Exact (see orientation.hpp).
+[[nodiscard]] bool triangles_touch(const Triangle& s, const Triangle& t);
+
+/// The pairs (f, g), f < g, of faces that have a point in common which is not part of their common vertex or edge.
+/// Vertices at exactly the same position count as one. Faces marked in `skip` (one flag per face, e.g. those of zero
+/// area) are left out. Ordered. Work: n log n for a surface of n faces that mostly does not intersect itself.
+[[nodiscard]] std::vector<std::array<int, 2>> self_intersections(const TriangleMesh& mesh,
+                                                                 const std::vector<bool>& skip);
+
+}  // namespace greenloop::offline
