@@ -4,7 +4,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "formats/crc32c.hpp"
 #include "formats/describe.hpp"
 
 namespace greenloop {
@@ -13,20 +12,6 @@ namespace {
 std::size_t aligned(std::size_t size) { return (size + layout::alignment - 1) / layout::alignment * layout::alignment; }
 
 }  // namespace
-
-void reseal(std::span<std::byte> file) {
-  if (file.size() < sizeof(layout::Header)) return;
-  auto& header = *reinterpret_cast<layout::Header*>(file.data());
-  auto* entries = reinterpret_cast<layout::SectionEntry*>(file.data() + sizeof(header));
-  const std::size_t room = (file.size() - sizeof(header)) / sizeof(layout::SectionEntry);
-  const std::span table(entries, std::min<std::size_t>(header.section_count, room));
-  for (layout::SectionEntry& entry : table) {
-    if (entry.offset > file.size() || entry.bytes > file.size() - entry.offset) continue;
-    entry.crc = crc32c(file.subspan(static_cast<std::size_t>(entry.offset), static_cast<std::size_t>(entry.bytes)));
-  }
-  header.table_crc = crc32c(std::as_bytes(table));
-  header.header_crc = crc32c(file.first(offsetof(layout::Header, header_crc)));
-}
 
 std::span<layout::SectionEntry> ModelMutant::table() {
   return {reinterpret_cast<layout::SectionEntry*>(bytes_.data() + sizeof(layout::Header)), header().section_count};

@@ -6,13 +6,11 @@
 #include <vector>
 
 #include "formats/aligned_bytes.hpp"
+#include "formats/testing/reseal.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/verify.hpp"
 
 namespace greenloop {
-
-/// Recomputes every checksum of a model file, as far as its header and table make sense of the bytes.
-void reseal(std::span<std::byte> file);
 
 /// One section taken out of its file.
 struct SectionCopy {
