@@ -14,7 +14,9 @@ class SectionWalk {
   SectionWalk(SectionTable& table, VerifyContext& context) : table_(table), context_(context) {}
 
   bool whole_file() {
-    if (!next(SectionKind::info, 0, 0, verify_info) || !provenance()) return false;
+    if (!next(SectionKind::info, 0, 0, verify_info) || !next(SectionKind::provenance, 0, 0, verify_provenance)) {
+      return false;
+    }
     for (std::uint32_t q = 0; q < table_.header().levels; ++q) {
       if (!level(q)) return false;
     }
@@ -27,13 +29,6 @@ class SectionWalk {
   bool next(SectionKind kind, std::uint32_t a, std::uint32_t b, Verify verify) {
     Section section;
     return table_.take(kind, a, b, section, context_.result) && verify(section, context_);
-  }
-
-  bool provenance() {
-    Section section;
-    if (!table_.take(SectionKind::provenance, 0, 0, section, context_.result)) return false;
-    context_.view.provenance = {section.as<char>(), static_cast<std::size_t>(section.bytes)};
-    return true;
   }
 
   bool level(std::uint32_t q) {

@@ -17,6 +17,7 @@ struct VerifyContext {
 };
 
 bool verify_info(const Section& section, VerifyContext& context);
+bool verify_provenance(const Section& section, VerifyContext& context);
 bool verify_level(const Section& section, VerifyContext& context);
 bool verify_nodes(const Section& section, VerifyContext& context);
 bool verify_base_triangles(const Section& section, VerifyContext& context);

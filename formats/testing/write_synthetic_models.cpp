@@ -1,0 +1,47 @@
+// write_synthetic_models FOLDER: one synthetic model of every kind, as .gloop files to start fuzzing from, and
+// "small_sphere.h" and ".c" to compile.
+
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "formats/c_array.hpp"
+#include "formats/testing/synthetic_model.hpp"
+
+namespace greenloop {
+namespace {
+
+void write_all(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  write_c_array(folder / "small_sphere.h", encode(synthetic_model({.levels = 2})));
+  for (std::uint32_t levels = 1; levels <= 3; ++levels) {
+    for (const std::uint32_t value_bytes : {1u, 2u}) {
+      for (const bool dense : {false, true}) {
+        const auto file = encode(synthetic_model(
+            {.levels = levels, .coarsest_constraint_level = levels / 3, .value_bytes = value_bytes, .dense = dense}));
+        write_file(folder / ("sphere_" + std::to_string(levels) + "_" + std::to_string(8 * value_bytes) +
+                             (dense ? "_dense.gloop" : ".gloop")),
+                   file);
+      }
+    }
+  }
+  write_file(folder / "sphere_cut.gloop", truncate_to_level(encode(synthetic_model({.levels = 3})), 1));
+}
+
+}  // namespace
+}  // namespace greenloop
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: write_synthetic_models FOLDER\n";
+    return 2;
+  }
+  try {
+    greenloop::write_all(argv[1]);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}

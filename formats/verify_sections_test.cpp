@@ -1,0 +1,328 @@
+// What Info, Provenance, Level, Nodes, BaseTriangles, Refinement, Columns and Representatives must not say.
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "formats/testing/model_mutant.hpp"
+#include "formats/testing/refusal.hpp"
+
+namespace greenloop {
+namespace {
+
+using layout::ColumnRecord;
+using layout::Info;
+using layout::Level;
+using layout::NodeRecord;
+using layout::RefinementRecord;
+using layout::SectionKind;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t all_ones = 0xffffffff;
+
+ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 2}); }
+
+template <class Change>
+void check_info(VerifyRule rule, const std::string& field, std::uint64_t index, Change change) {
+  ModelMutant mutant = valid();
+  change(*mutant.records<Info>(SectionKind::info));
+  check_refused(mutant, rule, SectionKind::info, 0, 0, field, index);
+}
+
+template <class Change>
+void check_level(std::uint32_t q, VerifyRule rule, const std::string& field, Change change) {
+  ModelMutant mutant = valid();
+  change(*mutant.records<Level>(SectionKind::level, q));
+  check_refused(mutant, rule, SectionKind::level, q, 0, field, 0);
+}
+
+template <class Change>
+void check_node(std::uint32_t i, VerifyRule rule, const std::string& field, Change change) {
+  ModelMutant mutant = valid();
+  change(mutant.records<NodeRecord>(SectionKind::nodes, 1)[i]);
+  check_refused(mutant, rule, SectionKind::nodes, 1, 0, field, i);
+}
+
+template <class Change>
+void check_parent(std::uint32_t i, VerifyRule rule, const std::string& field, Change change) {
+  ModelMutant mutant = valid();
+  change(mutant.records<RefinementRecord>(SectionKind::refinement, 1)[i]);
+  check_refused(mutant, rule, SectionKind::refinement, 1, 0, field, i);
+}
+
+template <class Change>
+void check_column(std::uint32_t j, VerifyRule rule, const std::string& field, Change change) {
+  ModelMutant mutant = valid();
+  change(mutant.records<ColumnRecord>(SectionKind::columns, 1)[j]);
+  check_refused(mutant, rule, SectionKind::columns, 1, 0, field, j);
+}
+
+TEST_CASE("verify refuses: sections whose size does not follow from the counts") {
+  const struct {
+    SectionKind kind;
+    std::uint32_t a, b;
+  } sized[] = {{SectionKind::info, 0, 0},           {SectionKind::level, 0, 0},      {SectionKind::nodes, 1, 0},
+               {SectionKind::base_triangles, 0, 0}, {SectionKind::refinement, 1, 0}, {SectionKind::columns, 0, 0},
+               {SectionKind::representatives, 0, 1}};
+  for (const auto& section : sized) {
+    for (const int change : {-4, 4}) {
+      ModelMutant mutant = valid();
+      mutant.rebuild([&](std::vector<SectionCopy>& sections) {
+        for (SectionCopy& copy : sections) {
+          if (copy.is(section.kind, section.a, section.b)) copy.bytes.resize(copy.bytes.size() + change);
+        }
+      });
+      check_refused(mutant, VerifyRule::section_size, section.kind, section.a, section.b, "bytes", 0);
+    }
+  }
+}
+
+TEST_CASE("verify refuses: an unknown problem or wavelet") {
+  check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 2; });
+  check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 0; });
+  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 2; });
+}
+
+TEST_CASE("verify refuses: other than three components") {
+  check_info(VerifyRule::inconsistent, "components", 0, [](Info& info) { info.components = 1; });
+}
+
+TEST_CASE("verify refuses: more levels than there can be, or fewer than the file holds") {
+  check_info(VerifyRule::out_of_range, "levels", 0, [](Info& info) { info.levels = layout::max_levels + 1; });
+  check_info(VerifyRule::inconsistent, "levels", 0, [](Info& info) { info.levels = 1; });
+}
+
+TEST_CASE("verify refuses: impossible material constants") {
+  for (const double young : {0.0, -1.0}) {
+    check_info(VerifyRule::out_of_range, "young", 0, [&](Info& info) { info.young = young; });
+  }
+  for (const double poisson : {-1.0, 0.5, 1e300}) {
+    check_info(VerifyRule::out_of_range, "poisson", 0, [&](Info& info) { info.poisson = poisson; });
+  }
+  for (const double bad : {nan, infinity, -infinity}) {
+    check_info(VerifyRule::not_finite, "young", 0, [&](Info& info) { info.young = bad; });
+    check_info(VerifyRule::not_finite, "poisson", 0, [&](Info& info) { info.poisson = bad; });
+  }
+}
+
+TEST_CASE("verify refuses: a threshold or an asymmetry that is negative or not finite") {
+  check_info(VerifyRule::out_of_range, "epsilon", 0, [](Info& info) { info.epsilon = -1e-9; });
+  check_info(VerifyRule::not_finite, "epsilon", 0, [](Info& info) { info.epsilon = nan; });
+  check_info(VerifyRule::out_of_range, "store_asymmetry", 0, [](Info& info) { info.store_asymmetry = -1e-9; });
+  check_info(VerifyRule::not_finite, "store_asymmetry", 0, [](Info& info) { info.store_asymmetry = nan; });
+}
+
+TEST_CASE("verify refuses: a box that is inside out or not finite") {
+  check_info(VerifyRule::out_of_range, "box_max", 1, [](Info& info) { info.box_max[1] = info.box_min[1] - 1; });
+  check_info(VerifyRule::not_finite, "box_min", 2, [](Info& info) { info.box_min[2] = -INFINITY; });
+  check_info(VerifyRule::not_finite, "box_max", 0, [](Info& info) { info.box_max[0] = NAN; });
+}
+
+TEST_CASE("verify refuses: a rate that is not positive, no contacts") {
+  check_info(VerifyRule::out_of_range, "rate", 0, [](Info& info) { info.rate = 0; });
+  check_info(VerifyRule::not_finite, "rate", 0, [](Info& info) { info.rate = INFINITY; });
+  check_info(VerifyRule::out_of_range, "max_contacts", 0, [](Info& info) { info.max_contacts = 0; });
+}
+
+TEST_CASE("verify refuses: constraint levels outside the file's levels") {
+  check_info(VerifyRule::out_of_range, "coarsest_constraint_level", 0,
+             [](Info& info) { info.coarsest_constraint_level = 2; });
+  for (const std::uint32_t finest : {0u, 2u}) {
+    check_info(VerifyRule::inconsistent, "finest_constraint_level", 0,
+               [&](Info& info) { info.finest_constraint_level = finest; });
+  }
+}
+
+TEST_CASE("verify refuses: reserved bytes of Info and Level in use") {
+  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[159] = 1; });
+  check_level(1, VerifyRule::reserved_not_zero, "reserved", [](Level& level) { level.reserved[4] = 1; });
+}
+
+TEST_CASE("verify refuses: provenance that is not UTF-8, or holds a zero byte") {
+  for (const std::string bad : {"\x80", "\xC1\x81", "\xE0\x9F\xBF", "\xED\xA0\x80", "\xF0\x8F\xBF\xBF",
+                                "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\xC3", "\xE2\x82", "\xE2\x28\xA1", "\xFF"}) {
+    ModelMutant mutant = valid();
+    mutant.rebuild([&](std::vector<SectionCopy>& sections) {
+      const auto text = std::as_bytes(std::span(bad));
+      sections[1].bytes.resize(3);
+      std::fill(sections[1].bytes.begin(), sections[1].bytes.end(), std::byte{'x'});
+      sections[1].bytes.insert(sections[1].bytes.end(), text.begin(), text.end());
+    });
+    check_refused(mutant, VerifyRule::out_of_range, SectionKind::provenance, 0, 0, "text", 3);
+  }
+  ModelMutant mutant = valid();
+  mutant.records<char>(SectionKind::provenance)[5] = 0;
+  check_refused(mutant, VerifyRule::out_of_range, SectionKind::provenance, 0, 0, "text", 5);
+}
+
+TEST_CASE("verify refuses: a level without nodes, or with more nodes than an index can name") {
+  check_level(0, VerifyRule::out_of_range, "node_count", [](Level& level) { level.node_count = 0; });
+  check_level(0, VerifyRule::out_of_range, "node_count", [](Level& level) { level.node_count = all_ones; });
+  check_level(1, VerifyRule::out_of_range, "node_count", [](Level& level) { level.node_count = all_ones - 1; });
+}
+
+TEST_CASE("verify refuses: more domain nodes than nodes") {
+  check_level(1, VerifyRule::out_of_range, "domain_count", [](Level& level) { level.domain_count = 13; });
+}
+
+TEST_CASE("verify refuses: columns where there must be none, none where there must be, more than the domain") {
+  check_level(0, VerifyRule::inconsistent, "column_count", [](Level& level) { level.column_count = 0; });
+  check_level(1, VerifyRule::inconsistent, "column_count", [](Level& level) { level.column_count = 0; });
+  check_level(1, VerifyRule::out_of_range, "column_count", [](Level& level) { level.column_count = all_ones; });
+  ModelMutant mutant(SyntheticOptions{.levels = 2, .coarsest_constraint_level = 1});
+  mutant.records<Level>(SectionKind::level, 0)->column_count = 1;
+  check_refused(mutant, VerifyRule::inconsistent, SectionKind::level, 0, 0, "column_count", 0);
+}
+
+TEST_CASE("verify refuses: base triangles on a finer level, none on the coarsest") {
+  check_level(0, VerifyRule::inconsistent, "base_triangle_count", [](Level& level) { level.base_triangle_count = 0; });
+  check_level(1, VerifyRule::inconsistent, "base_triangle_count", [](Level& level) { level.base_triangle_count = 8; });
+}
+
+TEST_CASE("verify refuses: block counts that the sections do not bear out") {
+  check_level(1, VerifyRule::out_of_range, "kept_blocks",
+              [](Level& level) { level.kept_blocks = level.dense_blocks + 1; });
+  check_level(1, VerifyRule::inconsistent, "kept_blocks", [](Level& level) { level.kept_blocks -= 1; });
+  check_level(0, VerifyRule::inconsistent, "dense_blocks", [](Level& level) { level.dense_blocks += 1; });
+  check_level(0, VerifyRule::inconsistent, "dense_blocks",
+              [](Level& level) { level.dense_blocks += level.column_count; });
+}
+
+TEST_CASE("verify refuses: a cut file that claims fewer blocks than it holds, or a complete model of two sizes") {
+  const auto cut = truncate_to_level(encode(synthetic_model({.levels = 3})), 1);
+  ModelMutant fewer(cut);
+  Level& kept = *fewer.records<Level>(SectionKind::level, 1);
+  kept.kept_blocks = 100;
+  CHECK(kept.kept_blocks < fewer.records<layout::BlocksHeader>(SectionKind::blocks, 1, 0)->block_count +
+                               fewer.records<layout::BlocksHeader>(SectionKind::blocks, 1, 1)->block_count);
+  check_refused(fewer, VerifyRule::inconsistent, SectionKind::level, 1, 0, "kept_blocks", 0);
+
+  ModelMutant two(cut);
+  Level& dense = *two.records<Level>(SectionKind::level, 1);
+  dense.dense_blocks += dense.column_count;
+  check_refused(two, VerifyRule::inconsistent, SectionKind::level, 1, 0, "dense_blocks", 0);
+
+  ModelMutant small(cut);
+  Level& rows = *small.records<Level>(SectionKind::level, 0);
+  rows.dense_blocks = 5 * rows.column_count;
+  rows.kept_blocks = 5 * rows.column_count;
+  const VerifyResult result = small.verdict();
+  CHECK(result.rule == VerifyRule::inconsistent);
+  CHECK(result.kind == SectionKind::level);
+}
+
+TEST_CASE("verify refuses: measured errors that are negative or not finite") {
+  check_level(0, VerifyRule::out_of_range, "rms_error", [](Level& level) { level.rms_error = -1; });
+  check_level(0, VerifyRule::not_finite, "rms_error", [](Level& level) { level.rms_error = NAN; });
+  check_level(1, VerifyRule::out_of_range, "worst_column_error", [](Level& level) { level.worst_column_error = -1; });
+  check_level(1, VerifyRule::not_finite, "worst_column_error", [](Level& level) { level.worst_column_error = NAN; });
+  check_level(1, VerifyRule::out_of_range, "force_error", [](Level& level) { level.force_error = -1; });
+  check_level(1, VerifyRule::not_finite, "force_error", [](Level& level) { level.force_error = INFINITY; });
+}
+
+TEST_CASE("verify refuses: node positions that are not finite or outside the box") {
+  check_node(4, VerifyRule::not_finite, "position", [](NodeRecord& node) { node.position[1] = NAN; });
+  check_node(4, VerifyRule::not_finite, "position", [](NodeRecord& node) { node.position[2] = INFINITY; });
+  check_node(4, VerifyRule::out_of_range, "position", [](NodeRecord& node) { node.position[0] = 0.11F; });
+  check_node(4, VerifyRule::out_of_range, "position", [](NodeRecord& node) { node.position[0] = -0.11F; });
+}
+
+TEST_CASE("verify refuses: node areas that are negative or not finite") {
+  check_node(3, VerifyRule::out_of_range, "area", [](NodeRecord& node) { node.area = -1e-9F; });
+  check_node(3, VerifyRule::not_finite, "area", [](NodeRecord& node) { node.area = NAN; });
+}
+
+// of the 12 nodes of level 1 the first 8 are the domain, the last 4 are fixed
+TEST_CASE("verify refuses: flags that are unknown or contradict each other") {
+  check_node(2, VerifyRule::bad_enum, "flags", [](NodeRecord& node) { node.flags |= 16; });
+  check_node(7, VerifyRule::inconsistent, "flags.domain", [](NodeRecord& node) { node.flags &= ~1u; });
+  check_node(8, VerifyRule::inconsistent, "flags.domain", [](NodeRecord& node) { node.flags |= layout::node_domain; });
+  check_node(2, VerifyRule::inconsistent, "flags.fixed", [](NodeRecord& node) { node.flags |= layout::node_fixed; });
+  check_node(9, VerifyRule::inconsistent, "flags.touchable",
+             [](NodeRecord& node) { node.flags |= layout::node_touchable; });
+  check_node(9, VerifyRule::inconsistent, "flags.read", [](NodeRecord& node) { node.flags = layout::node_read; });
+}
+
+TEST_CASE("verify refuses: base triangles with corners out of range or twice the same") {
+  ModelMutant outside = valid();
+  outside.records<std::uint32_t>(SectionKind::base_triangles)[5] = 6;
+  check_refused(outside, VerifyRule::out_of_range, SectionKind::base_triangles, 0, 0, "corner", 5);
+  for (const std::uint64_t k : {0u, 1u, 2u}) {
+    ModelMutant twice = valid();
+    auto* corners = twice.records<std::uint32_t>(SectionKind::base_triangles);
+    corners[6 + k] = corners[6 + (k + 1) % 3];
+    check_refused(twice, VerifyRule::inconsistent, SectionKind::base_triangles, 0, 0, "corner", 6 + k);
+  }
+}
+
+TEST_CASE("verify refuses: parents that are not of a coarser level, or the same node") {
+  check_parent(2, VerifyRule::out_of_range, "parent", [](RefinementRecord& record) { record.parent[0] = 6; });
+  check_parent(2, VerifyRule::out_of_range, "parent",
+               [](RefinementRecord& record) { record.parent[1] = layout::none; });
+  check_parent(2, VerifyRule::inconsistent, "parent",
+               [](RefinementRecord& record) { record.parent[1] = record.parent[0]; });
+}
+
+TEST_CASE("verify refuses: a domain node whose parent is neither in the domain nor fixed") {
+  ModelMutant mutant = valid();
+  NodeRecord& pole = mutant.records<NodeRecord>(SectionKind::nodes, 0)[5];
+  REQUIRE(pole.flags == layout::node_fixed);
+  pole.flags = 0;
+  auto* records = mutant.records<RefinementRecord>(SectionKind::refinement, 1);
+  records[3].parent[1] = 5;
+  records[3].lift[1] = 0;
+  check_refused(mutant, VerifyRule::inconsistent, SectionKind::refinement, 1, 0, "parent", 3);
+}
+
+TEST_CASE("verify refuses: lifting weights that are not finite, or towards a parent outside the domain") {
+  check_parent(1, VerifyRule::not_finite, "lift", [](RefinementRecord& record) { record.lift[0] = NAN; });
+  check_parent(1, VerifyRule::not_finite, "lift", [](RefinementRecord& record) { record.lift[1] = INFINITY; });
+  check_parent(9, VerifyRule::inconsistent, "lift", [](RefinementRecord& record) {
+    record.parent[1] = 5;
+    record.lift[1] = 0.25F;
+  });
+}
+
+TEST_CASE("verify refuses: columns at nodes that are absent, of finer levels, outside the domain, or out of order") {
+  check_column(12, VerifyRule::out_of_range, "node", [](ColumnRecord& column) { column.node = 18; });
+  check_column(12, VerifyRule::inconsistent, "node", [](ColumnRecord& column) { column.node = 17; });
+  check_column(5, VerifyRule::not_increasing, "node", [](ColumnRecord& column) { column.node = 3; });
+  check_column(5, VerifyRule::not_increasing, "node", [](ColumnRecord& column) { column.node = 4; });
+  ModelMutant coarse = valid();
+  coarse.records<ColumnRecord>(SectionKind::columns, 0)[4].node = 6;
+  check_refused(coarse, VerifyRule::out_of_range, SectionKind::columns, 0, 0, "node", 4);
+}
+
+TEST_CASE("verify refuses: column areas that are not positive and finite") {
+  check_column(3, VerifyRule::out_of_range, "area", [](ColumnRecord& column) { column.area = 0; });
+  check_column(3, VerifyRule::not_finite, "area", [](ColumnRecord& column) { column.area = NAN; });
+}
+
+TEST_CASE("verify refuses: a node represented by a column that is absent") {
+  ModelMutant mutant = valid();
+  mutant.records<std::uint32_t>(SectionKind::representatives, 0, 1)[9] = 5;
+  check_refused(mutant, VerifyRule::out_of_range, SectionKind::representatives, 0, 1, "column", 9);
+}
+
+TEST_CASE("verify refuses: a touchable node without representative, on any constraint level") {
+  for (const std::uint32_t c : {0u, 1u}) {
+    for (const std::uint32_t q : {0u, 1u}) {
+      ModelMutant mutant = valid();
+      REQUIRE((mutant.records<NodeRecord>(SectionKind::nodes, q)[2].flags & layout::node_touchable) != 0);
+      mutant.records<std::uint32_t>(SectionKind::representatives, c, q)[2] = layout::none;
+      check_refused(mutant, VerifyRule::inconsistent, SectionKind::representatives, c, q, "column", 2);
+    }
+  }
+}
+
+TEST_CASE("verify refuses: a column's own node represented by another column") {
+  ModelMutant mutant = valid();
+  mutant.records<std::uint32_t>(SectionKind::representatives, 1, 1)[3] = 0;
+  check_refused(mutant, VerifyRule::inconsistent, SectionKind::representatives, 1, 1, "column", 3);
+}
+
+}  // namespace
+}  // namespace greenloop

@@ -1,0 +1,346 @@
+// The header, the section table, and files that must be accepted. One test per rule; see also verify_sections_test.cpp
+// and verify_blocks_test.cpp.
+
+#include "formats/verify.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <type_traits>
+
+#include "formats/testing/model_mutant.hpp"
+#include "formats/testing/refusal.hpp"
+
+namespace greenloop {
+namespace {
+
+using layout::SectionEntry;
+using layout::SectionKind;
+
+constexpr SectionKind header = {};
+constexpr std::uint32_t unknown_kind = 77;
+
+ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 2}); }
+
+void check_accepted(ModelMutant& mutant) {
+  const VerifyResult result = mutant.verdict();
+  CAPTURE(describe(result));
+  CHECK(result.ok());
+  CHECK(mutant.view().header == &mutant.header());
+}
+
+SectionCopy unknown_section() {
+  SectionCopy copy;
+  copy.entry.kind = unknown_kind;
+  copy.bytes.assign(100, std::byte{0xAB});
+  return copy;
+}
+
+TEST_CASE("verify accepts: every size of the synthetic model") {
+  for (std::uint32_t levels = 1; levels <= 4; ++levels) {
+    ModelMutant mutant(SyntheticOptions{.levels = levels});
+    check_accepted(mutant);
+    CHECK(mutant.view().levels == levels);
+    CHECK(mutant.view().node_count == std::vector{6u, 18u, 66u, 258u}[levels - 1]);
+  }
+}
+
+TEST_CASE("verify accepts: one level and one column") {
+  ModelMutant mutant(SyntheticOptions{.levels = 1, .touchable_above = 1});
+  check_accepted(mutant);
+  CHECK(mutant.view().level[0].counts->column_count == 1);
+}
+
+TEST_CASE("verify accepts: 16-bit values, dense blocks, both") {
+  for (const std::uint32_t value_bytes : {1u, 2u}) {
+    for (const bool dense : {false, true}) {
+      ModelMutant mutant(SyntheticOptions{.levels = 3, .value_bytes = value_bytes, .dense = dense});
+      check_accepted(mutant);
+      const BlocksView& blocks = mutant.view().blocks[2][1];
+      CHECK(blocks.value_bytes == value_bytes);
+      CHECK((blocks.index == nullptr) == dense);
+    }
+  }
+}
+
+TEST_CASE("verify accepts: columns only on the finest level") {
+  ModelMutant mutant(SyntheticOptions{.levels = 3, .coarsest_constraint_level = 2});
+  check_accepted(mutant);
+  CHECK(mutant.view().level[1].columns == nullptr);
+  CHECK(mutant.view().blocks[2][0].columns == 41);
+}
+
+TEST_CASE("verify accepts: 4-byte indices where 2 would do") {
+  ModelMutant mutant = valid();
+  mutant.rebuild([](std::vector<SectionCopy>& sections) {
+    for (SectionCopy& section : sections) {
+      if (!section.is(SectionKind::blocks, 1, 1)) continue;
+      layout::BlocksHeader blocks;
+      std::memcpy(&blocks, section.bytes.data(), sizeof(blocks));
+      const auto* narrow = reinterpret_cast<const std::uint16_t*>(section.bytes.data() + blocks.index_offset);
+      const std::vector<std::uint32_t> wide(narrow, narrow + blocks.block_count);
+      const std::size_t room = (wide.size() * 4 + 63) / 64 * 64;
+      std::vector<std::byte> bytes(section.bytes.begin(), section.bytes.begin() + blocks.index_offset);
+      bytes.resize(blocks.index_offset + room);
+      std::memcpy(bytes.data() + blocks.index_offset, wide.data(), wide.size() * 4);
+      bytes.insert(bytes.end(), section.bytes.begin() + blocks.value_offset, section.bytes.end());
+      blocks.index_bytes = 4;
+      blocks.value_offset = blocks.index_offset + room;
+      std::memcpy(bytes.data(), &blocks, sizeof(blocks));
+      section.bytes = std::move(bytes);
+    }
+  });
+  check_accepted(mutant);
+  CHECK(mutant.view().blocks[1][1].index_bytes == 4);
+}
+
+TEST_CASE("verify accepts: no provenance, and provenance in any language") {
+  for (const char* text : {"", "{\"author\": \"Zo\u00eb \u5f20 \U0001F43B\"}"}) {
+    ModelData data = synthetic_model({.levels = 1});
+    data.provenance = text;
+    ModelMutant mutant(encode(data));
+    check_accepted(mutant);
+    CHECK(std::string(mutant.view().provenance.begin(), mutant.view().provenance.end()) == text);
+  }
+}
+
+TEST_CASE("verify accepts: a newer minor version with unknown sections anywhere and reserved bytes in use") {
+  ModelMutant mutant = valid();
+  mutant.rebuild([](std::vector<SectionCopy>& sections) {
+    sections.insert(sections.begin(), unknown_section());
+    sections.insert(sections.begin() + 7, unknown_section());
+    sections.push_back(unknown_section());
+  });
+  mutant.header().minor = layout::version_minor + 1;
+  mutant.header().reserved[0] = 1;
+  mutant.records<layout::Info>(SectionKind::info)->reserved[3] = 1;
+  mutant.entry(SectionKind::info).reserved = 1;
+  check_accepted(mutant);
+  CHECK(mutant.view().levels == 2);
+}
+
+TEST_CASE("verify accepts: a file cut after any level, seen as the coarser model") {
+  const auto whole = encode(synthetic_model({.levels = 4}));
+  for (std::uint32_t q = 0; q < 4; ++q) {
+    ModelMutant mutant(truncate_to_level(whole, q));
+    check_accepted(mutant);
+    CHECK(mutant.view().levels == q + 1);
+    CHECK(mutant.view().info->levels == 4);
+  }
+}
+
+TEST_CASE("verify refuses: memory that is not 64-byte aligned") {
+  const auto file = encode(synthetic_model({.levels = 1}));
+  AlignedBytes memory(file.size() + 64);
+  std::memcpy(memory.data() + 16, file.data(), file.size());
+  ModelView view;
+  check_refusal(verify(memory.span().subspan(16, file.size()), view), VerifyRule::misaligned_memory, header, 0, 0,
+                "address", 0);
+}
+
+TEST_CASE("verify refuses: fewer bytes than a header, down to none") {
+  ModelView view;
+  check_refusal(verify({}, view), VerifyRule::too_short, header, 0, 0, "bytes", 0);
+  const AlignedBytes memory(63);
+  check_refusal(verify(memory.span(), view), VerifyRule::too_short, header, 0, 0, "bytes", 0);
+}
+
+TEST_CASE("verify refuses: any other magic") {
+  ModelMutant mutant = valid();
+  mutant.header().magic[7] = '\r';
+  check_refused(mutant, VerifyRule::bad_magic, header, 0, 0, "magic", 7);
+}
+
+TEST_CASE("verify refuses: big-endian files") {
+  ModelMutant mutant = valid();
+  mutant.header().endian = 0x04030201;
+  check_refused(mutant, VerifyRule::foreign_endianness, header, 0, 0, "endian", 0);
+}
+
+TEST_CASE("verify refuses: another major version, older or newer") {
+  for (const int major : {layout::version_major - 1, layout::version_major + 1}) {
+    ModelMutant mutant = valid();
+    mutant.header().major = static_cast<std::uint16_t>(major);
+    check_refused(mutant, VerifyRule::unsupported_major, header, 0, 0, "major", 0);
+  }
+}
+
+TEST_CASE("verify refuses: a length that is not the file's, or not a multiple of 64") {
+  ModelMutant mutant = valid();
+  mutant.header().file_bytes += 64;
+  check_refused(mutant, VerifyRule::wrong_length, header, 0, 0, "file_bytes", 0);
+  ModelMutant odd = valid();
+  odd.resize(odd.bytes().size() + 4);
+  check_refused(odd, VerifyRule::wrong_length, header, 0, 0, "file_bytes", 0);
+}
+
+TEST_CASE("verify refuses: a whole empty block after the last section") {
+  ModelMutant mutant = valid();
+  mutant.resize(mutant.bytes().size() + 64);
+  check_refused(mutant, VerifyRule::wrong_length, header, 0, 0, "file_bytes", 0);
+}
+
+TEST_CASE("verify refuses: a file cut short at any multiple of 64") {
+  ModelMutant whole = valid();
+  for (std::size_t size = 64; size < whole.bytes().size(); size += 64) {
+    ModelMutant mutant(whole.bytes());
+    mutant.resize(size);
+    CHECK_FALSE(mutant.verdict().ok());
+  }
+}
+
+TEST_CASE("verify refuses: a damaged header") {
+  ModelMutant mutant = valid();
+  reseal(mutant.bytes());
+  mutant.header().levels ^= 1;
+  ModelView view;
+  check_refusal(verify(mutant.bytes(), view), VerifyRule::header_checksum, header, 0, 0, "header_crc", 0);
+}
+
+TEST_CASE("verify refuses: a damaged table") {
+  ModelMutant mutant = valid();
+  mutant.table()[3].a ^= 1;
+  ModelView view;
+  check_refusal(verify(mutant.bytes(), view), VerifyRule::table_checksum, header, 0, 0, "table_crc", 0);
+}
+
+TEST_CASE("verify refuses: a damaged section") {
+  ModelMutant mutant = valid();
+  *mutant.records<char>(SectionKind::nodes, 1, 0, 11) ^= 1;
+  ModelView view;
+  check_refusal(verify(mutant.bytes(), view), VerifyRule::section_checksum, SectionKind::nodes, 1, 0, "section.crc",
+                mutant.place(SectionKind::nodes, 1));
+}
+
+TEST_CASE("verify refuses: more levels than there can be, or none") {
+  for (const std::uint32_t levels : {0u, layout::max_levels + 1, 0xffffffffu}) {
+    ModelMutant mutant = valid();
+    mutant.header().levels = levels;
+    check_refused(mutant, VerifyRule::out_of_range, header, 0, 0, "levels", 0);
+  }
+}
+
+TEST_CASE("verify refuses: more sections than fit in the file") {
+  for (const std::uint32_t count : {100'000u, 0xffffffffu}) {
+    ModelMutant mutant = valid();
+    mutant.header().section_count = count;
+    check_refused(mutant, VerifyRule::section_out_of_bounds, header, 0, 0, "section_count", 0);
+  }
+}
+
+TEST_CASE("verify refuses: a section that starts or ends past the end, also where the sum wraps around") {
+  for (const std::uint64_t offset : {std::uint64_t{1} << 40, ~std::uint64_t{63}}) {
+    ModelMutant mutant = valid();
+    const std::uint32_t place = mutant.place(SectionKind::columns, 1);
+    mutant.table()[place].offset = offset;
+    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::columns, 1, 0, "section.offset", place);
+  }
+  for (const std::uint64_t bytes : {std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    ModelMutant mutant = valid();
+    const std::uint32_t place = mutant.place(SectionKind::columns, 1);
+    mutant.table()[place].bytes = bytes;
+    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::columns, 1, 0, "section.bytes", place);
+  }
+}
+
+TEST_CASE("verify refuses: a section that does not start at a multiple of 64") {
+  ModelMutant mutant = valid();
+  const std::uint32_t place = mutant.place(SectionKind::nodes, 0);
+  mutant.table()[place].offset += 4;
+  check_refused(mutant, VerifyRule::section_misaligned, SectionKind::nodes, 0, 0, "section.offset", place);
+}
+
+TEST_CASE("verify refuses: a section that starts before the one ahead of it ends, or inside the table") {
+  ModelMutant mutant = valid();
+  const std::uint32_t place = mutant.place(SectionKind::nodes, 1);
+  mutant.table()[place].offset -= 64;
+  check_refused(mutant, VerifyRule::section_overlap, SectionKind::nodes, 1, 0, "section.offset", place);
+  ModelMutant first = valid();
+  first.table()[0].offset = 64;
+  check_refused(first, VerifyRule::section_overlap, SectionKind::info, 0, 0, "section.offset", 0);
+}
+
+TEST_CASE("verify refuses: sections in another order") {
+  ModelMutant mutant = valid();
+  const std::uint32_t place = mutant.place(SectionKind::nodes, 0);
+  mutant.rebuild([&](std::vector<SectionCopy>& sections) { std::swap(sections[place], sections[place + 1]); });
+  check_refused(mutant, VerifyRule::section_order, SectionKind::base_triangles, 0, 0, "section", place);
+}
+
+TEST_CASE("verify refuses: a level beyond those the header states") {
+  ModelMutant mutant = valid();
+  const std::uint32_t place = mutant.place(SectionKind::level, 1);
+  mutant.header().levels = 1;
+  check_refused(mutant, VerifyRule::section_order, SectionKind::level, 1, 0, "section", place);
+}
+
+TEST_CASE("verify refuses: a file without one of its sections, whichever it is") {
+  const std::size_t count = valid().table().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    ModelMutant mutant = valid();
+    const SectionEntry gone = mutant.table()[i];
+    mutant.rebuild([&](std::vector<SectionCopy>& sections) { sections.erase(sections.begin() + i); });
+    check_refused(mutant, VerifyRule::section_missing, static_cast<SectionKind>(gone.kind), gone.a, gone.b, "section",
+                  i);
+  }
+}
+
+TEST_CASE("verify refuses: a file with one of its sections twice, whichever it is") {
+  const std::size_t count = valid().table().size();
+  for (std::size_t i = 0; i < count; ++i) {
+    ModelMutant mutant = valid();
+    const SectionEntry twice = mutant.table()[i];
+    mutant.rebuild([&](std::vector<SectionCopy>& sections) {
+      const SectionCopy copy = sections[i];
+      sections.insert(sections.begin() + i + 1, copy);
+    });
+    check_refused(mutant, VerifyRule::section_duplicate, static_cast<SectionKind>(twice.kind), twice.a, twice.b,
+                  "section", i + 1);
+  }
+}
+
+TEST_CASE("verify refuses: an unknown section that is not of a newer minor version") {
+  ModelMutant mutant = valid();
+  mutant.rebuild([](std::vector<SectionCopy>& sections) { sections.push_back(unknown_section()); });
+  check_refused(mutant, VerifyRule::bad_enum, static_cast<SectionKind>(unknown_kind), 0, 0, "section.kind",
+                mutant.table().size() - 1);
+}
+
+TEST_CASE("verify refuses: a damaged unknown section of a newer minor version") {
+  ModelMutant mutant = valid();
+  mutant.rebuild([](std::vector<SectionCopy>& sections) { sections.push_back(unknown_section()); });
+  mutant.header().minor = layout::version_minor + 1;
+  reseal(mutant.bytes());
+  mutant.bytes()[mutant.table().back().offset] ^= std::byte{1};
+  ModelView view;
+  check_refusal(verify(mutant.bytes(), view), VerifyRule::section_checksum, static_cast<SectionKind>(unknown_kind), 0,
+                0, "section.crc", mutant.table().size() - 1);
+}
+
+TEST_CASE("verify refuses: padding that is not zero, between sections and after the last") {
+  ModelMutant mutant = valid();
+  const SectionEntry provenance = mutant.entry(SectionKind::provenance);
+  mutant.bytes()[provenance.offset + provenance.bytes + 1] = std::byte{1};
+  check_refused(mutant, VerifyRule::padding_not_zero, header, 0, 0, "padding",
+                provenance.offset + provenance.bytes + 1);
+  ModelMutant last = valid();
+  const std::size_t end = last.bytes().size();
+  last.bytes()[end - 1] = std::byte{1};
+  check_refused(last, VerifyRule::padding_not_zero, header, 0, 0, "padding", end - 1);
+}
+
+TEST_CASE("verify refuses: reserved bytes in use, in the header and in the table") {
+  ModelMutant mutant = valid();
+  mutant.header().reserved[23] = 1;
+  check_refused(mutant, VerifyRule::reserved_not_zero, header, 0, 0, "reserved", 0);
+  ModelMutant table = valid();
+  table.table()[2].reserved = 1;
+  check_refused(table, VerifyRule::reserved_not_zero, SectionKind::level, 0, 0, "section.reserved", 2);
+}
+
+TEST_CASE("verify: the view is plain data") { CHECK(std::is_trivially_copyable_v<ModelView>); }
+
+}  // namespace
+}  // namespace greenloop

@@ -1,0 +1,116 @@
+// The fuzz target's function on random changes of valid files: what continuous integration runs of it.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <random>
+
+#include "formats/describe.hpp"
+#include "formats/testing/model_mutant.hpp"
+#include "rt_tests/fuzz/walk_view.hpp"
+
+namespace greenloop {
+namespace {
+
+constexpr std::uint64_t seed = 20260722;
+constexpr int mutations = 200'000;
+
+constexpr std::array<std::uint32_t, 12> telling = {0,          1,          2,          0x7f,       0x80,       0xff,
+                                                   0x7fffffff, 0x80000000, 0xffffffff, 0x7fc00000, 0x7f800000, 0x10000};
+
+class Mutator {
+ public:
+  explicit Mutator(std::vector<std::vector<std::byte>> seeds) : seeds_(std::move(seeds)) {}
+
+  std::vector<std::byte> next() {
+    std::vector<std::byte> file = seeds_[below(seeds_.size())];
+    for (std::size_t change = below(3) + 1; change > 0; --change) mutate(file);
+    return file;
+  }
+
+ private:
+  std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_() % limit); }
+
+  // half of the changes meet the header and the table, which are a small part of the file
+  std::size_t place(const std::vector<std::byte>& file) {
+    return below(2) == 0 ? below(std::min<std::size_t>(file.size(), 1024)) : below(file.size());
+  }
+
+  void mutate(std::vector<std::byte>& file) {
+    const std::size_t at = place(file), word = at / 4 * 4;
+    switch (below(8)) {
+      case 0:
+      case 1:
+        file[at] ^= std::byte{1} << below(8);
+        break;
+      case 2:
+        file[at] = static_cast<std::byte>(below(256));
+        break;
+      case 3:
+      case 4:
+        std::memcpy(file.data() + word, &telling[below(telling.size())], 4);
+        break;
+      case 5:
+        std::swap_ranges(file.begin() + word, file.begin() + word + 4, file.begin() + place(file) / 4 * 4);
+        break;
+      case 6:
+        std::memmove(file.data() + word, file.data() + place(file) / 4 * 4, 4);
+        break;
+      default:
+        if (below(8) == 0) file.resize(std::max<std::size_t>(64, at / 64 * 64));
+        break;
+    }
+  }
+
+  std::vector<std::vector<std::byte>> seeds_;
+  std::mt19937_64 random_{seed};
+};
+
+TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
+  MESSAGE("seed ", seed, ", ", mutations, " mutations");
+  Mutator mutator({encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
+                   encode(synthetic_model({.levels = 2, .value_bytes = 2})),
+                   encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .dense = true}))});
+  int accepted = 0;
+  std::array<int, 64> refused{};
+  for (int i = 0; i < mutations; ++i) {
+    const InputOutcome outcome = try_input(mutator.next());
+    accepted += outcome.accepted ? 1 : 0;
+    ++refused.at(static_cast<std::size_t>(outcome.rule));
+  }
+  CHECK(accepted > mutations / 100);
+  CHECK(accepted < mutations / 2);
+
+  // every rule was met but those that the mending of length and checksums puts right or no change of a word can break
+  for (const VerifyRule rule : {VerifyRule::bad_magic, VerifyRule::foreign_endianness, VerifyRule::unsupported_major,
+                                VerifyRule::section_out_of_bounds, VerifyRule::section_misaligned,
+                                VerifyRule::section_overlap, VerifyRule::section_missing, VerifyRule::section_size,
+                                VerifyRule::padding_not_zero, VerifyRule::reserved_not_zero, VerifyRule::bad_enum,
+                                VerifyRule::out_of_range, VerifyRule::not_finite, VerifyRule::not_increasing,
+                                VerifyRule::inconsistent, VerifyRule::section_order, VerifyRule::section_duplicate}) {
+    CAPTURE(rule_name(rule));
+    CHECK(refused[static_cast<std::size_t>(rule)] > 0);
+  }
+}
+
+TEST_CASE("walk_view sees what verify must prevent") {
+  ModelMutant mutant(SyntheticOptions{.levels = 2});
+  REQUIRE(mutant.verdict().ok());
+  const ModelView view = mutant.view();
+  CHECK(walk_view(mutant.bytes(), view));
+
+  CHECK_FALSE(walk_view(mutant.bytes().first(mutant.bytes().size() - 64), view));
+  auto* parents = mutant.records<layout::RefinementRecord>(layout::SectionKind::refinement, 1);
+  parents[0].parent[1] += 6;
+  CHECK_FALSE(walk_view(mutant.bytes(), view));
+  parents[0].parent[1] -= 6;
+  const auto& blocks = *mutant.records<layout::BlocksHeader>(layout::SectionKind::blocks, 1, 1);
+  auto* index = mutant.records<std::uint16_t>(layout::SectionKind::blocks, 1, 1, blocks.index_offset);
+  index[3] = static_cast<std::uint16_t>(blocks.rows);
+  CHECK_FALSE(walk_view(mutant.bytes(), view));
+}
+
+}  // namespace
+}  // namespace greenloop
