@@ -1,0 +1,106 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "offline/scene/region.hpp"
+
+namespace greenloop::offline {
+
+/// A scene that cannot be used. what() lists all problems found, one a line, each with file:line:column, key and
+/// reason.
+class SceneError : public std::runtime_error {
+ public:
+  explicit SceneError(std::vector<std::string> problems);
+
+  [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
+
+ private:
+  std::vector<std::string> problems_;
+};
+
+/// The mesh and the size of its unit: exactly one of `unit` and `size` is set.
+struct MeshSource {
+  bool tetrahedra = false;     ///< [volume] instead of [surface]
+  std::string name;            ///< as the scene says
+  std::filesystem::path path;  ///< seen from the working directory
+  std::optional<double> unit;  ///< length of one mesh unit [m]
+  std::optional<double> size;  ///< longest side of the bounding box after scaling [m]
+
+  /// Metres per unit of a mesh with this bounding box. Throws SceneError if the box has no extent to scale.
+  [[nodiscard]] double scale(const Eigen::AlignedBox3d& mesh_box) const;
+};
+
+struct Remesh {
+  int base_vertices = 42;  ///< wanted size of the base mesh, 4..10000
+  int levels = 3;          ///< midpoint splits, 0..7
+};
+
+struct Material {
+  double young = 0;    ///< Young's modulus [Pa], > 0
+  double poisson = 0;  ///< Poisson's ratio, -1 < v < 0.5
+};
+
+struct Accuracy {
+  double rms = 0.03;           ///< ||error||_F / ||exact||_F over all columns, 0..1
+  double worst_column = 0.25;  ///< largest block-wise relative error of any column, 0..1
+};
+
+struct StepBudget {
+  double rate = 1000;                ///< steps per second [Hz]
+  std::optional<std::int64_t> work;  ///< work units per step; the build chooses if not set
+  int contacts = 16;                 ///< most contacts at once, 1..4096
+};
+
+struct CompressionChoice {
+  std::optional<double> epsilon;  ///< block threshold, 0 <= epsilon < 1; searched if not set
+  std::optional<int> bits;        ///< 8 or 16; searched if not set
+};
+
+/// What scene.toml asks for, in SI units. docs/scene.md has the grammar.
+struct Scene {
+  MeshSource mesh;
+  Remesh remesh;
+  Material material;
+  std::vector<Region> fixed;     ///< at least one
+  std::vector<Region> touched;   ///< none: everything that is not fixed
+  std::vector<Region> read;      ///< none: everything that is not fixed
+  int coarsest_constraints = 0;  ///< coarsest level offered for contacts, 0..remesh.levels
+  Accuracy accuracy;
+  StepBudget budget;
+  CompressionChoice compression;
+  std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory
+  std::string store_name;                      ///< as the scene says
+};
+
+/// Reads and checks a scene. Files it names are looked for beside it; none is opened. Throws SceneError.
+[[nodiscard]] Scene read_scene(const std::filesystem::path& file);
+
+/// The same for a scene already in memory; `file` is for messages and for paths relative to it.
+[[nodiscard]] Scene parse_scene(std::string_view text, const std::filesystem::path& file);
+
+/// The scene as TOML: every key in SI with defaults filled in, always in the same order, numbers that read back as the
+/// same doubles. Scenes that mean the same have the same text; parsing it gives the same scene. For provenance, and
+/// through fingerprint() to tell whether a stored result belongs to this scene.
+[[nodiscard]] std::string canonical_text(const Scene& scene);
+
+/// One flag per node for what the scene asks of it.
+struct NodeSets {
+  std::vector<bool> fixed;
+  std::vector<bool> touched;  ///< never a fixed node
+  std::vector<bool> read;     ///< never a fixed node
+};
+
+/// Finds the nodes of each role among positions [m] of a body with this bounding box. Throws SceneError with counts and
+/// box if nothing or everything is fixed, or nothing is left to touch or to read.
+[[nodiscard]] NodeSets select_nodes(const Scene& scene, std::span<const Eigen::Vector3d> positions,
+                                    const Eigen::AlignedBox3d& box);
+
+}  // namespace greenloop::offline

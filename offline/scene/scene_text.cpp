@@ -1,0 +1,109 @@
+#include <array>
+#include <charconv>
+#include <string>
+
+#include "offline/scene/scene.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+/// The shortest decimal form that reads back as the same double.
+std::string number(double value) {
+  std::array<char, 32> buffer{};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), result.ptr};
+}
+
+/// A TOML basic string.
+std::string string(std::string_view value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') {
+      text += '\\';
+      text += c;
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      constexpr std::string_view digits = "0123456789abcdef";
+      text += "\\u00";
+      text += digits[static_cast<unsigned char>(c) >> 4];
+      text += digits[c & 15];
+    } else {
+      text += c;
+    }
+  }
+  return text + '"';
+}
+
+std::string quantity(double value, std::string_view unit) { return string(number(value) + ' ' + std::string(unit)); }
+
+std::string triple(const Eigen::Vector3d& v) {
+  return std::string("[") + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + "]";
+}
+
+std::string region_text(const HalfSpace& r) {
+  return std::string(r.below ? "below" : "above") + " = " + number(r.fraction) + "\naxis = \"" + "xyz"[r.axis] + "\"\n";
+}
+
+std::string region_text(const BoxRegion& r) { return "box = [" + triple(r.low) + ", " + triple(r.high) + "]\n"; }
+
+std::string region_text(const SphereRegion& r) {
+  return "sphere = { center = " + triple(r.center) +
+         ", radius = " + (r.radius_in_metres ? quantity(r.radius, "m") : number(r.radius)) + " }\n";
+}
+
+std::string region_text(const NearestRegion& r) {
+  return "near = " + triple(r.point) + "\ncount = " + std::to_string(r.count) + "\n";
+}
+
+std::string regions_text(const std::string& role, const std::vector<Region>& regions) {
+  std::string text;
+  for (const auto& region : regions) {
+    text += "\n[[" + role + "]]\n" + std::visit([](const auto& shape) { return region_text(shape); }, region);
+  }
+  return text;
+}
+
+std::string mesh_text(const MeshSource& mesh) {
+  return std::string(mesh.tetrahedra ? "[volume]" : "[surface]") + "\nfile = " + string(mesh.name) + "\n" +
+         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n";
+}
+
+std::string remesh_text(const Scene& scene) {
+  const auto base = "base_vertices = " + std::to_string(scene.remesh.base_vertices) + "\n";
+  return "\n[remesh]\n" + (scene.mesh.tetrahedra ? "" : base) + "levels = " + std::to_string(scene.remesh.levels) +
+         "\n";
+}
+
+std::string material_text(const Material& material) {
+  return "\n[material]\nyoung = " + quantity(material.young, "Pa") + "\npoisson = " + number(material.poisson) + "\n";
+}
+
+std::string accuracy_text(const Accuracy& accuracy) {
+  return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) + "\n";
+}
+
+std::string budget_text(const StepBudget& budget) {
+  return "\n[budget]\nrate = " + quantity(budget.rate, "Hz") + "\n" +
+         (budget.work ? "work = " + std::to_string(*budget.work) + "\n" : "") +
+         "contacts = " + std::to_string(budget.contacts) + "\n";
+}
+
+std::string compression_text(const CompressionChoice& compression) {
+  if (!compression.epsilon && !compression.bits) {
+    return "";
+  }
+  return "\n[compression]\n" + (compression.epsilon ? "epsilon = " + number(*compression.epsilon) + "\n" : "") +
+         (compression.bits ? "bits = " + std::to_string(*compression.bits) + "\n" : "");
+}
+
+}  // namespace
+
+std::string canonical_text(const Scene& scene) {
+  return mesh_text(scene.mesh) + remesh_text(scene) + material_text(scene.material) +
+         regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) +
+         regions_text("read", scene.read) +
+         "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
+         accuracy_text(scene.accuracy) + budget_text(scene.budget) + compression_text(scene.compression) +
+         (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace greenloop::offline {
+
+enum class Dimension { length, pressure, frequency };
+
+/// A quantity that cannot be read; the message says what is wrong with it and names the nearest valid unit.
+class UnitError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Value in SI (m, Pa, Hz) of a number with a unit, such as "20 kPa", "30cm" or "1e3 Hz".
+/// Length: m, cm, mm, um, µm, km, in; pressure: Pa, kPa, MPa, GPa, N/mm^2; frequency: Hz, kHz, MHz.
+/// The result is the double nearest to the product wherever the number and its SI value are exact.
+/// Throws UnitError if number or unit is missing, the unit is unknown or of another dimension, or the number not
+/// finite.
+[[nodiscard]] double parse_quantity(std::string_view text, Dimension dimension);
+
+/// Value in SI of one such unit, "cm" -> 0.01. Throws UnitError.
+[[nodiscard]] double parse_unit(std::string_view text, Dimension dimension);
+
+/// An example to show, such as "20 kPa".
+[[nodiscard]] std::string_view example_of(Dimension dimension);
+
+}  // namespace greenloop::offline
