@@ -1,0 +1,79 @@
+#include "offline/remesh/quality.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "offline/remesh/self_intersection.hpp"
+#include "offline/remesh/surface.hpp"
+#include "offline/remesh/triangle_tree.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+double smallest_angle(const TriangleMesh& mesh) {
+  double least = std::numbers::pi;
+  for (const auto& corners : mesh.triangles) {
+    for (int c = 0; c < 3; ++c) {
+      const Eigen::Vector3d u = mesh.vertices[corners[(c + 1) % 3]] - mesh.vertices[corners[c]];
+      const Eigen::Vector3d v = mesh.vertices[corners[(c + 2) % 3]] - mesh.vertices[corners[c]];
+      least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)));
+    }
+  }
+  return least * 180 / std::numbers::pi;
+}
+
+std::size_t flipped_triangles(const TriangleMesh& mesh, const Surface& input, const TriangleTree& input_tree) {
+  std::vector<Eigen::Vector3d> normals;
+  normals.reserve(mesh.vertices.size());
+  for (const auto& v : mesh.vertices) normals.push_back(input.normal(input_tree.closest(v)));
+  return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
+    const auto& a = mesh.vertices[t[0]];
+    const Eigen::Vector3d normal = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
+    return !(normal.dot(normals[t[0]] + normals[t[1]] + normals[t[2]]) > 0);
+  }));
+}
+
+/// The greatest distance from samples of `from` to the surface of `to`, at least `known`.
+double one_sided_distance(const TriangleMesh& from, const TriangleTree& to, double spacing, double known) {
+  double greatest = known;
+  const auto sample = [&](const Eigen::Vector3d& p) { greatest = std::max(greatest, to.distance(p, greatest)); };
+  for (const auto& vertex : from.vertices) sample(vertex);
+  for (const auto& [ia, ib, ic] : from.triangles) {
+    const auto &a = from.vertices[ia], &b = from.vertices[ib], &c = from.vertices[ic];
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const int steps = std::max(2, static_cast<int>(std::ceil(longest / spacing)));
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; i + j <= steps; ++j) {
+        sample(a + (b - a) * (static_cast<double>(i) / steps) + (c - a) * (static_cast<double>(j) / steps));
+      }
+    }
+  }
+  return greatest;
+}
+
+}  // namespace
+
+RemeshQuality measure_quality(const TriangleMesh& input, const SemiRegularMesh& mesh) {
+  const TriangleMesh finest{mesh.positions, triangles_of_level(mesh, mesh.finest_level())};
+  const Surface surface(input);
+  const TriangleTree input_tree(input), finest_tree(finest);
+  Eigen::AlignedBox3d box;
+  for (const auto& vertex : input.vertices) box.extend(vertex);
+  const double diagonal = box.diagonal().norm();
+
+  RemeshQuality quality;
+  quality.smallest_angle_degrees = smallest_angle(finest);
+  quality.hausdorff = one_sided_distance(finest, input_tree, diagonal / 400, 0);
+  quality.hausdorff = one_sided_distance(input, finest_tree, diagonal / 400, quality.hausdorff);
+  quality.hausdorff_relative = quality.hausdorff / diagonal;
+  quality.triangles = finest.triangles.size();
+  quality.flipped = flipped_triangles(finest, surface, input_tree);
+  quality.self_intersections = self_intersections(finest).size();
+  quality.base_vertices = static_cast<int>(mesh.vertex_end.front());
+  quality.levels = mesh.finest_level();
+  return quality;
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+
+#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/exchange/triangle_mesh.hpp"
+
+namespace greenloop::offline {
+
+/// What a remeshed surface is worth, measured on its finest level.
+struct RemeshQuality {
+  double smallest_angle_degrees = 0;
+  double hausdorff = 0;           ///< the greater of both directions, in the input's unit
+  double hausdorff_relative = 0;  ///< as a share of the diagonal of the input's bounding box
+  std::size_t triangles = 0;
+  std::size_t flipped = 0;             ///< triangles whose normal is not within 90 degrees of the input's
+  std::size_t self_intersections = 0;  ///< pairs of triangles that meet where they should not
+  bool kept_connectivity = false;      ///< the input already had subdivision connectivity and was kept
+  int base_vertices = 0;
+  int levels = 0;
+};
+
+/// Measures `mesh` against `input` (kept_connectivity is left false). The Hausdorff distance is sampled from both
+/// surfaces: all vertices, and on every triangle a grid of points no farther apart than 1/400 of the diagonal of the
+/// input's bounding box. Throws std::invalid_argument if the input is not closed and manifold.
+[[nodiscard]] RemeshQuality measure_quality(const TriangleMesh& input, const SemiRegularMesh& mesh);
+
+}  // namespace greenloop::offline

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "offline/remesh/midpoint_refinement.hpp"
+#include "offline/remesh/quadric.hpp"
+#include "offline/remesh/surface.hpp"
+
+namespace greenloop::offline {
+
+/// Slides the vertices of `connectivity` along `surface` until its finest triangles are as equilateral and as equal
+/// as its connectivity allows. Minimises the sum over finest triangles of MIPS^2 times the area distortion
+/// (Degener, Meseth, Klein 2003, with theta = 1/2), against equilateral triangles of the mean area; areas are signed
+/// by the surface's normal, with the regularisation of Garanzha et al. 2021 where triangles are still turned over.
+/// Coarse vertices move with their hat functions over the finest level, so that mass flows across the surface.
+/// A vertex only ever walks on the surface. `progress` gets the fraction done.
+[[nodiscard]] std::vector<SurfacePoint> relax(const Surface& surface, const SemiRegularMesh& connectivity,
+                                              std::vector<SurfacePoint> points,
+                                              const std::vector<Quadric>& base_planes,
+                                              const std::function<void(double)>& progress);
+
+}  // namespace greenloop::offline

@@ -1,0 +1,130 @@
+#include "offline/remesh/remesh.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "offline/remesh/midpoint_refinement.hpp"
+#include "offline/remesh/relaxation.hpp"
+#include "offline/remesh/self_parameterization.hpp"
+#include "offline/remesh/subdivision_connectivity.hpp"
+#include "offline/remesh/surface.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+/// Fewer levels than this leave triangles too large to be shaped by the surface below them.
+constexpr int kWorkingLevels = 3;
+
+void require(bool holds, const std::string& message) {
+  if (!holds) throw std::invalid_argument("remesh: " + message);
+}
+
+void check(const TriangleMesh& input, const RemeshOptions& options) {
+  require(options.base_vertices >= 4, "base_vertices = " + std::to_string(options.base_vertices) + "; at least 4");
+  require(options.levels >= 0 && options.levels <= 7, "levels = " + std::to_string(options.levels) + "; 0 to 7");
+  require(options.accuracy > 0, "accuracy = " + std::to_string(options.accuracy) + "; must be above 0");
+  require(!input.triangles.empty(), "the surface has no triangles");
+  require(input.vertices.size() < 2 * input.triangles.size(), "the surface has vertices that no triangle uses");
+}
+
+/// Lengths in units of the bounding box's diagonal: nothing below depends on the unit of the file.
+struct Normalization {
+  Eigen::Vector3d origin;
+  double diagonal;
+
+  explicit Normalization(const TriangleMesh& mesh) {
+    Eigen::AlignedBox3d box;
+    for (const auto& vertex : mesh.vertices) box.extend(vertex);
+    origin = box.center();
+    diagonal = box.diagonal().norm();
+    require(diagonal > 0 && std::isfinite(diagonal), "the surface has no extent, or coordinates that are not finite");
+  }
+  [[nodiscard]] TriangleMesh apply(TriangleMesh mesh) const {
+    for (auto& vertex : mesh.vertices) vertex = (vertex - origin) / diagonal;
+    return mesh;
+  }
+};
+
+std::string described(const RemeshQuality& quality) {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "with %d base vertices and %d levels: smallest angle %.3g degrees, Hausdorff distance %.3g %% of the "
+                "diagonal, %zu flipped triangles, %zu self-intersections",
+                quality.base_vertices, quality.levels, quality.smallest_angle_degrees, 100 * quality.hausdorff_relative,
+                quality.flipped, quality.self_intersections);
+  return text;
+}
+
+bool acceptable(const RemeshQuality& quality, const RemeshOptions& options) {
+  return quality.flipped == 0 && quality.self_intersections == 0 &&
+         quality.smallest_angle_degrees >= options.smallest_angle && quality.hausdorff_relative <= options.accuracy;
+}
+
+/// One attempt; `surface` holds the input in normalised coordinates.
+SemiRegularMesh attempt(const TriangleMesh& input, const Surface& surface, int base_vertices, int levels,
+                        const std::function<void(double)>& progress) {
+  const auto parameterization = decimate(surface.mesh(), base_vertices);
+  auto refinement =
+      refine_midpoints(parameterization.base_triangles, static_cast<int>(parameterization.base_vertices.size()),
+                       std::max(levels, kWorkingLevels));
+  const auto points = relax(surface, refinement.mesh, parameterization.to_input(std::move(refinement.places)),
+                            parameterization.base_planes, progress);
+  auto& positions = refinement.mesh.positions;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const auto& [a, b, c] = input.triangles[points[v].triangle];
+    const auto& w = points[v].weights;
+    positions[v] = w[0] * input.vertices[a] + w[1] * input.vertices[b] + w[2] * input.vertices[c];
+  }
+  return truncated(std::move(refinement.mesh), levels);
+}
+
+}  // namespace
+
+Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const RemeshProgress& progress) {
+  check(input, options);
+  const auto report = [&](double fraction, std::string_view stage) {
+    if (progress) progress(fraction, stage);
+  };
+  report(0, "looking for subdivision connectivity");
+  if (options.keep_connectivity) {
+    if (auto found = find_subdivision_connectivity(input, options.levels)) {
+      Remeshed kept{std::move(*found), {}};
+      kept.quality = measure_quality(input, kept.mesh);
+      kept.quality.kept_connectivity = true;
+      report(1, "kept the surface's own subdivision connectivity");
+      return kept;
+    }
+  }
+  const Surface surface(Normalization(input).apply(input));
+  const int most = std::max(options.most_base_vertices, options.base_vertices);
+  double done = 0;
+  std::string reached;
+  for (double wanted = options.base_vertices; std::lround(wanted) <= most; wanted *= std::sqrt(2.0)) {
+    const int base_vertices = static_cast<int>(std::lround(wanted));
+    const double share = (1 - done) / 2;
+    Remeshed result;
+    result.mesh = attempt(input, surface, base_vertices, options.levels, [&](double fraction) {
+      report(done + share * fraction, "sliding " + std::to_string(base_vertices) + " base vertices and their splits");
+    });
+    done += share;
+    report(done, "measuring");
+    result.quality = measure_quality(input, result.mesh);
+    if (acceptable(result.quality, options)) {
+      report(1, "remeshed");
+      return result;
+    }
+    reached = described(result.quality);
+  }
+  throw std::runtime_error("remesh: the shape needs more: " + reached +
+                           "; raise most_base_vertices (now " + std::to_string(most) + "), add a level (now " +
+                           std::to_string(options.levels) + ") or allow more than " +
+                           std::to_string(options.accuracy) + " of the diagonal or less than " +
+                           std::to_string(options.smallest_angle) + " degrees");
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/exchange/triangle_mesh.hpp"
+#include "offline/remesh/quality.hpp"
+
+namespace greenloop::offline {
+
+/// What to make of a surface.
+struct RemeshOptions {
+  int base_vertices = 42;         ///< of the first attempt; at least 4
+  int most_base_vertices = 336;   ///< how far an attempt that fails `accuracy` or `smallest_angle` may grow the base
+  int levels = 3;                 ///< midpoint splits of the base, 0 to 7
+  double accuracy = 0.02;         ///< greatest Hausdorff distance, as a share of the bounding box's diagonal
+  double smallest_angle = 8;      ///< degrees, on the finest level
+  bool keep_connectivity = true;  ///< keep a surface that has subdivision connectivity as it is
+};
+
+/// A surface with subdivision connectivity and what it is worth.
+struct Remeshed {
+  SemiRegularMesh mesh;
+  RemeshQuality quality;
+};
+
+/// Gets the fraction done (0..1, not decreasing) and what is being done.
+using RemeshProgress = std::function<void(double fraction, std::string_view stage)>;
+
+/// Gives a closed, connected, manifold, outward oriented surface of any genus subdivision connectivity.
+/// If it has such connectivity already, its vertices are kept exactly, with as many levels as it has, options.levels at
+/// most (quality.levels says how many). Otherwise it is decimated to a base whose bijection with the input is kept
+/// (see decimate), the base is split at midpoints, and the vertices slide along the input until the triangles are
+/// even (see relax): every vertex lies on the input. A base too small for the shape is grown by about 1.4 until
+/// accuracy and smallest angle hold and nothing is flipped or self-intersecting.
+/// The same input and options give the same bits. Needs memory and time linear in input plus result.
+/// Throws std::invalid_argument on impossible options or an input that is not closed and manifold, and
+/// std::runtime_error, naming what was reached and what to change, if no base of at most most_base_vertices will do.
+[[nodiscard]] Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options,
+                              const RemeshProgress& progress = {});
+
+}  // namespace greenloop::offline
