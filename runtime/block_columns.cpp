@@ -5,6 +5,12 @@
 namespace greenloop {
 namespace {
 
+// products this small count as none: keeps denormal numbers out of the field
+float without_denormals(float factor) {
+  constexpr float least = 0x1p-100F;
+  return factor < least && factor > -least ? 0.0F : factor;
+}
+
 // rows of a column that keeps every row
 struct EveryRow {
   std::uint32_t operator[](std::uint32_t b) const { return b; }
@@ -64,12 +70,11 @@ std::uint32_t column_blocks(const ModelView& view, std::uint32_t constraint_leve
 void add_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column, const float (&force)[3],
                 std::uint32_t row_level, Float4* x) noexcept {
   visit_column(view, constraint_level, column, row_level, [&force, x](std::uint32_t node_begin, float scale) {
-    const Float4 f0 = splat3(force[0] * scale);
-    const Float4 f1 = splat3(force[1] * scale);
-    const Float4 f2 = splat3(force[2] * scale);
+    const Float4 f0 = splat3(without_denormals(force[0] * scale));
+    const Float4 f1 = splat3(without_denormals(force[1] * scale));
+    const Float4 f2 = splat3(without_denormals(force[2] * scale));
     return [f0, f1, f2, level = x + node_begin](std::uint32_t row, const auto* value) {
-      const Float4 product =
-          (load_widened(value) * f0 + load_widened(value + 3) * f1) + load_widened(value + 6) * f2;
+      const Float4 product = (load_widened(value) * f0 + load_widened(value + 3) * f1) + load_widened(value + 6) * f2;
       level[row] += product;
     };
   });
@@ -86,8 +91,7 @@ void scatter_column(const ModelView& view, std::uint32_t constraint_level, std::
   });
 }
 
-void clear_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column,
-                  Block* blocks) noexcept {
+void clear_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column, Block* blocks) noexcept {
   visit_column(view, constraint_level, column, view.levels - 1, [blocks](std::uint32_t node_begin, float) {
     return [level = blocks + node_begin](std::uint32_t row, const auto*) { level[row] = Block{}; };
   });

@@ -28,7 +28,6 @@ void scatter_column(const ModelView& view, std::uint32_t constraint_level, std::
                     Block* blocks) noexcept;
 
 /// Zeroes what scatter_column wrote. For the loop; work: 3 units per block.
-void clear_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column,
-                  Block* blocks) noexcept;
+void clear_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column, Block* blocks) noexcept;
 
 }  // namespace greenloop

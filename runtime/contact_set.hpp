@@ -37,11 +37,11 @@ inline constexpr float least_displacement = 0x1p-80F;
 /// The contacts of a step as columns of one constraint level. Contacts that share a column are merged.
 struct ContactSet {
   std::uint32_t level = 0;
-  std::uint32_t columns = 0;               ///< columns that hold them
-  std::uint32_t* column = nullptr;         ///< [columns] increasing
-  std::uint32_t* place = nullptr;          ///< [contacts] of each contact's column in `column`
-  std::uint32_t* members = nullptr;        ///< [columns] contacts merged into it
-  std::uint32_t* sorting = nullptr;        ///< [contacts] scratch
+  std::uint32_t columns = 0;                 ///< columns that hold them
+  std::uint32_t* column = nullptr;           ///< [columns] increasing
+  std::uint32_t* place = nullptr;            ///< [contacts] of each contact's column in `column`
+  std::uint32_t* members = nullptr;          ///< [columns] contacts merged into it
+  std::uint32_t* sorting = nullptr;          ///< [contacts] scratch
   std::uint32_t* place_of_column = nullptr;  ///< [columns of any level] scratch, `layout::none` between calls
 };
 

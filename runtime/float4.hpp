@@ -40,8 +40,8 @@ inline Float4 load_widened(const std::int8_t* value) {
   std::int32_t word;
   std::memcpy(&word, value, sizeof word);
   const auto bytes = reinterpret_cast<detail::Byte16>(detail::Int4{word, 0, 0, 0});
-  const detail::Byte16 halves = __builtin_shufflevector(detail::Byte16{}, bytes, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5,
-                                                        21, 6, 22, 7, 23);
+  const detail::Byte16 halves =
+      __builtin_shufflevector(detail::Byte16{}, bytes, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
   return detail::top_halves(reinterpret_cast<detail::Half8>(halves));
 }
 

@@ -3,8 +3,8 @@
 namespace greenloop {
 namespace {
 
-void undo_lifting(const ModelView& view, const std::uint32_t* begin, const OddNeighbour* neighbour,
-                  std::uint32_t level, Float4* x) {
+void undo_lifting(const ModelView& view, const std::uint32_t* begin, const OddNeighbour* neighbour, std::uint32_t level,
+                  Float4* x) {
   for (std::uint32_t q = 0; q < level; ++q) {
     Float4* even = x + view.level[q].node_begin;
     const std::uint32_t count = view.level[q].counts->domain_count;
@@ -95,21 +95,6 @@ void inverse_transform(const ModelView& view, const OddNeighbours& neighbours, s
     }
     predict(view.level[level], x);
   }
-}
-
-std::uint64_t inverse_transform_work(const ModelView& view, const OddNeighbours& neighbours,
-                                     std::uint32_t field_level) noexcept {
-  std::uint64_t work = 0;
-  std::uint32_t even_count = view.level[0].counts->domain_count;
-  for (std::uint32_t level = 1; level < view.levels; ++level) {
-    const std::uint32_t odd_count = view.level[level].counts->domain_count;
-    work += 6 * std::uint64_t{odd_count};
-    if (level <= field_level) {
-      work += 3 * std::uint64_t{neighbours.begin[level][even_count]};
-    }
-    even_count += odd_count;
-  }
-  return work;
 }
 
 }  // namespace greenloop

@@ -43,7 +43,8 @@ void inverse_transform(const ModelView& view, const OddNeighbours& neighbours, s
                        Float4* x) noexcept;
 
 /// Work units of inverse_transform: 3 per lifting pair up to field_level, 6 per domain node above level 0.
-[[nodiscard]] std::uint64_t inverse_transform_work(const ModelView& view, const OddNeighbours& neighbours,
-                                                   std::uint32_t field_level) noexcept;
+constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_pairs, std::uint64_t odd_nodes) {
+  return 3 * lifting_pairs + 6 * odd_nodes;
+}
 
 }  // namespace greenloop
