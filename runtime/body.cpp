@@ -9,16 +9,17 @@ namespace greenloop {
 namespace {
 
 // largest factor between coefficients and node values, intermediate sums included
-double transform_growth(const ModelView& view, const OddNeighbours& neighbours) {
+double transform_growth(const ModelView& view, const Lifting& lifting) {
   double growth = 1;
   for (std::uint32_t level = 1; level < view.levels; ++level) {
-    const std::uint32_t* begin = neighbours.begin[level];
+    const std::uint32_t* begin = lifting.begin[level];
     double most = 0;
     for (std::uint32_t e = 0; e < domain_up_to(view, level - 1); ++e) {
       double sum = 0;
-      for (std::uint32_t k = begin[e]; k < begin[e + 1]; ++k) {
-        const double lift = neighbours.neighbour[level][k].lift;
-        sum += lift < 0 ? -lift : lift;
+      for (std::uint32_t n = begin[e]; n < begin[e + 1]; ++n) {
+        for (const float lift : lifting.neighbours[level][n].lift) {
+          sum += lift < 0 ? -lift : lift;
+        }
       }
       most = sum > most ? sum : most;
     }
@@ -41,8 +42,8 @@ double largest_coefficient(const ModelView& view) {
   return largest;
 }
 
-float largest_force_sum(const ModelView& view, const OddNeighbours& neighbours) {
-  const double per_newton = transform_growth(view, neighbours) * largest_coefficient(view);
+float largest_force_sum(const ModelView& view, const Lifting& lifting) {
+  const double per_newton = transform_growth(view, lifting) * largest_coefficient(view);
   const double limit = FLT_MAX / 4.0 / (per_newton > 1 ? per_newton : 1);
   return static_cast<float>(limit);
 }
@@ -53,7 +54,7 @@ void measure_functionals(const ModelView& view, Body& body, std::uint32_t* const
     const LevelView& level = view.level[c];
     for (std::uint32_t j = 0; j < level.counts->column_count; ++j) {
       functional_size[c][j] =
-          point_functional(view, body.neighbours, level.columns[j].node, body.capacitance.coefficients);
+          point_functional(view, body.lifting, level.columns[j].node, body.capacitance.coefficients);
     }
   }
 }
@@ -64,16 +65,16 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   auto* memory = arena.take<Body>(1);
   Body body;
   std::uint32_t* begin[layout::max_levels] = {};
-  OddNeighbour* neighbour[layout::max_levels] = {};
+  OddNeighbours* neighbours[layout::max_levels] = {};
   std::uint32_t* functional_size[layout::max_levels] = {};
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
       begin[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
-      neighbour[q] = arena.take<OddNeighbour>(sizes.lifting_pairs[q]);
+      neighbours[q] = arena.take<OddNeighbours>(sizes.lifting_records[q]);
     }
     functional_size[q] = arena.take<std::uint32_t>(view.level[q].counts->column_count);
-    body.neighbours.begin[q] = begin[q];
-    body.neighbours.neighbour[q] = neighbour[q];
+    body.lifting.begin[q] = begin[q];
+    body.lifting.neighbours[q] = neighbours[q];
     body.functional_size[q] = functional_size[q];
   }
   body.facts = arena.take<NodeFacts>(view.node_count);
@@ -93,7 +94,7 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   }
 
   for (std::uint32_t q = 1; q < view.levels; ++q) {
-    list_odd_neighbours(view, q, begin[q], neighbour[q]);
+    list_odd_neighbours(view, q, begin[q], neighbours[q]);
   }
   list_node_facts(view, body.facts);
   for (std::uint32_t j = 0; j < sizes.level_columns; ++j) {
@@ -102,7 +103,7 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   measure_functionals(view, body, functional_size);
   body.view = &view;
   body.counts = sizes.counts;
-  body.force_limit = largest_force_sum(view, body.neighbours);
+  body.force_limit = largest_force_sum(view, body.lifting);
   body.last_red_zone = arena.last_red_zone();
   return new (memory) Body(body);
 }

@@ -20,7 +20,7 @@ struct Body {
   ModelCounts counts;
   std::uint64_t least_work = 0;
   float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
-  OddNeighbours neighbours;
+  Lifting lifting;
   const std::uint32_t* functional_size[layout::max_levels] = {};  ///< [c][columns of level c]
   NodeFacts* facts = nullptr;                                     ///< [node_count]
   ContactSet set;

@@ -30,15 +30,14 @@ void store(const Block& block, std::size_t stride, float* a) {
 
 }  // namespace
 
-void assemble_capacitance(const ModelView& view, const OddNeighbours& neighbours, const ContactSet& set,
+void assemble_capacitance(const ModelView& view, const Lifting& lifting, const ContactSet& set,
                           CapacitanceScratch& scratch, Float4* a) noexcept {
   const std::size_t stride = lu_padded(3 * set.columns);
   const layout::ColumnRecord* columns = view.level[set.level].columns;
   scratch.begin[0] = 0;
   for (std::uint32_t i = 0; i < set.columns; ++i) {
     PointCoefficient* functional = scratch.coefficients + scratch.begin[i];
-    scratch.begin[i + 1] =
-        scratch.begin[i] + point_functional(view, neighbours, columns[set.column[i]].node, functional);
+    scratch.begin[i + 1] = scratch.begin[i] + point_functional(view, lifting, columns[set.column[i]].node, functional);
   }
   for (std::uint32_t j = 0; j < set.columns; ++j) {
     scatter_column(view, set.level, set.column[j], scratch.blocks);

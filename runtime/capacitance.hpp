@@ -24,7 +24,7 @@ constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::ui
 /// The capacitance matrix of a contact set in force form: block (i, j) is the displacement of the centre of column i
 /// per force at column j (James & Pai 2003, sections 3.2 and 5.4). It is not exactly symmetric: columns are thresholded
 /// and quantised one by one. a: [n * n / 4] by columns, n = lu_padded(3 * columns). For the loop.
-void assemble_capacitance(const ModelView& view, const OddNeighbours& neighbours, const ContactSet& set,
+void assemble_capacitance(const ModelView& view, const Lifting& lifting, const ContactSet& set,
                           CapacitanceScratch& scratch, Float4* a) noexcept;
 
 }  // namespace greenloop

@@ -66,7 +66,7 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint32_t leve
 // the factors of body.set; null if its capacitance matrix is singular
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
-  assemble_capacitance(*body.view, body.neighbours, body.set, body.capacitance, factor.lu);
+  assemble_capacitance(*body.view, body.lifting, body.set, body.capacitance, factor.lu);
   if (!lu_factor(3 * body.set.columns, factor.lu, factor.exchange)) {
     return nullptr;
   }
@@ -97,7 +97,7 @@ void compute_field(const Body& body, std::uint32_t field_level, std::span<float>
     const float of_column[3] = {force[3 * k], force[3 * k + 1], force[3 * k + 2]};
     add_column(*body.view, body.set.level, body.set.column[k], of_column, field_level, x);
   }
-  inverse_transform(*body.view, body.neighbours, field_level, x);
+  inverse_transform(*body.view, body.lifting, field_level, x);
 }
 
 std::uint32_t finest_constraint_level(const ModelView& view) {

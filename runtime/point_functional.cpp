@@ -29,22 +29,27 @@ bool contains(const PointSupport& support, std::uint32_t count, std::uint32_t no
   return false;
 }
 
+float lifted(const layout::RefinementRecord& odd, const PointSupport& support) {
+  return odd.lift[0] * support.of(odd.parent[0]) + odd.lift[1] * support.of(odd.parent[1]);
+}
+
 // details beside the support's nodes: what prediction gave to the fine support, less what lifting takes
-std::uint32_t write_neighbours(const ModelView& view, const OddNeighbours& neighbours, std::uint32_t level,
+std::uint32_t write_neighbours(const ModelView& view, const Lifting& lifting, std::uint32_t level,
                                const PointSupport& fine, const PointSupport& support, PointCoefficient* coefficient) {
   const LevelView& at = view.level[level];
   std::uint32_t length = 0;
   for (std::uint32_t i = 0; i < support.count; ++i) {
-    const std::uint32_t* list = neighbours.begin[level] + domain_place(view, support.node[i]);
-    for (std::uint32_t k = list[0]; k < list[1]; ++k) {
-      const std::uint32_t odd = neighbours.neighbour[level][k].node;
-      const layout::RefinementRecord& record = at.refinement[odd - at.node_begin];
-      const std::uint32_t other = record.parent[record.parent[0] == support.node[i] ? 1 : 0];
-      // of two parents in the support, the first writes for both
-      if (!contains(support, i, other)) {
-        const float lifted =
-            record.lift[0] * support.of(record.parent[0]) + record.lift[1] * support.of(record.parent[1]);
-        coefficient[length++] = {odd, fine.of(odd) - lifted};
+    const std::uint32_t* record = lifting.begin[level] + domain_place(view, support.node[i]);
+    for (std::uint32_t n = record[0]; n < record[1]; ++n) {
+      const OddNeighbours& neighbours = lifting.neighbours[level][n];
+      for (std::uint32_t k = 0; k < neighbours.count; ++k) {
+        const std::uint32_t odd = neighbours.node(k);
+        const layout::RefinementRecord& refinement = at.refinement[odd - at.node_begin];
+        // of two parents in the support, the first writes for both
+        const std::uint32_t other = refinement.parent[refinement.parent[0] == support.node[i] ? 1 : 0];
+        if (!contains(support, i, other)) {
+          coefficient[length++] = {odd, fine.of(odd) - lifted(refinement, support)};
+        }
       }
     }
   }
@@ -98,7 +103,7 @@ bool coarsen(const ModelView& view, std::uint32_t level, PointSupport& support) 
   return true;
 }
 
-std::uint32_t point_functional(const ModelView& view, const OddNeighbours& neighbours, std::uint32_t node,
+std::uint32_t point_functional(const ModelView& view, const Lifting& lifting, std::uint32_t node,
                                PointCoefficient* coefficient) noexcept {
   // the adjoint of the inverse transform: fine to coarse, prediction before lifting
   std::uint32_t length = 0;
@@ -108,7 +113,7 @@ std::uint32_t point_functional(const ModelView& view, const OddNeighbours& neigh
     if (!coarsen(view, level, support)) {
       return 0;
     }
-    length += write_neighbours(view, neighbours, level, fine, support, coefficient + length);
+    length += write_neighbours(view, lifting, level, fine, support, coefficient + length);
     length += write_orphans(view, level, fine, coefficient + length);
   }
   for (std::uint32_t i = 0; i < support.count; ++i) {

@@ -30,11 +30,11 @@ struct PointSupport {
 
 /// e_node^T W^-1 as a list (selective reconstruction, James & Pai 2003, section 5.4), coarse coefficients last;
 /// returns its length. `coefficient` has room for what point_functional_size says. For the loop; work: its length.
-std::uint32_t point_functional(const ModelView& view, const OddNeighbours& neighbours, std::uint32_t node,
+std::uint32_t point_functional(const ModelView& view, const Lifting& lifting, std::uint32_t node,
                                PointCoefficient* coefficient) noexcept;
 
-/// A bound of point_functional's length at `node`, given most_odd_neighbours of each level; 0 if coarsen fails.
-/// Start-up; linear in the levels.
+/// A bound of point_functional's length at `node`, given LiftingCounts::most_neighbours of each level; 0 if coarsen
+/// fails. Start-up; linear in the levels.
 [[nodiscard]] std::uint32_t point_functional_bound(const ModelView& view, const std::uint32_t* most_neighbours,
                                                    std::uint32_t node) noexcept;
 

@@ -5,6 +5,9 @@
 namespace greenloop {
 namespace {
 
+// byte offsets of nodes are kept in 32 bits
+constexpr std::uint32_t most_nodes = 0xffffffff / sizeof(Float4);
+
 std::uint32_t larger(std::uint32_t a, std::uint32_t b) { return a > b ? a : b; }
 
 // longest point functional over the columns of a level; 0 if one cannot be bounded
@@ -58,7 +61,7 @@ bool in_range(const Limits& limits) noexcept {
 
 BodySizes measure_body(const ModelView& view, const Limits& limits) noexcept {
   BodySizes sizes;
-  if (!in_range(limits)) {
+  if (!in_range(limits) || view.node_count > most_nodes) {
     return sizes;
   }
   sizes.counts.nodes = view.node_count;
@@ -68,13 +71,14 @@ BodySizes measure_body(const ModelView& view, const Limits& limits) noexcept {
   std::uint32_t most_neighbours[layout::max_levels] = {};
   std::uint64_t predicted = 0;
   for (std::uint32_t q = 1; q < view.levels; ++q) {
-    most_neighbours[q] = most_odd_neighbours(view, q);
-    sizes.lifting_pairs[q] = lifting_pairs(view, q);
+    const LiftingCounts lifting = count_lifting(view, q);
+    most_neighbours[q] = lifting.most_neighbours;
+    sizes.lifting_records[q] = lifting.records;
     predicted += view.level[q].counts->domain_count;
   }
   std::uint64_t lifted = 0;
   for (std::uint32_t r = 0; r < view.levels; ++r) {
-    lifted += sizes.lifting_pairs[r];
+    lifted += sizes.lifting_records[r];
     sizes.counts.transform_work[r] = inverse_transform_work(lifted, predicted);
   }
   for (std::uint32_t c = 0; c < view.levels; ++c) {

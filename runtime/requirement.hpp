@@ -16,7 +16,7 @@ struct BodySizes {
   std::uint32_t level_columns = 0;                          ///< most columns of a constraint level
   std::uint32_t functional_bound[layout::max_levels] = {};  ///< longest point functional of each constraint level
   std::uint32_t longest_functional = 0;
-  std::uint64_t lifting_pairs[layout::max_levels] = {};
+  std::uint64_t lifting_records[layout::max_levels] = {};
 };
 
 /// Whether each limit is within the range that Limits states.

@@ -1,21 +1,21 @@
 #include "runtime/wavelet.hpp"
 
+#include <cstddef>
+
 namespace greenloop {
 namespace {
 
-void undo_lifting(const ModelView& view, const std::uint32_t* begin, const OddNeighbour* neighbour, std::uint32_t level,
-                  Float4* x) {
-  for (std::uint32_t q = 0; q < level; ++q) {
-    Float4* even = x + view.level[q].node_begin;
-    const std::uint32_t count = view.level[q].counts->domain_count;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      Float4 value = even[i];
-      for (std::uint32_t k = begin[i]; k < begin[i + 1]; ++k) {
-        value -= splat(neighbour[k].lift) * x[neighbour[k].node];
-      }
-      even[i] = value;
+Float4& at_offset(Float4* x, std::uint32_t byte_offset) {
+  return *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + byte_offset);
+}
+
+void undo_lifting(const OddNeighbours* begin, const OddNeighbours* end, Float4* x) {
+  for (const OddNeighbours* at = begin; at != end; ++at) {
+    Float4 value = x[at->even];
+    for (std::uint32_t k = 0; k < OddNeighbours::most; ++k) {
+      value -= splat(at->lift[k]) * at_offset(x, at->byte_offset[k]);
     }
-    begin += count;
+    x[at->even] = value;
   }
 }
 
@@ -28,72 +28,80 @@ void predict(const LevelView& level, Float4* x) {
   }
 }
 
-}  // namespace
-
-std::uint64_t lifting_pairs(const ModelView& view, std::uint32_t level) noexcept {
+// calls visit(odd node, parent, lift) for each domain parent of each domain node of M(level), in file order
+template <class Visit>
+void visit_pairs(const ModelView& view, std::uint32_t level, Visit visit) {
   const LevelView& at = view.level[level];
-  std::uint64_t pairs = 0;
   for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-    for (const std::uint32_t parent : at.refinement[i].parent) {
-      pairs += in_domain(view, parent) ? 1 : 0;
-    }
-  }
-  return pairs;
-}
-
-std::uint32_t most_odd_neighbours(const ModelView& view, std::uint32_t level) noexcept {
-  constexpr std::uint32_t at_once = 1024;
-  const LevelView& at = view.level[level];
-  std::uint32_t most = 0;
-  for (std::uint32_t first = 0; first < at.node_begin; first += at_once) {
-    std::uint32_t neighbours[at_once] = {};
-    for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-      for (const std::uint32_t parent : at.refinement[i].parent) {
-        if (parent - first < at_once && in_domain(view, parent)) {
-          const std::uint32_t now = ++neighbours[parent - first];
-          most = now > most ? now : most;
-        }
+    for (std::uint32_t side = 0; side < 2; ++side) {
+      if (in_domain(view, at.refinement[i].parent[side])) {
+        visit(at.node_begin + i, at.refinement[i].parent[side], at.refinement[i].lift[side]);
       }
     }
   }
-  return most;
+}
+
+std::uint32_t records_for(std::uint32_t neighbours) {
+  return (neighbours + OddNeighbours::most - 1) / OddNeighbours::most;
+}
+
+}  // namespace
+
+LiftingCounts count_lifting(const ModelView& view, std::uint32_t level) noexcept {
+  constexpr std::uint32_t at_once = 1024;
+  LiftingCounts counts;
+  for (std::uint32_t first = 0; first < view.level[level].node_begin; first += at_once) {
+    std::uint32_t neighbours[at_once] = {};
+    visit_pairs(view, level, [&](std::uint32_t, std::uint32_t parent, float) {
+      if (parent - first < at_once) {
+        ++neighbours[parent - first];
+      }
+    });
+    for (const std::uint32_t count : neighbours) {
+      counts.records += records_for(count);
+      counts.most_neighbours = count > counts.most_neighbours ? count : counts.most_neighbours;
+    }
+  }
+  return counts;
 }
 
 void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32_t* begin,
-                         OddNeighbour* neighbour) noexcept {
-  const LevelView& at = view.level[level];
+                         OddNeighbours* neighbours) noexcept {
   const std::uint32_t even_count = domain_up_to(view, level - 1);
   for (std::uint32_t e = 0; e <= even_count; ++e) {
     begin[e] = 0;
   }
-  // count, then end of each list, then fill from the back so that every list is in file order
-  for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-    for (const std::uint32_t parent : at.refinement[i].parent) {
-      if (in_domain(view, parent)) {
-        ++begin[domain_place(view, parent)];
-      }
+  visit_pairs(view, level, [&](std::uint32_t, std::uint32_t parent, float) { ++begin[domain_place(view, parent)]; });
+  std::uint32_t records = 0;
+  for (std::uint32_t e = 0; e < even_count; ++e) {
+    const std::uint32_t here = records_for(begin[e]);
+    begin[e] = records;
+    records += here;
+  }
+  begin[even_count] = records;
+  for (std::uint32_t k = 0; k < records; ++k) {
+    neighbours[k] = {};
+  }
+  visit_pairs(view, level, [&](std::uint32_t odd, std::uint32_t parent, float lift) {
+    OddNeighbours* record = neighbours + begin[domain_place(view, parent)];
+    while (record->count == OddNeighbours::most) {
+      ++record;
     }
-  }
-  for (std::uint32_t e = 1; e <= even_count; ++e) {
-    begin[e] += begin[e - 1];
-  }
-  for (std::uint32_t i = at.counts->domain_count; i-- > 0;) {
-    const layout::RefinementRecord& odd = at.refinement[i];
-    for (std::uint32_t side = 2; side-- > 0;) {
-      if (in_domain(view, odd.parent[side])) {
-        neighbour[--begin[domain_place(view, odd.parent[side])]] = {at.node_begin + i, odd.lift[side]};
-      }
-    }
-  }
+    record->even = parent;
+    record->byte_offset[record->count] = odd * static_cast<std::uint32_t>(sizeof(Float4));
+    record->lift[record->count++] = lift;
+  });
 }
 
-void inverse_transform(const ModelView& view, const OddNeighbours& neighbours, std::uint32_t field_level,
-                       Float4* x) noexcept {
+void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level, Float4* x) noexcept {
+  std::uint32_t even_count = view.level[0].counts->domain_count;
   for (std::uint32_t level = 1; level < view.levels; ++level) {
     if (level <= field_level) {
-      undo_lifting(view, neighbours.begin[level], neighbours.neighbour[level], level, x);
+      const OddNeighbours* neighbours = lifting.neighbours[level];
+      undo_lifting(neighbours, neighbours + lifting.begin[level][even_count], x);
     }
     predict(view.level[level], x);
+    even_count += view.level[level].counts->domain_count;
   }
 }
 

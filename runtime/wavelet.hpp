@@ -14,37 +14,45 @@ namespace greenloop {
 //   predict        x_m  = d_m + (x_a + x_b) / 2               for all m
 // in place on an array with one entry per node of the file; nodes outside the domain are 0 and stay so.
 
-/// An odd node beside an even one, and the lifting weight between them.
-struct OddNeighbour {
-  std::uint32_t node;
-  float lift;
+/// Up to six odd neighbours in M(l) of one domain node of K(l-1), in file order: lifting as a gather in fixed steps.
+/// Nodes with more (irregular ones) have several in a row. Unused places weigh nothing.
+struct alignas(64) OddNeighbours {
+  static constexpr std::uint32_t most = 6;  ///< neighbours of a regular node
+
+  std::uint32_t even;
+  std::uint32_t count;
+  std::uint32_t byte_offset[most];  ///< of the neighbour in an array of Float4 per node
+  float lift[most];
+
+  [[nodiscard]] std::uint32_t node(std::uint32_t k) const { return byte_offset[k] / sizeof(Float4); }
 };
 
-/// The odd neighbours in M(l) of every domain node of K(l-1), in file order, for each level l: lifting as a gather.
-struct OddNeighbours {
-  const std::uint32_t* begin[layout::max_levels] = {};  ///< [l][domain nodes of K(l-1) + 1]
-  const OddNeighbour* neighbour[layout::max_levels] = {};
+/// The lifting of every level l > 0: its odd neighbours by domain node of K(l-1).
+struct Lifting {
+  const std::uint32_t* begin[layout::max_levels] = {};  ///< [l][domain nodes of K(l-1) + 1] into neighbours[l]
+  const OddNeighbours* neighbours[layout::max_levels] = {};
 };
 
-/// Pairs of a domain node of M(level) and a domain parent of it: the entries of OddNeighbours. Start-up; linear.
-[[nodiscard]] std::uint64_t lifting_pairs(const ModelView& view, std::uint32_t level) noexcept;
+/// Counts of one level's lifting.
+struct LiftingCounts {
+  std::uint32_t records = 0;          ///< OddNeighbours
+  std::uint32_t most_neighbours = 0;  ///< of one node
+};
 
-/// Largest number of odd neighbours that a domain node of K(level - 1) has in M(level). Start-up; linear in the level's
-/// nodes for every 1,024 coarser ones.
-[[nodiscard]] std::uint32_t most_odd_neighbours(const ModelView& view, std::uint32_t level) noexcept;
+/// Start-up; linear in the level's nodes for every 1,024 coarser ones.
+[[nodiscard]] LiftingCounts count_lifting(const ModelView& view, std::uint32_t level) noexcept;
 
-/// Fills begin[domain_up_to(level - 1) + 1] and neighbour[lifting_pairs(level)]. Start-up; linear.
+/// Fills begin[domain_up_to(level - 1) + 1] and neighbours[LiftingCounts::records]. Start-up; linear.
 void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32_t* begin,
-                         OddNeighbour* neighbour) noexcept;
+                         OddNeighbours* neighbours) noexcept;
 
 /// The inverse transform in place. Details of levels above `field_level` must be 0; there it only interpolates.
 /// x: [node_count]. For the loop; work: inverse_transform_work.
-void inverse_transform(const ModelView& view, const OddNeighbours& neighbours, std::uint32_t field_level,
-                       Float4* x) noexcept;
+void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level, Float4* x) noexcept;
 
-/// Work units of inverse_transform: 3 per lifting pair up to field_level, 6 per domain node above level 0.
-constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_pairs, std::uint64_t odd_nodes) {
-  return 3 * lifting_pairs + 6 * odd_nodes;
+/// Work units of inverse_transform: records of the levels up to field_level, domain nodes above level 0.
+constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_records, std::uint64_t odd_nodes) {
+  return 3 * OddNeighbours::most * lifting_records + 6 * odd_nodes;
 }
 
 }  // namespace greenloop

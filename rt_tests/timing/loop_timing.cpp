@@ -108,7 +108,7 @@ void time_kernels(const TestModel& model) {
   });
   std::fill(x.begin(), x.end(), splat3(1e-3F));
   const double transform =
-      median_nanoseconds(20, [&](int) { inverse_transform(view, body.neighbours, view.levels - 1, x.data()); });
+      median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, view.levels - 1, x.data()); });
   std::printf("%u nodes, %u in the domain, %u columns; 16 columns hold %llu blocks of %u bytes a value\n",
               view.node_count, view.domain_count, columns, static_cast<unsigned long long>(blocks),
               view.blocks[c][0].value_bytes);
