@@ -8,6 +8,8 @@
 
 namespace greenloop {
 
+struct Body;  // what a body keeps in its arena: runtime/body.hpp
+
 /// What a body must be able to do, fixed before the loop starts.
 struct Limits {
   std::uint32_t max_contacts = 64;   ///< 1..4096, contacts per step
@@ -26,19 +28,20 @@ struct Contact {
 };
 
 enum class Status : std::uint8_t {
-  ok,                    ///< answered at the finest constraint level and the finest field level
-  coarser,               ///< answered within the budget at a coarser level
-  held_not_finite,       ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
-  held_out_of_range,     ///< a contact names no node of the model, or more contacts than Limits allow
-  held_not_touchable,    ///< a contact names a node without a column
-  held_duplicate,        ///< two contacts name the same node
-  held_response_size,    ///< a response buffer has the wrong size
-  held_over_budget,      ///< the budget is below Requirement::least_work: refused
-  held_singular,         ///< the capacitance matrix is singular to working precision
-  held_overflow,         ///< the answer would not be finite
+  ok,                  ///< answered at the finest constraint level and the finest field level
+  coarser,             ///< answered within the budget at a coarser level
+  held_not_finite,     ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
+  held_out_of_range,   ///< a contact names no node of the model, or more contacts than Limits allow
+  held_not_touchable,  ///< a contact names a node without a column, or no level has columns for all contacts
+  held_duplicate,      ///< two contacts name the same node
+  held_response_size,  ///< a response buffer has the wrong size or alignment
+  held_over_budget,    ///< the budget is below Requirement::least_work: refused
+  held_singular,       ///< the capacitance matrix is singular to working precision
+  held_overflow,       ///< the answer would not be finite, or comes too near the largest float
 };
 
-/// The answer of a step; the caller owns the memory. On any `held_` status the contents are those of the last good step.
+/// The answer of a step; the caller owns the memory. On any `held_` status nothing is written, so that the same buffers
+/// still hold the last good step.
 struct Response {
   std::span<float> force;         ///< [3 * contacts] N, the force that holds each contact, in the order of the contacts
   std::span<float> displacement;  ///< [4 * node_count] m, x y z 0 per node, 16-byte aligned; empty: no field is wanted
@@ -55,13 +58,19 @@ struct StepReport {
 
 /// What Limits cost, in closed form, before anything is allocated.
 struct Requirement {
-  std::size_t bytes = 0;      ///< of the arena
+  std::size_t bytes = 0;  ///< of the arena
   std::size_t alignment = 64;
-  std::uint64_t least_work = 0;  ///< the smallest budget `step` accepts: coarsest level, all contacts, whole field
+  std::uint64_t least_work = 0;  ///< the smallest budget `step` accepts: coarsest level, all contacts, coarsest field
   std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step that is resolved at that constraint level
 };
 
-enum class CreateError : std::uint8_t { none, arena_too_small, arena_misaligned, bad_limits };
+enum class CreateError : std::uint8_t {
+  none,
+  arena_too_small,
+  arena_misaligned,
+  bad_limits,
+  unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes
+};
 
 /// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions
 /// (James & Pai 2003, sections 3.2, 5.4 and 7).
@@ -69,7 +78,8 @@ class Elastostatic {
  public:
   struct Created;
 
-  /// Bytes and worst-case work for `limits`. Start-up; work linear in the model's columns. Zero bytes if limits are bad.
+  /// Bytes and worst-case work for `limits`. Start-up; work linear in the model's columns. Zero bytes if `create` would
+  /// refuse for another reason than memory.
   [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
 
   /// Carves `memory` with the routine that `required` counts with. `model` and `memory` must outlive the body.
@@ -81,9 +91,7 @@ class Elastostatic {
   StepReport step(std::span<const Contact> contacts, Budget budget, const Response& response) noexcept;
 
  private:
-  struct Memory;
-  const Model* model_ = nullptr;
-  Memory* memory_ = nullptr;
+  Body* body_ = nullptr;
 };
 
 struct Elastostatic::Created {

@@ -1,0 +1,137 @@
+// Times the kernels of the loop: medians of thread CPU time over many repetitions.
+//   loop_timing [MODEL.gloop]      without a model: a synthetic sphere
+#include <time.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "formats/model_file.hpp"
+#include "runtime/body.hpp"
+#include "runtime/lu.hpp"
+#include "runtime/testing/test_body.hpp"
+
+namespace greenloop {
+namespace {
+
+double thread_nanoseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) * 1e9 + static_cast<double>(time.tv_nsec);
+}
+
+// median over batches, so that the clock's own cost does not count
+template <class Work>
+double median_nanoseconds(int batch, Work work) {
+  std::vector<double> times;
+  for (int repeat = 0; repeat < 301; ++repeat) {
+    const double begin = thread_nanoseconds();
+    for (int i = 0; i < batch; ++i) {
+      work(i);
+    }
+    times.push_back((thread_nanoseconds() - begin) / batch);
+  }
+  std::nth_element(times.begin(), times.begin() + 150, times.end());
+  return times[150];
+}
+
+// nodes near each other: those closest to a random one
+std::vector<Contact> patch(const TestModel& model, std::mt19937_64& random, std::size_t count) {
+  const auto& view = model.view();
+  const auto position = [&view](std::uint32_t node) {
+    const LevelView& level = view.level[level_of(view, node)];
+    return level.nodes[node - level.node_begin].position;
+  };
+  std::vector<std::uint32_t> nodes = model.touchable();
+  const float* centre = position(nodes[random() % nodes.size()]);
+  const auto distance = [&](std::uint32_t node) {
+    const float* x = position(node);
+    float sum = 0;
+    for (int r = 0; r < 3; ++r) {
+      sum += (x[r] - centre[r]) * (x[r] - centre[r]);
+    }
+    return sum;
+  };
+  std::stable_sort(nodes.begin(), nodes.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
+  std::vector<Contact> contacts;
+  for (std::size_t i = 0; i < std::min(count, nodes.size()); ++i) {
+    contacts.push_back({nodes[i], {1e-3F, 2e-4F, -3e-4F * static_cast<float>(i % 3)}});
+  }
+  return contacts;
+}
+
+void time_steps(const TestModel& model, std::size_t count) {
+  std::mt19937_64 random(3);
+  TestBody body(model, {.max_contacts = static_cast<std::uint32_t>(count), .cached_factors = 1});
+  const auto a = patch(model, random, count);
+  const auto b = patch(model, random, count);
+  StepReport report;
+  const double cached = median_nanoseconds(20, [&](int) { report = body.step(a, any_budget); });
+  const double force = median_nanoseconds(20, [&](int) { body.step(a, any_budget, false); });
+  StepReport fresh_report;
+  const double fresh = median_nanoseconds(4, [&](int i) { fresh_report = body.step(i % 2 == 0 ? a : b, any_budget); });
+  std::printf(
+      "%3zu contacts: cached %8.0f ns (%7llu units, %.3f ns/unit)  forces only %7.0f ns  fresh %9.0f ns "
+      "(%8llu units, %.3f ns/unit)\n",
+      count, cached, static_cast<unsigned long long>(report.work), cached / static_cast<double>(report.work), force,
+      fresh, static_cast<unsigned long long>(fresh_report.work), fresh / static_cast<double>(fresh_report.work));
+}
+
+void time_kernels(const TestModel& model) {
+  const ModelView& view = model.view();
+  const Limits limits{.max_contacts = 16, .cached_factors = 1};
+  const BodySizes sizes = measure_body(view, limits);
+  Arena counting;
+  place_body(counting, view, sizes);
+  AlignedBytes memory(static_cast<std::size_t>(counting.bytes()));
+  Arena arena(memory.data());
+  const Body& body = *place_body(arena, view, sizes);
+  std::vector<Float4> x(view.node_count);
+
+  std::uint32_t c = view.levels - 1;
+  while (view.level[c].counts->column_count == 0) {
+    --c;
+  }
+  const std::uint32_t columns = view.level[c].counts->column_count;
+  std::vector<std::uint32_t> chosen(16);
+  std::uint64_t blocks = 0;
+  for (std::uint32_t k = 0; k < 16; ++k) {
+    chosen[k] = k * (columns / 16);
+    blocks += column_blocks(view, c, chosen[k], view.levels - 1);
+  }
+  const float force[3] = {1e-9F, 2e-9F, 3e-9F};
+  const double sum = median_nanoseconds(20, [&](int) {
+    for (const std::uint32_t j : chosen) {
+      add_column(view, c, j, force, view.levels - 1, x.data());
+    }
+  });
+  std::fill(x.begin(), x.end(), splat3(1e-3F));
+  const double transform =
+      median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, view.levels - 1, x.data()); });
+  std::printf("%u nodes, %u in the domain, %u columns; 16 columns hold %llu blocks of %u bytes a value\n",
+              view.node_count, view.domain_count, columns, static_cast<unsigned long long>(blocks),
+              view.blocks[c][0].value_bytes);
+  std::printf("sum of 16 columns   %8.0f ns, %6.3f ns/block\n", sum, sum / static_cast<double>(blocks));
+  std::printf("inverse transform   %8.0f ns, %6.3f ns/node\n", transform, transform / view.domain_count);
+}
+
+void run(const TestModel& model) {
+  time_kernels(model);
+  for (const std::size_t count : {1, 4, 16, 64}) {
+    time_steps(model, count);
+  }
+}
+
+}  // namespace
+}  // namespace greenloop
+
+int main(int argc, char** argv) {
+  using namespace greenloop;
+  if (argc > 1) {
+    run(TestModel(load_file(argv[1]).span()));
+  } else {
+    run(TestModel(SyntheticOptions{.levels = 6, .value_bytes = 1, .epsilon = 0.03, .touchable_above = 0.7}));
+  }
+  return 0;
+}

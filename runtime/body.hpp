@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "formats/view.hpp"
+#include "runtime/arena.hpp"
+#include "runtime/capacitance.hpp"
+#include "runtime/contact_set.hpp"
+#include "runtime/factor_cache.hpp"
+#include "runtime/plan.hpp"
+#include "runtime/requirement.hpp"
+#include "runtime/wavelet.hpp"
+
+namespace greenloop {
+
+/// Everything that a body keeps in its arena.
+struct Body {
+  const ModelView* view = nullptr;
+  ModelCounts counts;
+  std::uint64_t least_work = 0;
+  float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
+  Lifting lifting;
+  const std::uint32_t* functional_size[layout::max_levels] = {};  ///< [c][columns of level c]
+  NodeFacts* facts = nullptr;                                     ///< [node_count]
+  ContactSet set;
+  CapacitanceScratch capacitance;
+  Float4* force = nullptr;  ///< displacements, then forces of the set's columns
+  FactorCache cache;
+  const std::byte* last_red_zone = nullptr;
+};
+
+/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. `view` must outlive
+/// the body. Start-up; linear in the model's nodes and columns.
+Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept;
+
+}  // namespace greenloop

@@ -1,0 +1,154 @@
+#include "runtime/contact_set.hpp"
+
+#include <cmath>
+
+#include "runtime/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+bool finite(const Contact& contact) {
+  return std::isfinite(contact.displacement[0]) && std::isfinite(contact.displacement[1]) &&
+         std::isfinite(contact.displacement[2]);
+}
+
+Status check_contact(const Contact& contact, std::uint32_t node_count, const NodeFacts* facts) {
+  if (contact.node >= node_count) {
+    return Status::held_out_of_range;
+  }
+  if (facts[contact.node].constraint_levels == 0) {
+    return Status::held_not_touchable;
+  }
+  if (!finite(contact)) {
+    return Status::held_not_finite;
+  }
+  return facts[contact.node].marked != 0 ? Status::held_duplicate : Status::ok;
+}
+
+// one pass of a merge sort: runs of `width` in `from` become runs of twice that in `to`
+void merge_runs(const std::uint32_t* from, std::uint32_t count, std::uint32_t width, std::uint32_t* to) {
+  for (std::uint32_t begin = 0; begin < count; begin += 2 * width) {
+    const std::uint32_t middle = begin + width < count ? begin + width : count;
+    const std::uint32_t end = begin + 2 * width < count ? begin + 2 * width : count;
+    std::uint32_t left = begin;
+    std::uint32_t right = middle;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const bool take_left = right == end || (left < middle && from[left] < from[right]);
+      to[k] = take_left ? from[left++] : from[right++];
+    }
+  }
+}
+
+// sorts `column`; both arrays are overwritten
+void sort_columns(ContactSet& set) {
+  for (std::uint32_t width = 1; width < set.columns; width *= 2) {
+    merge_runs(set.column, set.columns, width, set.sorting);
+    std::uint32_t* const sorted = set.sorting;
+    set.sorting = set.column;
+    set.column = sorted;
+  }
+}
+
+float without_denormals(float displacement) {
+  return displacement < least_displacement && displacement > -least_displacement ? 0.0F : displacement;
+}
+
+}  // namespace
+
+void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+      NodeFacts& node = facts[level.node_begin + i];
+      node = NodeFacts{0, static_cast<std::uint8_t>(q), 0};
+      if ((level.nodes[i].flags & layout::node_touchable) == 0) {
+        continue;
+      }
+      for (std::uint32_t c = 0; c < view.levels; ++c) {
+        if (view.level[c].counts->column_count > 0 && view.representatives[c][q][i] != layout::none) {
+          node.constraint_levels = static_cast<std::uint16_t>(node.constraint_levels | (1U << c));
+        }
+      }
+    }
+  }
+}
+
+ContactCheck check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept {
+  ContactCheck check{Status::ok, 0xffff};
+  std::size_t checked = 0;
+  for (; checked < contacts.size(); ++checked) {
+    const Contact& contact = contacts[checked];
+    check.status = check_contact(contact, node_count, facts);
+    if (check.status != Status::ok) {
+      break;
+    }
+    facts[contact.node].marked = 1;
+    check.constraint_levels &= facts[contact.node].constraint_levels;
+  }
+  for (std::size_t i = 0; i < checked; ++i) {
+    facts[contacts[i].node].marked = 0;
+  }
+  if (check.status == Status::ok && check.constraint_levels == 0) {
+    check.status = Status::held_not_touchable;
+  }
+  return check;
+}
+
+void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
+                      std::uint32_t level, ContactSet& set) noexcept {
+  set.level = level;
+  set.columns = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::uint32_t node = contacts[i].node;
+    const std::uint32_t mesh_level = facts[node].mesh_level;
+    const std::uint32_t column = view.representatives[level][mesh_level][node - view.level[mesh_level].node_begin];
+    set.place[i] = column;
+    if (set.place_of_column[column] == layout::none) {
+      set.place_of_column[column] = 0;
+      set.column[set.columns++] = column;
+    }
+  }
+  sort_columns(set);
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    set.place_of_column[set.column[k]] = k;
+    set.members[k] = 0;
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    set.place[i] = set.place_of_column[set.place[i]];
+    ++set.members[set.place[i]];
+  }
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    set.place_of_column[set.column[k]] = layout::none;
+  }
+}
+
+void average_displacements(std::span<const Contact> contacts, const ContactSet& set, float* displacement) noexcept {
+  for (std::uint32_t k = 0; k < 3 * set.columns; ++k) {
+    displacement[k] = 0;
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    float* sum = displacement + std::size_t{3} * set.place[i];
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      sum[r] += contacts[i].displacement[r];
+    }
+  }
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    const auto members = static_cast<float>(set.members[k]);
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      displacement[3 * k + r] = without_denormals(displacement[3 * k + r] / members);
+    }
+  }
+}
+
+void share_forces(const float* column_force, std::size_t contacts, const ContactSet& set,
+                  float* contact_force) noexcept {
+  for (std::size_t i = 0; i < contacts; ++i) {
+    const std::uint32_t k = set.place[i];
+    const auto members = static_cast<float>(set.members[k]);
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      contact_force[3 * i + r] = column_force[3 * k + r] / members;
+    }
+  }
+}
+
+}  // namespace greenloop

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/view.hpp"
+
+namespace greenloop {
+
+/// Mesh level of a node, by its place in the file. Work: at most one unit per level.
+inline std::uint32_t level_of(const ModelView& view, std::uint32_t node) noexcept {
+  std::uint32_t level = 0;
+  while (level + 1 < view.levels && node >= view.level[level + 1].node_begin) {
+    ++level;
+  }
+  return level;
+}
+
+/// Whether a node's displacement is stored.
+inline bool in_domain(const ModelView& view, std::uint32_t node) noexcept {
+  const LevelView& level = view.level[level_of(view, node)];
+  return node - level.node_begin < level.counts->domain_count;
+}
+
+/// Domain nodes of K(level).
+inline std::uint32_t domain_up_to(const ModelView& view, std::uint32_t level) noexcept {
+  std::uint32_t count = 0;
+  for (std::uint32_t q = 0; q <= level; ++q) {
+    count += view.level[q].counts->domain_count;
+  }
+  return count;
+}
+
+/// Place of a domain node among all domain nodes.
+inline std::uint32_t domain_place(const ModelView& view, std::uint32_t node) noexcept {
+  std::uint32_t before = 0;
+  std::uint32_t level = 0;
+  while (level + 1 < view.levels && node >= view.level[level + 1].node_begin) {
+    before += view.level[level++].counts->domain_count;
+  }
+  return before + node - view.level[level].node_begin;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,225 @@
+#include "runtime/elastostatic.hpp"
+
+#include <cassert>
+#include <cstring>
+
+#include "runtime/arena.hpp"
+#include "runtime/body.hpp"
+#include "runtime/lu.hpp"
+
+namespace greenloop {
+
+namespace {
+
+// how a step will be answered
+struct Plan {
+  SetCounts counts;
+  Factor* cached = nullptr;
+  std::uint32_t field_level = 0;
+  std::uint64_t work = 0;  ///< spent on deciding
+  bool fits = false;
+};
+
+Status check_request(const Body& body, std::size_t contacts, Budget budget, const Response& response) {
+  if (budget.work < body.least_work) {
+    return Status::held_over_budget;
+  }
+  if (contacts > body.counts.max_contacts) {
+    return Status::held_out_of_range;
+  }
+  const bool field_fits = response.displacement.empty() ||
+                          (response.displacement.size() == 4 * body.counts.nodes &&
+                           reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
+  return response.force.size() == 3 * contacts && field_fits ? Status::ok : Status::held_response_size;
+}
+
+// resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
+// many details as fit; `levels` has a bit for each level that can resolve them
+Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint32_t levels, std::uint64_t budget,
+               bool wants_field) {
+  const ModelView& view = *body.view;
+  Plan plan;
+  std::uint64_t forces = 0;
+  for (std::uint32_t c = view.levels; c-- > 0;) {
+    if ((levels >> c & 1U) == 0) {
+      continue;
+    }
+    resolve_contacts(contacts, view, body.facts, c, body.set);
+    plan.counts = count_set(view, body.set, contacts.size(), body.functional_size[c]);
+    plan.cached = body.cache.find(body.set);
+    plan.work += plan_work(body.counts, contacts.size(), body.set.columns);
+    forces = force_work(plan.counts) + (plan.cached != nullptr ? 0 : factor_work(body.counts, plan.counts));
+    plan.field_level = view.levels - 1;
+    const std::uint64_t field = wants_field ? field_work(body.counts, plan.counts, plan.field_level) : 0;
+    plan.fits = plan.work + forces + field <= budget;
+    if (plan.fits) {
+      return plan;
+    }
+  }
+  while (!plan.fits && wants_field && plan.field_level > 0) {
+    --plan.field_level;
+    plan.fits = plan.work + forces + field_work(body.counts, plan.counts, plan.field_level) <= budget;
+  }
+  return plan;
+}
+
+// the factors of body.set; null if its capacitance matrix is singular
+Factor* factorise(Body& body) {
+  Factor& factor = body.cache.make_room(body.set);
+  assemble_capacitance(*body.view, body.lifting, body.set, body.capacitance, factor.lu);
+  if (!lu_factor(3 * body.set.columns, factor.lu, factor.exchange)) {
+    return nullptr;
+  }
+  return &factor;
+}
+
+// forces of the columns in body.force; false if they would overflow the answer
+bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& factor) {
+  const std::uint32_t order = 3 * body.set.columns;
+  auto* force = reinterpret_cast<float*>(body.force);
+  average_displacements(contacts, body.set, force);
+  for (std::uint32_t i = order; i < lu_padded(order); ++i) {
+    force[i] = 0;
+  }
+  lu_solve(order, factor.lu, factor.exchange, body.force);
+  float sum = 0;
+  for (std::uint32_t i = 0; i < order; ++i) {
+    sum += force[i] < 0 ? -force[i] : force[i];
+  }
+  return sum <= body.force_limit;
+}
+
+void compute_field(const Body& body, std::uint32_t field_level, std::span<float> displacement) {
+  auto* x = reinterpret_cast<Float4*>(displacement.data());
+  const auto* force = reinterpret_cast<const float*>(body.force);
+  std::memset(displacement.data(), 0, displacement.size_bytes());
+  for (std::uint32_t k = 0; k < body.set.columns; ++k) {
+    const float of_column[3] = {force[3 * k], force[3 * k + 1], force[3 * k + 2]};
+    add_column(*body.view, body.set.level, body.set.column[k], of_column, field_level, x);
+  }
+  inverse_transform(*body.view, body.lifting, field_level, x);
+}
+
+std::uint32_t finest_constraint_level(const ModelView& view) {
+  std::uint32_t c = view.levels - 1;
+  while (c > 0 && view.level[c].counts->column_count == 0) {
+    --c;
+  }
+  return c;
+}
+
+// nothing is touched: the body is at rest
+void release(const Body& body, const Response& response, StepReport& report) {
+  const ModelView& view = *body.view;
+  std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
+  report.work += response.displacement.size() / 4;
+  report.constraint_level = finest_constraint_level(view);
+  report.field_level = view.levels - 1;
+}
+
+StepReport held(Status status, std::uint64_t work) {
+  StepReport report;
+  report.status = status;
+  report.work = work;
+  return report;
+}
+
+StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& plan, std::uint64_t work,
+                  const Response& response) {
+  const ModelView& view = *body.view;
+  Factor* factor = plan.cached;
+  if (factor == nullptr) {
+    work += factor_work(body.counts, plan.counts);
+    factor = factorise(body);
+    if (factor == nullptr) {
+      return held(Status::held_singular, work);
+    }
+  }
+  body.cache.keep(*factor, body.set);
+  work += force_work(plan.counts);
+  if (!solve_forces(body, contacts, *factor)) {
+    return held(Status::held_overflow, work);
+  }
+  share_forces(reinterpret_cast<const float*>(body.force), contacts.size(), body.set, response.force.data());
+  if (!response.displacement.empty()) {
+    work += field_work(body.counts, plan.counts, plan.field_level);
+    compute_field(body, plan.field_level, response.displacement);
+  }
+  StepReport report;
+  report.constraint_level = body.set.level;
+  report.field_level = plan.field_level;
+  report.error = view.level[body.set.level].counts->worst_column_error;
+  report.work = work;
+  report.cached_factor = plan.cached != nullptr;
+  const bool finest = body.set.level == finest_constraint_level(view) && plan.field_level + 1 == view.levels;
+  report.status = finest ? Status::ok : Status::coarser;
+  return report;
+}
+
+}  // namespace
+
+Requirement Elastostatic::required(const Model& model, const Limits& limits) noexcept {
+  const ModelView& view = model.view();
+  const BodySizes sizes = measure_body(view, limits);
+  if (!sizes.supported) {
+    return {};
+  }
+  Requirement requirement = bound_work(view, sizes);
+  Arena counting;
+  place_body(counting, view, sizes);
+  requirement.bytes = counting.bytes() <= SIZE_MAX ? static_cast<std::size_t>(counting.bytes()) : 0;
+  return requirement;
+}
+
+Elastostatic::Created Elastostatic::create(const Model& model, const Limits& limits,
+                                           std::span<std::byte> memory) noexcept {
+  const ModelView& view = model.view();
+  Created created;
+  created.available = memory.size();
+  const BodySizes sizes = measure_body(view, limits);
+  if (!sizes.supported) {
+    created.error = in_range(limits) ? CreateError::unsupported_model : CreateError::bad_limits;
+    return created;
+  }
+  const Requirement requirement = required(model, limits);
+  created.requested = requirement.bytes;
+  if (requirement.bytes == 0 || memory.size() < requirement.bytes) {
+    created.error = CreateError::arena_too_small;
+    created.missing = requirement.bytes - memory.size();
+    return created;
+  }
+  if (reinterpret_cast<std::uintptr_t>(memory.data()) % requirement.alignment != 0) {
+    created.error = CreateError::arena_misaligned;
+    return created;
+  }
+  Arena arena(memory.data());
+  created.body.body_ = place_body(arena, view, sizes);
+  created.body.body_->least_work = requirement.least_work;
+  return created;
+}
+
+StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, const Response& response) noexcept {
+  Body& body = *body_;
+  const Status request = check_request(body, contacts.size(), budget, response);
+  if (request != Status::ok) {
+    return held(request, 0);
+  }
+  StepReport report;
+  report.work = check_contacts_work(contacts.size());
+  const ContactCheck check = check_contacts(contacts, body.view->node_count, body.facts);
+  if (check.status != Status::ok) {
+    return held(check.status, report.work);
+  }
+  if (contacts.empty()) {
+    release(body, response, report);
+  } else {
+    const Plan plan =
+        make_plan(body, contacts, check.constraint_levels, budget.work - report.work, !response.displacement.empty());
+    report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, response)
+                       : held(Status::held_over_budget, report.work + plan.work);
+  }
+  assert(Arena::intact(body.last_red_zone));
+  return report;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/arena.hpp"
+#include "runtime/contact_set.hpp"
+#include "runtime/float4.hpp"
+
+namespace greenloop {
+
+/// The factors of one capacitance matrix and the contact set they belong to.
+struct Factor {
+  std::uint64_t key = 0;   ///< of level and columns; 0: empty
+  std::uint64_t used = 0;  ///< when it was last used
+  std::uint32_t level = 0;
+  std::uint32_t columns = 0;
+  std::uint32_t* column = nullptr;    ///< [columns]
+  std::uint32_t* exchange = nullptr;  ///< see lu_factor
+  Float4* lu = nullptr;               ///< see lu_factor
+};
+
+/// Factors by contact set; the least recently used one makes room (James & Pai 2003, section 3.2).
+class FactorCache {
+ public:
+  /// Room for `factors` sets of `columns` each, out of `arena`; null arrays while it counts.
+  void carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept;
+
+  /// Work units of find.
+  static constexpr std::uint64_t find_work(std::uint64_t factors, std::uint64_t columns) {
+    return factors + 2 * columns;
+  }
+
+  /// The factors of `set`, or null. Does not count as a use.
+  [[nodiscard]] Factor* find(const ContactSet& set) const noexcept;
+
+  /// An empty place for the factors of `set`: the least recently used. It is found only after `keep`.
+  [[nodiscard]] Factor& make_room(const ContactSet& set) noexcept;
+
+  /// Marks the factors of `set` as complete and the most recently used.
+  void keep(Factor& factor, const ContactSet& set) noexcept;
+
+ private:
+  Factor* factor_ = nullptr;
+  std::uint32_t factors_ = 0;
+  std::uint64_t uses_ = 0;
+};
+
+}  // namespace greenloop

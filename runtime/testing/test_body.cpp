@@ -1,0 +1,61 @@
+#include "runtime/testing/test_body.hpp"
+
+#include <stdexcept>
+#include <string>
+
+namespace greenloop {
+
+TestModel::TestModel(std::span<const std::byte> bytes) : bytes_(bytes) {
+  const auto opened = Model::open(bytes_.span());
+  if (!opened) {
+    throw std::runtime_error(std::string("test model refused at ") + opened.result.field);
+  }
+  model_ = opened.model;
+}
+
+std::vector<std::uint32_t> TestModel::touchable() const {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t q = 0; q < view().levels; ++q) {
+    const LevelView& level = view().level[q];
+    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+      if ((level.nodes[i].flags & layout::node_touchable) != 0) {
+        nodes.push_back(level.node_begin + i);
+      }
+    }
+  }
+  return nodes;
+}
+
+TestBody::TestBody(const TestModel& model, const Limits& limits)
+    : requirement_(Elastostatic::required(model.model(), limits)),
+      arena_(requirement_.bytes),
+      field_(std::size_t{16} * model.model().node_count()) {
+  const auto created = Elastostatic::create(model.model(), limits, {arena_.data(), arena_.size()});
+  if (!created) {
+    throw std::runtime_error("no body: error " + std::to_string(static_cast<int>(created.error)));
+  }
+  body_ = created.body;
+}
+
+StepReport TestBody::step(std::span<const Contact> contacts, std::uint64_t work, bool with_field) {
+  force_.resize(3 * contacts.size());
+  return body_.step(contacts, {work}, {force_, with_field ? field() : std::span<float>()});
+}
+
+std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes) {
+  for (const std::byte byte : bytes) {
+    hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3;
+  }
+  return hash;
+}
+
+std::uint64_t hash_step(std::uint64_t hash, const StepReport& report, std::span<const float> force,
+                        std::span<const float> field) {
+  const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status), report.constraint_level, report.field_level,
+                                 report.work, report.cached_factor ? 1U : 0U};
+  hash = hash_bytes(hash, std::as_bytes(std::span(facts)));
+  hash = hash_bytes(hash, std::as_bytes(force));
+  return hash_bytes(hash, std::as_bytes(field));
+}
+
+}  // namespace greenloop

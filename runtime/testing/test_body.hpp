@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/aligned_bytes.hpp"
+#include "formats/testing/synthetic_model.hpp"
+#include "formats/writer.hpp"
+#include "runtime/elastostatic.hpp"
+
+namespace greenloop {
+
+/// A model in memory. Throws std::runtime_error if the bytes are refused.
+class TestModel {
+ public:
+  explicit TestModel(const SyntheticOptions& options) : TestModel(encode(synthetic_model(options))) {}
+  explicit TestModel(std::span<const std::byte> bytes);
+
+  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const ModelView& view() const { return model_.view(); }
+  [[nodiscard]] std::vector<std::uint32_t> touchable() const;  ///< nodes, increasing
+
+ private:
+  AlignedBytes bytes_;
+  Model model_;
+};
+
+/// A body with its own arena and response buffers. Throws std::runtime_error if it cannot be created.
+class TestBody {
+ public:
+  TestBody(const TestModel& model, const Limits& limits);
+
+  /// Steps with a force buffer of the right size and, if wanted, the field.
+  StepReport step(std::span<const Contact> contacts, std::uint64_t work, bool with_field = true);
+
+  [[nodiscard]] const Requirement& requirement() const { return requirement_; }
+  [[nodiscard]] std::span<const float> force() const { return force_; }
+  [[nodiscard]] std::span<float> field() { return {reinterpret_cast<float*>(field_.data()), field_.size() / 4}; }
+  [[nodiscard]] Elastostatic& body() { return body_; }
+
+ private:
+  Requirement requirement_;
+  AlignedBytes arena_;
+  AlignedBytes field_;
+  std::vector<float> force_;
+  Elastostatic body_;
+};
+
+/// FNV-1a over the bytes, to be chained.
+std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes);
+
+/// Chains the whole of a step's outcome.
+std::uint64_t hash_step(std::uint64_t hash, const StepReport& report, std::span<const float> force,
+                        std::span<const float> field);
+
+inline constexpr std::uint64_t empty_hash = 0xcbf29ce484222325;
+inline constexpr std::uint64_t any_budget = std::uint64_t{1} << 60;
+
+}  // namespace greenloop

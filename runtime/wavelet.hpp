@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/view.hpp"
+#include "runtime/domain.hpp"
+#include "runtime/float4.hpp"
+
+namespace greenloop {
+
+// The lifted Linear wavelet transform of a field on the domain (James & Pai 2003, section 4; docs/theory.md).
+// Level l of the mesh adds the odd nodes M(l), midpoints m of edges (a, b) of K(l-1). The inverse, for l = 1..L:
+//   undo lifting   x_a -= lift[0] d_m,  x_b -= lift[1] d_m    for all m
+//   predict        x_m  = d_m + (x_a + x_b) / 2               for all m
+// in place on an array with one entry per node of the file; nodes outside the domain are 0 and stay so.
+
+/// Up to six odd neighbours in M(l) of one domain node of K(l-1), in file order: lifting as a gather in fixed steps.
+/// Nodes with more (irregular ones) have several in a row. Unused places weigh nothing.
+struct alignas(64) OddNeighbours {
+  static constexpr std::uint32_t most = 6;  ///< neighbours of a regular node
+
+  std::uint32_t even;
+  std::uint32_t count;
+  std::uint32_t byte_offset[most];  ///< of the neighbour in an array of Float4 per node
+  float lift[most];
+
+  [[nodiscard]] std::uint32_t node(std::uint32_t k) const { return byte_offset[k] / sizeof(Float4); }
+};
+
+/// The lifting of every level l > 0: its odd neighbours by domain node of K(l-1).
+struct Lifting {
+  const std::uint32_t* begin[layout::max_levels] = {};  ///< [l][domain nodes of K(l-1) + 1] into neighbours[l]
+  const OddNeighbours* neighbours[layout::max_levels] = {};
+};
+
+/// Counts of one level's lifting.
+struct LiftingCounts {
+  std::uint32_t records = 0;          ///< OddNeighbours
+  std::uint32_t most_neighbours = 0;  ///< of one node
+};
+
+/// Start-up; linear in the level's nodes for every 1,024 coarser ones.
+[[nodiscard]] LiftingCounts count_lifting(const ModelView& view, std::uint32_t level) noexcept;
+
+/// Fills begin[domain_up_to(level - 1) + 1] and neighbours[LiftingCounts::records]. Start-up; linear.
+void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32_t* begin,
+                         OddNeighbours* neighbours) noexcept;
+
+/// The inverse transform in place. Details of levels above `field_level` must be 0; there it only interpolates.
+/// x: [node_count]. For the loop; work: inverse_transform_work.
+void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level, Float4* x) noexcept;
+
+/// Work units of inverse_transform: records of the levels up to field_level, domain nodes above level 0.
+constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_records, std::uint64_t odd_nodes) {
+  return 3 * OddNeighbours::most * lifting_records + 6 * odd_nodes;
+}
+
+}  // namespace greenloop
