@@ -119,9 +119,6 @@ ConstraintLevelReport report_level(const ConstraintLevel& level, const Compresse
 void store_level(ModelData& model, const SemiRegularMesh& mesh, const ConstraintLevel& level,
                  CompressedLevel compressed, const ConstraintLevelReport& report) {
   auto& data = model.levels[level.level];
-  data.counts.column_count = static_cast<std::uint32_t>(report.columns);
-  data.counts.kept_blocks = report.kept_blocks;
-  data.counts.dense_blocks = report.dense_blocks;
   data.counts.rms_error = static_cast<float>(report.rms_error);
   data.counts.worst_column_error = static_cast<float>(report.worst_column_error);
   data.counts.force_error = static_cast<float>(report.force_error);

@@ -1,6 +1,5 @@
 #include "offline/compress/model_tables.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -43,25 +42,13 @@ ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
   model.info.wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
   model.info.components = 3;
-  model.info.levels = static_cast<std::uint32_t>(wavelet.levels());
-  model.info.finest_constraint_level = model.info.levels - 1;
-  Eigen::AlignedBox3f box;
-  for (const auto& position : mesh.positions) box.extend(Eigen::Vector3f(position.cast<float>()));
-  for (int axis = 0; axis < 3; ++axis) {
-    model.info.box_min[axis] = box.min()[axis];
-    model.info.box_max[axis] = box.max()[axis];
-  }
   for (const auto& triangle : mesh.base_triangles) {
     for (const int corner : triangle) model.base_triangles.push_back(static_cast<std::uint32_t>(corner));
   }
   for (std::size_t q = 0; q < wavelet.levels(); ++q) {
     LevelData level;
-    const std::size_t begin = q == 0 ? 0 : mesh.vertex_end[q - 1];
-    level.nodes = node_records(mesh, flags, area, begin, mesh.vertex_end[q]);
+    level.nodes = node_records(mesh, flags, area, q == 0 ? 0 : mesh.vertex_end[q - 1], mesh.vertex_end[q]);
     if (q > 0) level.refinement = refinement_records(mesh, wavelet, q);
-    level.counts.node_count = static_cast<std::uint32_t>(mesh.vertex_end[q] - begin);
-    level.counts.domain_count = static_cast<std::uint32_t>(wavelet.row_begin(q + 1) - wavelet.row_begin(q));
-    if (q == 0) level.counts.base_triangle_count = static_cast<std::uint32_t>(mesh.base_triangles.size());
     model.levels.push_back(std::move(level));
   }
   return model;
