@@ -1,0 +1,57 @@
+#include "offline/compress/model_tables.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace greenloop::offline {
+namespace {
+
+std::vector<layout::NodeRecord> node_records(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
+                                             const std::vector<double>& area, std::size_t begin, std::size_t end) {
+  std::vector<layout::NodeRecord> records;
+  for (std::size_t node = begin; node < end; ++node) {
+    const Eigen::Vector3f position = mesh.positions[node].cast<float>();
+    std::uint32_t flag = flags[node];
+    if ((flag & layout::node_fixed) != 0) flag &= ~std::uint32_t{layout::node_touchable};  // it cannot be a contact
+    records.push_back({{position.x(), position.y(), position.z()}, static_cast<float>(area[node]), flag});
+  }
+  return records;
+}
+
+std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& mesh, const LiftedLinear& wavelet,
+                                                         std::size_t level) {
+  std::vector<layout::RefinementRecord> records;
+  for (std::size_t node = mesh.vertex_end[level - 1]; node < mesh.vertex_end[level]; ++node) {
+    const auto [a, b] = mesh.parents[node];
+    records.push_back({{static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)}, {0.0F, 0.0F}});
+  }
+  for (std::size_t row = wavelet.row_begin(level); row < wavelet.row_begin(level + 1); ++row) {
+    const auto& step = wavelet.steps()[row - wavelet.row_begin(1)];
+    auto& record = records[wavelet.nodes()[row] - mesh.vertex_end[level - 1]];
+    std::copy_n(step.lift, 2, record.lift);
+  }
+  return records;
+}
+
+}  // namespace
+
+ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
+                        const std::vector<double>& area, const LiftedLinear& wavelet, const layout::Info& facts) {
+  ModelData model;
+  model.info = facts;
+  model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
+  model.info.wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
+  model.info.components = 3;
+  for (const auto& triangle : mesh.base_triangles) {
+    for (const int corner : triangle) model.base_triangles.push_back(static_cast<std::uint32_t>(corner));
+  }
+  for (std::size_t q = 0; q < wavelet.levels(); ++q) {
+    LevelData level;
+    level.nodes = node_records(mesh, flags, area, q == 0 ? 0 : mesh.vertex_end[q - 1], mesh.vertex_end[q]);
+    if (q > 0) level.refinement = refinement_records(mesh, wavelet, q);
+    model.levels.push_back(std::move(level));
+  }
+  return model;
+}
+
+}  // namespace greenloop::offline

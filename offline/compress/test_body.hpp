@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "formats/exchange/semi_regular_mesh.hpp"
+
+namespace greenloop::offline::test {
+
+/// An icosahedron split `levels` times and projected onto the unit sphere.
+[[nodiscard]] SemiRegularMesh icosphere(int levels);
+
+/// The same connectivity on a lobed blob about 1.5 m across.
+[[nodiscard]] SemiRegularMesh blob(int levels);
+
+/// A flat unit square of two triangles split `levels` times; it has a border.
+[[nodiscard]] SemiRegularMesh square(int levels);
+
+/// A third of the area of the finest triangles around each node [m^2].
+[[nodiscard]] std::vector<double> nodal_area(const SemiRegularMesh& mesh);
+
+/// A lobed body held on its underside, ordered, with a made-up but physical compliance: regularised Kelvin solutions
+/// (de Goes & James 2017, equation 6) with the fixed nodes constrained to zero. Symmetric positive definite.
+struct Body {
+  SemiRegularMesh mesh;
+  std::vector<std::uint32_t> flags;
+  std::vector<double> area;
+  std::vector<std::size_t> column_nodes;  ///< every free node
+  Eigen::MatrixXd compliance;             ///< m/N, 3 per domain node
+};
+[[nodiscard]] Body make_body(int levels);
+
+}  // namespace greenloop::offline::test
