@@ -98,7 +98,9 @@ double Scale::operator()(double value) const {
 }
 
 std::vector<double> Scale::ticks(int most) const {
-  return logarithmic ? logarithmic_ticks(min, max) : linear_ticks(min, max, most);
+  auto ticks = logarithmic ? logarithmic_ticks(min, max) : linear_ticks(min, max, most);
+  if (whole) std::erase_if(ticks, [](double tick) { return std::abs(tick - std::round(tick)) > 1e-6; });
+  return ticks;
 }
 
 }  // namespace greenloop::offline

@@ -40,6 +40,7 @@ struct Scale {
   double from = 0;
   double to = 1;
   bool logarithmic = false;
+  bool whole = false;  ///< ticks at whole numbers only
 
   [[nodiscard]] double operator()(double value) const;
   [[nodiscard]] std::vector<double> ticks(int most) const;

@@ -72,6 +72,8 @@ TEST_CASE("a scale maps its ends to its pixels") {
   CHECK(linear(3) == doctest::Approx(200));
   const Scale logarithmic{.min = 1, .max = 100, .from = 300, .to = 100, .logarithmic = true};
   CHECK(logarithmic(10) == doctest::Approx(200));
+  const Scale counted{.min = -0.4, .max = 1.4, .whole = true};
+  CHECK(counted.ticks(4) == std::vector<double>{0, 1});
 }
 
 }  // namespace greenloop::offline

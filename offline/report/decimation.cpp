@@ -47,13 +47,17 @@ std::vector<Point> decimate(const std::vector<Point>& curve, int columns) {
 
 std::vector<Point> staircase(const std::vector<Point>& curve) {
   std::vector<Point> stairs;
-  for (const Point& point : curve) {
-    if (!stairs.empty() && stairs.back().y != point.y) stairs.push_back({point.x, stairs.back().y});
-    if (stairs.size() >= 2 && stairs.back().y == point.y && stairs[stairs.size() - 2].y == point.y) {
-      stairs.back() = point;
+  const auto extend_tread = [&](double x) {
+    const std::size_t n = stairs.size();
+    if (n >= 2 && stairs[n - 2].y == stairs[n - 1].y) {
+      stairs.back().x = x;
     } else {
-      stairs.push_back(point);
+      stairs.push_back({x, stairs.back().y});
     }
+  };
+  for (const Point& point : curve) {
+    if (!stairs.empty()) extend_tread(point.x);
+    if (stairs.empty() || stairs.back().y != point.y) stairs.push_back(point);
   }
   return stairs;
 }

@@ -121,13 +121,10 @@ void SvgCanvas::circle(Point centre, double radius, const std::string& fill, con
 
 void SvgCanvas::text(Point at, std::string_view content, const TextStyle& style) {
   const std::string turn =
-      style.turn == 0
-          ? ""
-          : fmt::format(R"( transform="rotate({} {} {})") ", style.turn, pixels(at.x), pixels(at.y));
-            body_ +=
-            fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\" font-size=\"{}\" text-anchor=\"{}\"{}{}>{}</text>\n",
-                        pixels(at.x), pixels(at.y), style.paint, style.size, anchor_name(style.anchor),
-                        style.bold ? R"( font-weight="600")" : "", turn, escape_markup(content));
+      style.turn == 0 ? "" : fmt::format(" transform=\"rotate({} {} {})\"", style.turn, pixels(at.x), pixels(at.y));
+  body_ += fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\" font-size=\"{}\" text-anchor=\"{}\"{}{}>{}</text>\n",
+                       pixels(at.x), pixels(at.y), style.paint, style.size, anchor_name(style.anchor),
+                       style.bold ? " font-weight=\"600\"" : "", turn, escape_markup(content));
 }
 
 void SvgCanvas::image(const Rectangle& area, std::string_view data_uri) {

@@ -27,15 +27,22 @@ PlotAxis axis_from_zero(const std::string& quantity, const std::string& unit, do
 
 PlotAxis logarithmic_axis(const std::string& quantity, const std::string& unit, const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double air = std::max(std::pow(*high / *low, 0.06), 1.15);
-  return {.label = label_with_unit(quantity, unit), .min = *low / air, .max = *high * air, .logarithmic = true};
+  const double air = std::max(std::pow(*high / *low, 0.08), 1.15);
+  const SiPrefix prefix = unit == "%" ? SiPrefix{0.01, ""} : si_prefix(*high);
+  return {.label = label_with_unit(quantity, prefix.symbol + unit),
+          .min = *low / air,
+          .max = *high * air,
+          .logarithmic = true,
+          .unit = prefix.factor};
 }
 
 SvgPlot::SvgPlot(SvgCanvas& canvas, const Rectangle& area, const PlotAxis& x, const PlotAxis& y)
-    : canvas_(canvas),
-      area_(area),
-      x_{x.min, x.max, area.x, area.right(), x.logarithmic},
-      y_{y.min, y.max, area.bottom(), area.y, y.logarithmic} {
+    : canvas_(canvas), area_(area), x_{x.min, x.max, area.x, area.right(), x.logarithmic, x.whole}, y_{y.min,
+                                                                                                       y.max,
+                                                                                                       area.bottom(),
+                                                                                                       area.y,
+                                                                                                       y.logarithmic,
+                                                                                                       y.whole} {
   draw_frame(x, y);
 }
 

@@ -13,13 +13,15 @@ struct PlotAxis {
   double min = 0;
   double max = 1;
   bool logarithmic = false;
-  double unit = 1;  ///< data value of one unit of the label
+  double unit = 1;     ///< data value of one unit of the label
+  bool whole = false;  ///< ticks at whole numbers only
 };
 
 /// From zero to a little above `largest` with an SI prefix before `unit`: "force [mN]".
 [[nodiscard]] PlotAxis axis_from_zero(const std::string& quantity, const std::string& unit, double largest);
 
-/// Spans `values` (all > 0) on a logarithmic axis with some air at both ends.
+/// Spans `values` (at least one, all > 0) on a logarithmic axis with air at both ends and an SI prefix before `unit`;
+/// a `unit` of "%" takes none and shows 0.01 as 1.
 [[nodiscard]] PlotAxis logarithmic_axis(const std::string& quantity, const std::string& unit,
                                         const std::vector<double>& values);
 

@@ -19,26 +19,36 @@ void check_time(const std::vector<TraceCycle>& trace, const std::filesystem::pat
   }
 }
 
+void append_probe(const CsvTable& table, int probe, std::vector<TraceCycle>& trace) {
+  const auto column = [&](const char* name) { return table.numbers(fmt::format("{}{}", name, probe)); };
+  const auto x = column("x"), y = column("y"), z = column("z");
+  const auto force_x = column("force_x"), force_y = column("force_y"), force_z = column("force_z");
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    trace[i].probes.push_back({{x[i], y[i], z[i]}, {force_x[i], force_y[i], force_z[i]}});
+  }
+}
+
 }  // namespace
 
 std::vector<TraceCycle> load_trace(const std::filesystem::path& path) {
   const CsvTable table = CsvTable::load(path);
-  const auto time = table.numbers("time"), size = table.numbers("force");
-  const auto x = table.numbers("force_x"), y = table.numbers("force_y"), z = table.numbers("force_z");
+  const auto time = table.numbers("time"), force = table.numbers("force");
   const auto contacts = table.counts("contacts"), level = table.counts("level");
   const auto field_level = table.counts("field_level"), work = table.counts("work"), budget = table.counts("budget");
   const auto status = table.texts("status");
   std::vector<TraceCycle> trace(table.rows());
   for (std::size_t i = 0; i < trace.size(); ++i) {
     trace[i] = {.time = time[i],
-                .force = {x[i], y[i], z[i]},
-                .force_size = size[i],
+                .force = force[i],
                 .contacts = contacts[i],
                 .level = level[i],
                 .field_level = field_level[i],
                 .work = work[i],
                 .budget = budget[i],
                 .status = status[i]};
+  }
+  for (int probe = 0; probe == 0 || table.has(fmt::format("force_x{}", probe)); ++probe) {
+    append_probe(table, probe, trace);
   }
   check_time(trace, path);
   return trace;
@@ -56,7 +66,7 @@ TraceSummary summarise(const std::vector<TraceCycle>& trace) {
       summary.worst_share =
           std::max(summary.worst_share, static_cast<double>(cycle.work) / static_cast<double>(cycle.budget));
     }
-    if (cycle.force_size > trace[summary.strongest].force_size) summary.strongest = i;
+    if (cycle.force > trace[summary.strongest].force) summary.strongest = i;
     if (cycle.contacts == 0) continue;
     ++summary.in_contact;
     if (cycle.held()) continue;
