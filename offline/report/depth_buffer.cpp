@@ -1,0 +1,60 @@
+#include "offline/report/depth_buffer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace greenloop::offline {
+
+DepthBuffer::DepthBuffer(int width, int height)
+    : width_(width),
+      height_(height),
+      depth_(static_cast<std::size_t>(width) * height, std::numeric_limits<float>::lowest()),
+      triangle_(depth_.size(), nothing) {}
+
+void DepthBuffer::draw(const std::vector<Eigen::Vector3f>& vertices, const std::vector<std::array<int, 3>>& triangles) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& [a, b, c] = triangles[t];
+    draw_triangle(vertices[a], vertices[b], vertices[c], static_cast<int>(t));
+  }
+}
+
+void DepthBuffer::draw_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
+                                int index) {
+  const Eigen::Vector3f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+  const int x0 = std::max(static_cast<int>(std::floor(low.x())), 0);
+  const int x1 = std::min(static_cast<int>(std::ceil(high.x())), width_);
+  const int y0 = std::max(static_cast<int>(std::floor(low.y())), 0);
+  const int y1 = std::min(static_cast<int>(std::ceil(high.y())), height_);
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      const Eigen::Vector3f weight = barycentric(a, b, c, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+      if (!(weight.minCoeff() >= 0)) continue;
+      const float depth = weight.x() * a.z() + weight.y() * b.z() + weight.z() * c.z();
+      const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
+      if (depth <= depth_[at]) continue;
+      depth_[at] = depth;
+      triangle_[at] = index;
+    }
+  }
+}
+
+int DepthBuffer::triangle(int x, int y) const {
+  const bool inside = x >= 0 && x < width_ && y >= 0 && y < height_;
+  return inside ? triangle_[static_cast<std::size_t>(y) * width_ + x] : nothing;
+}
+
+float DepthBuffer::depth(int x, int y) const {
+  const bool inside = x >= 0 && x < width_ && y >= 0 && y < height_;
+  return inside ? depth_[static_cast<std::size_t>(y) * width_ + x] : std::numeric_limits<float>::lowest();
+}
+
+Eigen::Vector3f barycentric(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, float x,
+                            float y) {
+  const float doubled_area = (b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y());
+  const float of_b = ((x - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (y - a.y())) / doubled_area;
+  const float of_c = ((b.x() - a.x()) * (y - a.y()) - (x - a.x()) * (b.y() - a.y())) / doubled_area;
+  return {1 - of_b - of_c, of_b, of_c};
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,188 @@
+#include "offline/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+
+#include "offline/report/axis.hpp"
+#include "offline/report/body_figures.hpp"
+#include "offline/report/build_record.hpp"
+#include "offline/report/loop_figures.hpp"
+#include "offline/report/model_facts.hpp"
+#include "offline/report/model_figures.hpp"
+#include "offline/report/model_surface.hpp"
+#include "offline/report/trace.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+/// Everything that was read.
+struct Material {
+  const ModelView& model;
+  ModelSurface surface;
+  std::optional<std::vector<TraceCycle>> trace;
+  std::optional<TraceSummary> summary;
+  std::optional<std::vector<Eigen::Vector3d>> snapshot;
+  std::optional<BuildRecord> build;
+};
+
+Material read_material(const ModelView& model, const ReportInputs& inputs) {
+  Material material{model, model_surface(model), {}, {}, {}, {}};
+  if (inputs.trace) {
+    material.trace = load_trace(*inputs.trace);
+    material.summary = summarise(*material.trace);
+  }
+  if (inputs.snapshot) material.snapshot = load_snapshot(*inputs.snapshot, model.node_count);
+  if (inputs.build) material.build = load_build_record(*inputs.build);
+  return material;
+}
+
+std::vector<KeyFigure> loop_keys(const TraceSummary& summary) {
+  const auto mood = summary.misses == 0 ? KeyFigure::Mood::good : KeyFigure::Mood::bad;
+  return {
+      {fmt::format("{} of {}", readable_count(summary.misses), readable_count(summary.cycles)), "cycles missed", mood},
+      {readable_percent(summary.worst_share), "of its budget used by the dearest cycle",
+       summary.worst_share <= 1 ? KeyFigure::Mood::good : KeyFigure::Mood::bad}};
+}
+
+std::vector<KeyFigure> key_figures(const Material& material) {
+  std::vector<KeyFigure> keys;
+  if (material.summary) keys = loop_keys(*material.summary);
+  const auto file = static_cast<double>(material.model.header->file_bytes);
+  keys.push_back({readable_count(material.model.node_count), "surface nodes"});
+  keys.push_back({readable_bytes(file), "model file"});
+  keys.push_back(
+      {readable(static_cast<double>(dense_bytes(material.model)) / file, 3) + "×", "smaller than dense float32"});
+  std::uint32_t finest = material.model.levels - 1;
+  while (finest > 0 && material.model.level[finest].counts->column_count == 0) --finest;
+  keys.push_back({readable_percent(material.model.level[finest].counts->rms_error), "RMS error of the compression"});
+  return keys;
+}
+
+/// How often each refusal occurred, in words; empty if none did.
+std::string held_text(const std::vector<TraceCycle>& trace) {
+  std::vector<std::pair<std::string, std::size_t>> counts;
+  for (const TraceCycle& cycle : trace) {
+    if (!cycle.held()) continue;
+    auto at =
+        std::find_if(counts.begin(), counts.end(), [&](const auto& entry) { return entry.first == cycle.status; });
+    if (at == counts.end()) at = counts.insert(counts.end(), {cycle.status, 0});
+    ++at->second;
+  }
+  std::string text;
+  for (const auto& [status, count] : counts) {
+    text += fmt::format("{}{}: {}", text.empty() ? "Held cycles: " : ", ", status, readable_count(count));
+  }
+  return text.empty() ? text : text + ".";
+}
+
+void add_loop(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  if (!material.trace) return;
+  for (Figure& figure : std::vector{force_figure(*material.trace), work_figure(*material.trace),
+                                    levels_figure(*material.trace, material.model.levels)}) {
+    page.figure(figure);
+    figures.push_back(std::move(figure));
+  }
+  const std::string held = held_text(*material.trace);
+  if (!held.empty()) page.paragraph(held);
+}
+
+/// The deformed body if there is a snapshot; the meshes always.
+std::vector<Figure> body_pictures(const Material& material) {
+  const VisibleSurface finest = material.surface.level(material.surface.mesh.finest_level());
+  if (!material.snapshot) return {mesh_figure(material.surface, choose_view(finest, {}))};
+  const DrawnDisplacement drawn = drawn_displacement(finest.positions, *material.snapshot);
+  const ViewFrame frame = choose_view(finest, drawn.magnified);
+  const TraceCycle* cycle = material.trace ? &(*material.trace)[material.summary->strongest] : nullptr;
+  return {body_figure(finest, drawn, frame, cycle), mesh_figure(material.surface, frame)};
+}
+
+void add_figure(Figure figure, HtmlPage& page, std::vector<Figure>& figures) {
+  page.figure(figure);
+  figures.push_back(std::move(figure));
+}
+
+void add_model(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  if (material.build && has_error_curve(*material.build)) add_figure(error_figure(*material.build), page, figures);
+  page.heading("Constraint levels");
+  page.table(
+      level_table(material.model, material.summary),
+      "Errors against the exact columns; work in multiply-adds to add up one column; patch force: worst relative error "
+      "of the total force of a sampled patch held at that level.");
+  add_figure(bytes_figure(bytes_by_kind(material.model)), page, figures);
+}
+
+void add_build(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  if (!material.build) return;
+  if (!material.build->stages.empty()) add_figure(stages_figure(material.build->stages), page, figures);
+  std::vector<FactGroup> groups;
+  if (!material.build->remesh.empty()) groups.push_back({"Remeshing", material.build->remesh});
+  if (!material.build->solve.empty()) groups.push_back({"Solving", material.build->solve});
+  if (groups.empty()) return;
+  page.heading("How it was built");
+  page.facts(groups);
+}
+
+std::vector<MissingInput> missing_inputs(const Material& material, const std::filesystem::path& model) {
+  const std::string name = model.string();
+  const std::string loop = fmt::format(
+      "greenloop-loop {} --trace trace.csv --snapshot snapshot.csv\ngreenloop report {} --trace "
+      "trace.csv --snapshot snapshot.csv",
+      name, name);
+  const std::string record = std::filesystem::path(model).replace_extension(".build.json").string();
+  std::vector<MissingInput> missing;
+  if (!material.snapshot) missing.push_back({"The deformed body: no --snapshot was given", loop});
+  if (!material.trace) missing.push_back({"Force, work and levels over time: no --trace was given", loop});
+  const std::string build =
+      fmt::format("greenloop build scene.toml -o {}\ngreenloop report {} --build {}", name, name, record);
+  if (!material.build) {
+    missing.push_back({"Speed against error and the build's own figures: no --build was given", build});
+  } else if (!has_error_curve(*material.build)) {
+    missing.push_back({"Speed against error: the build record has no curve over ε with work or bytes", build});
+  }
+  return missing;
+}
+
+}  // namespace
+
+Report make_report(const ModelView& model, const ReportInputs& inputs) {
+  const Material material = read_material(model, inputs);
+  Report report;
+  std::string subtitle = "Model and loop report";
+  if (material.build && !material.build->scene.empty()) subtitle += " · scene " + material.build->scene;
+  HtmlPage page(inputs.model.filename().string(), subtitle);
+  page.key_figures(key_figures(material));
+  auto pictures = body_pictures(material);
+  if (material.snapshot) {
+    add_figure(std::move(pictures.front()), page, report.figures);
+    pictures.erase(pictures.begin());
+  }
+  add_loop(material, page, report.figures);
+  add_figure(std::move(pictures.front()), page, report.figures);
+  page.heading("The model");
+  page.facts(model_facts(model, material.surface));
+  add_model(material, page, report.figures);
+  add_build(material, page, report.figures);
+  report.missing = missing_inputs(material, inputs.model);
+  page.missing(report.missing);
+  report.html = page.str();
+  return report;
+}
+
+void write_text_file(const std::filesystem::path& path, const std::string& content) {
+  const std::filesystem::path temporary = path.string() + ".part";
+  std::ofstream file(temporary, std::ios::binary);
+  file << content;
+  file.close();
+  if (!file) throw std::runtime_error(path.string() + ": cannot be written; does the folder exist, is there space?");
+  std::filesystem::rename(temporary, path);
+}
+
+void write_figures(const std::filesystem::path& folder, const std::vector<Figure>& figures) {
+  std::filesystem::create_directories(folder);
+  for (const Figure& figure : figures) write_text_file(folder / (figure.name + ".svg"), standalone_svg(figure.svg));
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,78 @@
+#include "offline/report/report_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/model_file.hpp"
+#include "offline/report/axis.hpp"
+#include "offline/report/report.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+struct Options {
+  std::string model, output, trace, snapshot, build, figures;
+  bool json = false;
+};
+
+std::optional<std::filesystem::path> given(const std::string& path) {
+  return path.empty() ? std::nullopt : std::optional<std::filesystem::path>(path);
+}
+
+void print_json(const std::string& output, const Report& report) {
+  nlohmann::ordered_json root{{"report", output}, {"bytes", report.html.size()}};
+  root["figures"] = nlohmann::ordered_json::array();
+  for (const Figure& figure : report.figures) root["figures"].push_back(figure.name);
+  root["missing"] = nlohmann::ordered_json::array();
+  for (const MissingInput& input : report.missing) {
+    root["missing"].push_back({{"what", input.what}, {"command", input.command}});
+  }
+  fmt::print("{}\n", root.dump(2));
+}
+
+void print_text(const std::string& output, const Report& report) {
+  fmt::print("{}: {} figures, {}\n", output, report.figures.size(),
+             readable_bytes(static_cast<double>(report.html.size())));
+  for (const MissingInput& input : report.missing) fmt::print("  not in it: {}\n", input.what);
+}
+
+void run(const Options& options) {
+  const ModelFile file = open_model_file(options.model);
+  const std::string output = options.output.empty()
+                                 ? std::filesystem::path(options.model).replace_extension(".html").string()
+                                 : options.output;
+  const Report report = make_report(file.view, {.model = options.model,
+                                                .trace = given(options.trace),
+                                                .snapshot = given(options.snapshot),
+                                                .build = given(options.build)});
+  write_text_file(output, report.html);
+  if (!options.figures.empty()) write_figures(options.figures, report.figures);
+  options.json ? print_json(output, report) : print_text(output, report);
+}
+
+}  // namespace
+
+void add_report(CLI::App& parent, int& exit_code) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      parent.add_subcommand("report", "Write pictures and figures of a model and of a run as one HTML file");
+  command->add_option("model", options->model, "Model file (.gloop)")->required();
+  command->add_option("-o,--output", options->output, "Report to write (default: the model's name with .html)");
+  command->add_option("--trace", options->trace, "Cycles of a run, by greenloop-loop --trace");
+  command->add_option("--snapshot", options->snapshot,
+                      "Displacements at the largest force, by greenloop-loop --snapshot");
+  command->add_option("--build", options->build, "Record of the build, by greenloop build");
+  command->add_option("--figures", options->figures, "Folder for each figure as its own SVG file");
+  command->add_flag("--json", options->json, "Print what was written as JSON");
+  command->callback([options, &exit_code] {
+    run(*options);
+    exit_code = 0;
+  });
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,142 @@
+#include "offline/report/svg_plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "offline/report/decimation.hpp"
+#include "offline/report/theme.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+constexpr double tick_size = 11.5;
+
+std::string label_with_unit(const std::string& quantity, const std::string& unit) {
+  return unit.empty() ? quantity : quantity + " [" + unit + "]";
+}
+
+}  // namespace
+
+PlotAxis axis_from_zero(const std::string& quantity, const std::string& unit, double largest) {
+  const SiPrefix prefix = si_prefix(largest);
+  return {.label = label_with_unit(quantity, prefix.symbol + unit),
+          .min = 0,
+          .max = largest > 0 ? 1.06 * largest : 1,
+          .unit = prefix.factor};
+}
+
+PlotAxis logarithmic_axis(const std::string& quantity, const std::string& unit, const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double air = std::max(std::pow(*high / *low, 0.08), 1.15);
+  const SiPrefix prefix = unit == "%" ? SiPrefix{0.01, ""} : si_prefix(*high);
+  return {.label = label_with_unit(quantity, prefix.symbol + unit),
+          .min = *low / air,
+          .max = *high * air,
+          .logarithmic = true,
+          .unit = prefix.factor};
+}
+
+SvgPlot::SvgPlot(SvgCanvas& canvas, const Rectangle& area, const PlotAxis& x, const PlotAxis& y)
+    : canvas_(canvas), area_(area), x_{x.min, x.max, area.x, area.right(), x.logarithmic, x.whole}, y_{y.min,
+                                                                                                       y.max,
+                                                                                                       area.bottom(),
+                                                                                                       area.y,
+                                                                                                       y.logarithmic,
+                                                                                                       y.whole} {
+  draw_frame(x, y);
+}
+
+void SvgPlot::draw_frame(const PlotAxis& x, const PlotAxis& y) {
+  const Stroke grid{paint::grid, 1}, rule{paint::rule, 1};
+  double widest = 0;
+  for (const double tick : x_.ticks(static_cast<int>(area_.width / 80))) {
+    canvas_.line({x_(tick), area_.y}, {x_(tick), area_.bottom()}, grid);
+    canvas_.line({x_(tick), area_.bottom()}, {x_(tick), area_.bottom() + 4}, rule);
+    canvas_.text({x_(tick), area_.bottom() + 17}, readable(tick / x.unit),
+                 {.paint = paint::muted, .size = tick_size, .anchor = Anchor::middle});
+  }
+  for (const double tick : y_.ticks(std::max(static_cast<int>(area_.height / 40), 2))) {
+    const std::string text = readable(tick / y.unit);
+    widest = std::max(widest, text_width(text, tick_size));
+    canvas_.line({area_.x, y_(tick)}, {area_.right(), y_(tick)}, grid);
+    canvas_.text({area_.x - 7, y_(tick) + 4}, text, {.paint = paint::muted, .size = tick_size, .anchor = Anchor::end});
+  }
+  canvas_.line({area_.x, area_.bottom()}, {area_.right(), area_.bottom()}, {paint::rule, 1.2});
+  canvas_.text({area_.x + area_.width / 2, area_.bottom() + 36}, x.label, {.anchor = Anchor::middle});
+  canvas_.text({area_.x - 20 - widest, area_.y + area_.height / 2}, y.label, {.anchor = Anchor::middle, .turn = -90});
+}
+
+std::vector<Point> SvgPlot::placed(const std::vector<Point>& data) const {
+  std::vector<Point> pixels;
+  pixels.reserve(data.size());
+  for (const Point& point : data) pixels.push_back(at(point.x, point.y));
+  return pixels;
+}
+
+void SvgPlot::curve(const std::vector<Point>& data, const Stroke& stroke) {
+  canvas_.polyline(placed(decimate(data, static_cast<int>(area_.width))), stroke);
+}
+
+void SvgPlot::steps(const std::vector<Point>& data, const Stroke& stroke) {
+  canvas_.polyline(placed(staircase(decimate(data, static_cast<int>(area_.width)))), stroke);
+}
+
+void SvgPlot::area_below(const std::vector<Point>& data, const std::string& fill, double opacity) {
+  std::vector<Point> outline = placed(decimate(data, static_cast<int>(area_.width)));
+  if (outline.empty()) return;
+  outline.push_back({outline.back().x, area_.bottom()});
+  outline.push_back({outline.front().x, area_.bottom()});
+  canvas_.polygon(outline, fill, opacity);
+}
+
+void SvgPlot::dots(const std::vector<Point>& data, double radius, const std::string& fill, const Stroke& stroke) {
+  for (const Point& point : placed(data)) canvas_.circle(point, radius, fill, stroke);
+}
+
+void SvgPlot::crosses(const std::vector<Point>& data, const std::string& paint) {
+  constexpr double arm = 4;
+  double last_column = -1;
+  for (const Point& point : placed(data)) {
+    if (std::floor(point.x) == last_column) continue;
+    last_column = std::floor(point.x);
+    canvas_.line({point.x - arm, point.y - arm}, {point.x + arm, point.y + arm}, {paint, 1.8});
+    canvas_.line({point.x - arm, point.y + arm}, {point.x + arm, point.y - arm}, {paint, 1.8});
+  }
+}
+
+void SvgPlot::legend(const std::vector<LegendEntry>& entries) {
+  constexpr double size = 12, sample = 20, gap = 18;
+  double x = area_.x;
+  const double y = area_.y - 12;
+  for (const LegendEntry& entry : entries) {
+    if (entry.marker) {
+      canvas_.circle({x + sample / 2, y - 4}, 4, entry.stroke.paint);
+    } else {
+      canvas_.line({x, y - 4}, {x + sample, y - 4}, entry.stroke);
+    }
+    canvas_.text({x + sample + 6, y}, entry.text, {.size = size});
+    x += sample + 6 + text_width(entry.text, size) + gap;
+  }
+}
+
+void horizontal_bars(SvgCanvas& canvas, const Rectangle& area, const std::vector<Bar>& bars) {
+  double largest = 0, value_room = 0;
+  for (const Bar& bar : bars) {
+    largest = std::max(largest, bar.value);
+    value_room = std::max(value_room, text_width(bar.value_text, 12) + 10);
+  }
+  const double pitch = area.height / static_cast<double>(std::max<std::size_t>(bars.size(), 1));
+  const double thickness = std::min(0.64 * pitch, 18.0);
+  double middle = area.y + pitch / 2;
+  for (const Bar& bar : bars) {
+    const double length = largest > 0 ? bar.value / largest * (area.width - value_room) : 0;
+    canvas.text({area.x - 10, middle + 4}, bar.label, {.anchor = Anchor::end});
+    canvas.rectangle({area.x, middle - thickness / 2, std::max(length, bar.value > 0 ? 1.0 : 0.0), thickness},
+                     bar.fill);
+    canvas.text({area.x + length + 7, middle + 4}, bar.value_text, {.paint = paint::muted});
+    middle += pitch;
+  }
+  canvas.line({area.x, area.y}, {area.x, area.bottom()}, {paint::rule, 1.2});
+}
+
+}  // namespace greenloop::offline
