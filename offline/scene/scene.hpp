@@ -48,7 +48,7 @@ struct Material {
   double poisson = 0;  ///< Poisson's ratio, -1 < v < 0.5
 };
 
-struct Accuracy {
+struct AccuracyGoal {
   double rms = 0.03;           ///< ||error||_F / ||exact||_F over all columns, 0..1
   double worst_column = 0.25;  ///< largest block-wise relative error of any column, 0..1
 };
@@ -73,7 +73,7 @@ struct Scene {
   std::vector<Region> touched;   ///< none: everything that is not fixed
   std::vector<Region> read;      ///< none: everything that is not fixed
   int coarsest_constraints = 0;  ///< coarsest level offered for contacts, 0..remesh.levels
-  Accuracy accuracy;
+  AccuracyGoal accuracy;
   StepBudget budget;
   CompressionChoice compression;
   std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory

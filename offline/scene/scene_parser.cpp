@@ -436,7 +436,7 @@ void read_constraints(const Table& scene, int levels, int& coarsest) {
   }
 }
 
-void read_accuracy(const Table& scene, Accuracy& accuracy) {
+void read_accuracy(const Table& scene, AccuracyGoal& accuracy) {
   constexpr Interval error{0, 1, true, true};
   if (const auto table = section(scene, "accuracy", {"rms", "worst_column"})) {
     set_if(accuracy.rms, table->number("rms", error));

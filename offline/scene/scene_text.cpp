@@ -77,7 +77,7 @@ std::string material_text(const Material& material) {
   return "\n[material]\nyoung = " + quantity(material.young, "Pa") + "\npoisson = " + number(material.poisson) + "\n";
 }
 
-std::string accuracy_text(const Accuracy& accuracy) {
+std::string accuracy_text(const AccuracyGoal& accuracy) {
   return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) + "\n";
 }
 

@@ -15,9 +15,9 @@ struct StageTime {
 
 /// Tells people on standard error how far a long computation is: a bar with the remaining time on a terminal, one line
 /// a stage elsewhere, nothing when quiet. Not thread-safe; offline only.
-class Progress {
+class ProgressBar {
  public:
-  explicit Progress(bool quiet);
+  explicit ProgressBar(bool quiet);
 
   /// Ends the stage under way, if any, and starts the next.
   void begin(std::string_view stage);

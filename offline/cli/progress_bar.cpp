@@ -1,4 +1,4 @@
-#include "offline/cli/progress.hpp"
+#include "offline/cli/progress_bar.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -24,9 +24,9 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-Progress::Progress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+ProgressBar::ProgressBar(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
 
-void Progress::begin(std::string_view stage) {
+void ProgressBar::begin(std::string_view stage) {
   if (running_) {
     end();
   }
@@ -37,7 +37,7 @@ void Progress::begin(std::string_view stage) {
   draw(0, {});
 }
 
-void Progress::update(double fraction, std::string_view detail) {
+void ProgressBar::update(double fraction, std::string_view detail) {
   if (first_fraction_ < 0) {
     first_fraction_ = fraction;
   }
@@ -46,7 +46,7 @@ void Progress::update(double fraction, std::string_view detail) {
   }
 }
 
-void Progress::end(std::string_view note) {
+void ProgressBar::end(std::string_view note) {
   const double seconds = seconds_between(started_, Clock::now());
   stages_.push_back({stage_, seconds});
   running_ = false;
@@ -55,7 +55,7 @@ void Progress::end(std::string_view note) {
   }
 }
 
-void Progress::draw(double fraction, std::string_view detail) {
+void ProgressBar::draw(double fraction, std::string_view detail) {
   if (quiet_ || !terminal_) {
     return;
   }
