@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
   if (argc > 1 && argv[1][0] != '-') {
     run_sibling(argv);
   }
-  CLI::App app("Greenloop turns a mesh and a scene into a model that answers contact within a fixed budget.", "greenloop");
+  CLI::App app("Greenloop turns a mesh and a scene into a model that answers contact within a fixed budget.",
+               "greenloop");
   app.footer("Also: greenloop loop, greenloop bench, greenloop stress. Each command has --help.");
   app.require_subcommand(1);
   int exit_code = 0;

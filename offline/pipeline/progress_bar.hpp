@@ -8,7 +8,7 @@
 namespace greenloop::offline {
 
 /// What a finished stage cost, for the build's report.
-struct StageTime {
+struct FinishedStage {
   std::string name;
   double seconds = 0;  ///< wall time
 };
@@ -28,7 +28,7 @@ class ProgressBar {
   /// Ends the stage under way with a short note of what came out.
   void end(std::string_view note = {});
 
-  [[nodiscard]] const std::vector<StageTime>& stages() const { return stages_; }
+  [[nodiscard]] const std::vector<FinishedStage>& stages() const { return stages_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -41,7 +41,7 @@ class ProgressBar {
   std::string stage_;
   double first_fraction_ = -1;  ///< where a resumed stage started, so that the remaining time is honest
   Clock::time_point started_, drawn_;
-  std::vector<StageTime> stages_;
+  std::vector<FinishedStage> stages_;
 };
 
 }  // namespace greenloop::offline

@@ -1,4 +1,4 @@
-#include "offline/cli/progress_bar.hpp"
+#include "offline/pipeline/progress_bar.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,0 +1,60 @@
+#include "offline/cli/build_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "offline/pipeline/build_model_file.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+struct BuildArguments {
+  BuildRequest request;
+  bool json = false;
+};
+
+void print_outcome(const BuildArguments& arguments, const nlohmann::json& record) {
+  if (arguments.json) {
+    fmt::print("{}\n", record.dump(2));
+    return;
+  }
+  const auto& model = arguments.request.model;
+  if (record.value("up_to_date", false)) {
+    fmt::print("{} is up to date\n", model.string());
+    return;
+  }
+  fmt::print("{}: {} bytes, {:.0f} times smaller than the dense matrix\n", model.string(),
+             record["bytes"].get<std::size_t>(),
+             record["compression"]["dense_bytes"].get<double>() / record["bytes"].get<double>());
+}
+
+int run_build(BuildArguments& arguments) {
+  auto& request = arguments.request;
+  if (request.model.empty()) {
+    request.model = request.scene.filename().replace_extension(".gloop");
+  }
+  ProgressBar progress(arguments.json);
+  print_outcome(arguments, build_model_file(request, progress));
+  return 0;
+}
+
+}  // namespace
+
+void add_build(CLI::App& parent, int& exit_code) {
+  auto* command = parent.add_subcommand("build", "Build a model file from a scene; resumes after a kill");
+  auto arguments = std::make_shared<BuildArguments>();
+  auto& request = arguments->request;
+  command->add_option("scene", request.scene, "The scene, a TOML file")->required()->check(CLI::ExistingFile);
+  command->add_option("-o,--output", request.model, "The model file to write [SCENE.gloop in this folder]");
+  command->add_option("--store", request.store,
+                      "HDF5 store of the exact Green's functions [as the scene says, else beside the model]");
+  command->add_flag("--overwrite-store", request.overwrite_store, "Replace a store that belongs to another scene");
+  command->add_flag("--force", request.force, "Compress and write again even if the model is up to date");
+  command->add_flag("--json", arguments->json, "Print the record of the build as JSON, no progress");
+  command->callback([arguments, &exit_code] { exit_code = run_build(*arguments); });
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,158 @@
+#include "offline/pipeline/body_geometry.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+#include <utility>
+
+#include "formats/exchange/surface_io.hpp"
+#include "formats/exchange/volume_io.hpp"
+#include "formats/layout.hpp"
+#include "offline/compress/node_order.hpp"
+#include "offline/remesh/remesh.hpp"
+#include "offline/solve/boundary_interpolation.hpp"
+#include "offline/solve/elasticity.hpp"
+#include "offline/solve/tetrahedralize.hpp"
+#include "offline/surface/surface_preparation.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+using nlohmann::json;
+
+Eigen::AlignedBox3d bounding_box(const std::vector<Eigen::Vector3d>& positions) {
+  Eigen::AlignedBox3d box;
+  for (const auto& position : positions) {
+    box.extend(position);
+  }
+  return box;
+}
+
+void scale(std::vector<Eigen::Vector3d>& positions, double factor) {
+  for (auto& position : positions) {
+    position *= factor;
+  }
+}
+
+TriangleMesh read_input(const Scene& scene, std::optional<TetrahedralMesh>& volume) {
+  if (!scene.mesh.tetrahedra) {
+    auto surface = read_surface(scene.mesh.path);
+    scale(surface.vertices, scene.mesh.scale(bounding_box(surface.vertices)));
+    return surface;
+  }
+  volume = read_volume(scene.mesh.path);
+  scale(volume->vertices, scene.mesh.scale(bounding_box(volume->vertices)));
+  return extract_boundary(*volume).surface;
+}
+
+json quality_record(const RemeshQuality& quality) {
+  return {{"base_vertices", quality.base_vertices},
+          {"levels", quality.levels},
+          {"triangles", quality.triangles},
+          {"kept_connectivity", quality.kept_connectivity},
+          {"smallest_angle_degrees", quality.smallest_angle_degrees},
+          {"hausdorff_metres", quality.hausdorff},
+          {"hausdorff_relative", quality.hausdorff_relative},
+          {"flipped", quality.flipped},
+          {"self_intersections", quality.self_intersections}};
+}
+
+std::vector<std::uint32_t> node_flags(const Scene& scene, const SemiRegularMesh& mesh) {
+  const auto sets = select_nodes(scene, mesh.positions, bounding_box(mesh.positions));
+  std::vector<std::uint32_t> flags(mesh.positions.size(), 0);
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    flags[i] = (sets.fixed[i] ? layout::node_fixed : 0U) | (sets.touched[i] ? layout::node_touchable : 0U) |
+               (sets.read[i] ? layout::node_read : 0U);
+  }
+  return flags;
+}
+
+/// A surface node that hangs on fixed vertices of the user's volume only does not move either.
+void fix_nodes_without_free_vertices(const Volume& volume, std::vector<std::uint32_t>& flags) {
+  for (int node = 0; node < volume.interpolation.outerSize(); ++node) {
+    bool free = false;
+    for (Interpolation::InnerIterator it(volume.interpolation, node); it; ++it) {
+      free = free || (it.value() != 0 && volume.fixed[static_cast<std::size_t>(it.col())] == 0);
+    }
+    if (!free) {
+      flags[static_cast<std::size_t>(node)] = layout::node_fixed;
+    }
+  }
+}
+
+/// How the user's tetrahedra carry the surface: the fixed regions hold their vertices, the nodes lie on their boundary.
+Volume attach(const Scene& scene, TetrahedralMesh tetrahedra, const SemiRegularMesh& surface) {
+  const auto box = bounding_box(tetrahedra.vertices);
+  const auto fixed = evaluate(scene.fixed, tetrahedra.vertices, box);
+  constexpr double tolerance = 1e-6;  // of the diagonal: remeshed nodes lie on the boundary up to round-off
+  auto interpolation = interpolate_on_boundary(surface.positions, tetrahedra, tolerance * box.diagonal().norm());
+  return {std::move(tetrahedra), {fixed.begin(), fixed.end()}, std::move(interpolation)};
+}
+
+}  // namespace
+
+BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
+  BodyGeometry body;
+
+  progress.begin("surface");
+  std::optional<TetrahedralMesh> tetrahedra;
+  const TriangleMesh input = read_input(scene, tetrahedra);
+  auto prepared = prepare_surface(input);
+  body.record["surface"] = {{"file", scene.mesh.name},
+                            {"vertices", prepared.report.vertex_count},
+                            {"triangles", prepared.report.triangle_count},
+                            {"genus", prepared.report.genus()},
+                            {"repairs", prepared.repairs}};
+  progress.end(fmt::format("{} vertices, {} triangles, {} repairs", prepared.report.vertex_count,
+                           prepared.report.triangle_count, prepared.repairs.size()));
+
+  progress.begin("remesh");
+  RemeshOptions options;
+  options.base_vertices = scene.remesh.base_vertices;
+  options.levels = scene.remesh.levels;
+  auto remeshed = remesh(prepared.mesh, options,
+                         [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
+  body.record["remesh"] = quality_record(remeshed.quality);
+  progress.end(
+      fmt::format("{} vertices on {} levels over {}, smallest angle {:.1f} degrees, Hausdorff {:.2f} % of the diagonal",
+                  remeshed.mesh.positions.size(), remeshed.quality.levels + 1, remeshed.quality.base_vertices,
+                  remeshed.quality.smallest_angle_degrees, 100 * remeshed.quality.hausdorff_relative));
+
+  auto flags = node_flags(scene, remeshed.mesh);
+  if (tetrahedra) {
+    fix_nodes_without_free_vertices(attach(scene, *tetrahedra, remeshed.mesh), flags);
+  }
+  flags = mark_domain(remeshed.mesh, std::move(flags));
+  auto ordered = order_nodes(remeshed.mesh, flags);
+  body.flags = ordered.reorder(flags);
+  body.surface = std::move(ordered.mesh);
+  const Eigen::VectorXd area = lumped_areas(finest_surface(body.surface));
+  body.area.assign(area.data(), area.data() + area.size());
+  if (tetrahedra) {
+    body.volume = attach(scene, std::move(*tetrahedra), body.surface);
+  }
+  return body;
+}
+
+Volume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress, nlohmann::json& record) {
+  progress.begin("tetrahedra");
+  auto filled = tetrahedralize(finest_surface(body.surface));
+  const auto vertices = filled.mesh.vertices.size();
+  std::vector<std::uint8_t> fixed(vertices, 0);
+  for (std::size_t i = 0; i < body.flags.size(); ++i) {
+    fixed[i] = (body.flags[i] & layout::node_fixed) != 0 ? 1 : 0;
+  }
+  record["volume"] = {{"mesher", filled.mesher},
+                      {"vertices", vertices},
+                      {"interior_vertices", filled.quality.interior_nodes},
+                      {"tetrahedra", filled.mesh.tetrahedra.size()},
+                      {"smallest_mean_ratio", filled.quality.min_quality},
+                      {"slivers", filled.quality.slivers}};
+  progress.end(fmt::format("{} tetrahedra, {} vertices inside, by {}", filled.mesh.tetrahedra.size(),
+                           filled.quality.interior_nodes, filled.mesher));
+  auto selection = select_first_vertices(static_cast<int>(body.flags.size()), static_cast<int>(vertices));
+  return {std::move(filled.mesh), std::move(fixed), std::move(selection)};
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/exchange/tetrahedral_mesh.hpp"
+#include "offline/pipeline/progress_bar.hpp"
+#include "offline/scene/scene.hpp"
+#include "offline/solve/boundary_interpolation.hpp"
+
+namespace greenloop::offline {
+
+/// The tetrahedra that carry a surface.
+struct Volume {
+  TetrahedralMesh mesh;             ///< m
+  std::vector<std::uint8_t> fixed;  ///< per vertex, nonzero = fixed
+  Interpolation interpolation;      ///< surface displacement from the vertices'
+};
+
+/// The body a scene describes, before anything is solved: its semi-regular surface in the model file's node order.
+struct BodyGeometry {
+  SemiRegularMesh surface;           ///< m
+  std::vector<std::uint32_t> flags;  ///< layout::NodeFlag per node, domain marked
+  std::vector<double> area;          ///< m^2 per node, its hat function's integral
+  std::optional<Volume> volume;      ///< the user's own, if the scene names one
+  nlohmann::json record;             ///< what came out, for people: input, repairs, remesh quality
+};
+
+/// Reads, checks, scales and remeshes what the scene names, finds the scene's node sets and orders the nodes.
+/// Throws SceneError, SurfaceError or std::runtime_error that name what is wrong and how to mend it.
+[[nodiscard]] BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress);
+
+/// Tetrahedra inside the surface, made by tetrahedralize; what came out is added to `record`.
+[[nodiscard]] Volume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress, nlohmann::json& record);
+
+}  // namespace greenloop::offline

@@ -1,0 +1,269 @@
+#include "offline/pipeline/build_model_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "formats/exchange/green_store.hpp"
+#include "formats/layout.hpp"
+#include "formats/model_file.hpp"
+#include "formats/writer.hpp"
+#include "offline/compress/model_builder.hpp"
+#include "offline/pipeline/body_geometry.hpp"
+#include "offline/scene/fingerprint.hpp"
+#include "offline/scene/scene.hpp"
+#include "offline/solve/green_functions.hpp"
+#include "runtime/elastostatic.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+using nlohmann::json;
+
+// part of every fingerprint: raised when a stage starts to give other results for the same scene
+constexpr std::string_view pipeline_version = "greenloop 0.1.0";
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    throw std::runtime_error(fmt::format("{}: cannot be opened; does it exist?", path.string()));
+  }
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// What the exact columns depend on: everything but accuracy, budget and coding.
+std::string column_fingerprint(Scene scene, const std::string& mesh) {
+  scene.coarsest_constraints = 0;
+  scene.accuracy = {};
+  scene.budget = {};
+  scene.compression = {};
+  scene.store.reset();
+  scene.store_name.clear();
+  return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();
+}
+
+std::string request_fingerprint(const Scene& scene, const std::string& mesh) {
+  return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();
+}
+
+/// The record of the last build if its model is still what `request` asks for.
+json up_to_date_record(const BuildRequest& request, const std::string& wanted) {
+  if (request.force || !std::filesystem::exists(request.model) ||
+      !std::filesystem::exists(build_record_path(request.model))) {
+    return {};
+  }
+  try {
+    const auto model = open_model_file(request.model);
+    const auto provenance = json::parse(model.view.provenance);
+    if (provenance.value("request", "") != wanted) {
+      return {};
+    }
+    return json::parse(read_text(build_record_path(request.model)));
+  } catch (const std::exception&) {
+    return {};  // a damaged leftover is simply built again
+  }
+}
+
+GreenStoreContents store_contents(const Scene& scene, const BodyGeometry& body, Volume volume, const json& record,
+                                  const std::string& columns) {
+  GreenStoreContents contents;
+  contents.surface = body.surface;
+  contents.area = Eigen::VectorXd::Map(body.area.data(), static_cast<Eigen::Index>(body.area.size()));
+  for (std::size_t i = 0; i < body.flags.size(); ++i) {
+    const auto flags = body.flags[i];
+    contents.flags.push_back(static_cast<std::uint8_t>(flags));
+    if ((flags & layout::node_domain) != 0) {
+      contents.row_node.push_back(static_cast<int>(i));
+    }
+    if ((flags & layout::node_touchable) != 0) {
+      contents.column_node.push_back(static_cast<int>(i));
+    }
+  }
+  contents.volume = std::move(volume.mesh);
+  contents.volume_fixed = std::move(volume.fixed);
+  contents.interpolation = std::move(volume.interpolation);
+  contents.young = scene.material.young;
+  contents.poisson = scene.material.poisson;
+  contents.provenance = record.dump();
+  contents.fingerprint = columns;
+  return contents;
+}
+
+/// The store of the scene's columns: the one on disk if it is that, else a new one with nothing solved.
+GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene, const std::string& columns,
+                                ProgressBar& progress) {
+  if (std::filesystem::exists(request.store)) {
+    auto store = GreenStore::open(request.store, GreenStore::Access::kReadWrite);
+    if (store.contents().fingerprint == columns) {
+      return store;
+    }
+    if (!request.overwrite_store) {
+      throw std::runtime_error(
+          fmt::format("{}: holds the Green's functions of another scene, mesh or version; name another file with "
+                      "--store, or pass --overwrite-store to replace it",
+                      request.store.string()));
+    }
+  }
+  auto body = make_body_geometry(scene, progress);
+  json record = body.record;
+  auto volume = body.volume ? std::move(*body.volume) : fill_with_tetrahedra(body, progress, record);
+  return GreenStore::create(request.store, store_contents(scene, body, std::move(volume), record, columns));
+}
+
+json solve_missing_columns(GreenStore& store, ProgressBar& progress) {
+  progress.begin("solve");
+  const auto missing = store.missing_columns().size();
+  const auto report = solve_green_functions(store, [&](const SolveProgress& at) { progress.update(at.fraction); });
+  progress.end(fmt::format("{} columns, {} of them from the store, asymmetry {:.1e}", store.column_count(),
+                           static_cast<std::size_t>(store.column_count()) - missing, report.largest_asymmetry));
+  return {{"columns", store.column_count()},
+          {"columns_solved", report.columns_solved},
+          {"rows", store.row_count()},
+          {"unknowns", report.unknowns},
+          {"factor_entries", report.factor_entries},
+          {"factor_seconds", report.factor_seconds},
+          {"solve_seconds", report.solve_seconds},
+          {"largest_asymmetry", report.largest_asymmetry}};
+}
+
+json compression_record(const CompressionReport& report) {
+  json levels = json::array();
+  for (const auto& level : report.levels) {
+    levels.push_back({{"level", level.level},
+                      {"epsilon", level.epsilon},
+                      {"value_bytes", level.value_bytes},
+                      {"columns", level.columns},
+                      {"kept_blocks", level.kept_blocks},
+                      {"dense_blocks", level.dense_blocks},
+                      {"bytes", level.bytes},
+                      {"rms_error", level.rms_error},
+                      {"worst_column_error", level.worst_column_error},
+                      {"force_error", level.force_error}});
+  }
+  json curve = json::array();
+  for (const auto& point : report.curve) {
+    curve.push_back({{"epsilon", point.epsilon},
+                     {"kept_blocks", point.blocks},
+                     {"bytes", static_cast<double>(report.dense_bytes) / point.compression},
+                     {"rms_error", point.rms_error},
+                     {"worst_column_error", point.worst_column_error},
+                     {"sum_work", point.sum_work}});
+  }
+  return {{"epsilon", report.levels.back().epsilon},
+          {"dense_bytes", report.dense_bytes},
+          {"curve", curve},
+          {"curve_columns", report.curve_columns},
+          {"constraint_levels", levels}};
+}
+
+layout::Info scene_facts(const Scene& scene, const json& solve) {
+  layout::Info facts{};
+  facts.young = scene.material.young;
+  facts.poisson = scene.material.poisson;
+  facts.store_asymmetry = solve["largest_asymmetry"];
+  facts.rate = static_cast<float>(scene.budget.rate);
+  facts.max_contacts = static_cast<std::uint32_t>(scene.budget.contacts);
+  facts.step_work = static_cast<std::uint64_t>(scene.budget.work.value_or(0));
+  facts.coarsest_constraint_level = static_cast<std::uint32_t>(scene.coarsest_constraints);
+  return facts;
+}
+
+BuiltModel compress(const Scene& scene, const GreenStore& store, const json& solve, const std::string& provenance,
+                    ProgressBar& progress) {
+  progress.begin("compress");
+  const auto& contents = store.contents();
+  const std::vector<std::uint32_t> flags(contents.flags.begin(), contents.flags.end());
+  const std::vector<double> area(contents.area.data(), contents.area.data() + contents.area.size());
+  const std::vector<std::size_t> column_nodes(contents.column_node.begin(), contents.column_node.end());
+  const CompressionInput input{.mesh = contents.surface,
+                               .flags = flags,
+                               .area = area,
+                               .column_nodes = column_nodes,
+                               .columns =
+                                   [&](std::size_t first, std::size_t count) {
+                                     return store.read_columns(static_cast<int>(first), static_cast<int>(count));
+                                   },
+                               .accuracy = {scene.accuracy.rms, scene.accuracy.worst_column},
+                               .facts = scene_facts(scene, solve),
+                               .provenance = provenance};
+  auto built = build_model(input, [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
+  const auto& finest = built.report.levels.back();
+  progress.end(fmt::format("{:.1f} times fewer blocks, RMS error {:.2f} %, worst column {:.1f} %",
+                           static_cast<double>(finest.dense_blocks) / static_cast<double>(finest.kept_blocks),
+                           100 * finest.rms_error, 100 * finest.worst_column_error));
+  return built;
+}
+
+/// Fills in the work per step where the scene leaves it open: enough for a fresh factor at the finest level. Refuses a
+/// budget that could not hold the coarsest answer.
+void settle_step_work(const Scene& scene, ModelData& model) {
+  const AlignedBytes bytes(encode(model));
+  const auto opened = Model::open(bytes.span());
+  if (!opened) {
+    throw std::runtime_error("the model just written does not verify; this is a defect of greenloop itself");
+  }
+  const auto need = Elastostatic::required(opened.model, {.max_contacts = model.info.max_contacts});
+  if (!scene.budget.work) {
+    model.info.step_work = need.worst_work[opened.model.level_count() - 1];
+  } else if (model.info.step_work < need.least_work) {
+    throw std::runtime_error(fmt::format(
+        "[budget] work = {}: {} contacts need at least {} units at the coarsest level; raise work or lower contacts",
+        model.info.step_work, model.info.max_contacts, need.least_work));
+  }
+}
+
+}  // namespace
+
+std::filesystem::path build_record_path(const std::filesystem::path& model) {
+  return std::filesystem::path(model).replace_extension(".build.json");
+}
+
+json build_model_file(const BuildRequest& asked, ProgressBar& progress) {
+  BuildRequest request = asked;
+  const Scene scene = read_scene(request.scene);
+  if (request.store.empty()) {
+    request.store = scene.store.value_or(std::filesystem::path(request.model).replace_extension(".h5"));
+  }
+  const std::string mesh = read_text(scene.mesh.path);
+  const std::string wanted = request_fingerprint(scene, mesh);
+  if (auto record = up_to_date_record(request, wanted); !record.empty()) {
+    record["up_to_date"] = true;
+    return record;
+  }
+
+  auto store = open_or_create_store(request, scene, column_fingerprint(scene, mesh), progress);
+  json record = json::parse(store.contents().provenance);
+  record["scene"] = request.scene.filename().string();
+  record["solve"] = solve_missing_columns(store, progress);
+
+  json provenance = record;
+  provenance["tool"] = pipeline_version;
+  provenance["request"] = wanted;
+  provenance["scene_text"] = canonical_text(scene);
+  provenance["solve"].erase("factor_seconds");  // the model's bytes do not depend on the clock
+  provenance["solve"].erase("solve_seconds");
+  provenance["solve"].erase("columns_solved");
+  auto built = compress(scene, store, record["solve"], provenance.dump(), progress);
+  settle_step_work(scene, built.model);
+  const auto bytes = encode(built.model);
+  write_file(request.model, bytes);
+
+  record["compression"] = compression_record(built.report);
+  record["bytes"] = bytes.size();
+  record["step_work"] = built.model.info.step_work;
+  for (const auto& stage : progress.stages()) {
+    record["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
+  }
+  const std::string text = record.dump(2) + "\n";
+  write_file(build_record_path(request.model), {reinterpret_cast<const std::byte*>(text.data()),
+                                                reinterpret_cast<const std::byte*>(text.data()) + text.size()});
+  return record;
+}
+
+}  // namespace greenloop::offline
