@@ -38,11 +38,6 @@ std::string numbers(std::span<const std::byte> file) {
   return text;
 }
 
-std::vector<std::byte> bytes_of(std::string_view text) {
-  const auto bytes = std::as_bytes(std::span(text));
-  return {bytes.begin(), bytes.end()};
-}
-
 }  // namespace
 
 CArray c_array(std::span<const std::byte> file, std::string_view name, std::string_view header_file) {
@@ -70,8 +65,8 @@ void write_c_array(const std::filesystem::path& path, std::span<const std::byte>
   header.replace_extension(".h");
   source.replace_extension(".c");
   const CArray array = c_array(file, identifier_from(path.stem().string()), header.filename().string());
-  write_file(header, bytes_of(array.header));
-  write_file(source, bytes_of(array.source));
+  write_file(header, std::as_bytes(std::span(array.header)));
+  write_file(source, std::as_bytes(std::span(array.source)));
 }
 
 }  // namespace greenloop

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "formats/describe.hpp"
 
@@ -25,11 +26,13 @@ AlignedBytes load_file(const std::filesystem::path& path) {
   return bytes;
 }
 
-ModelFile open_model_file(const std::filesystem::path& path) {
-  ModelFile model{load_file(path), {}};
+ModelFile verified_model(AlignedBytes bytes, const std::string& name) {
+  ModelFile model{std::move(bytes), {}};
   const VerifyResult result = verify(model.bytes.span(), model.view);
-  if (!result.ok()) throw std::runtime_error(path.string() + ": " + describe(result));
+  if (!result.ok()) throw std::runtime_error(name + ": " + describe(result));
   return model;
 }
+
+ModelFile open_model_file(const std::filesystem::path& path) { return verified_model(load_file(path), path.string()); }
 
 }  // namespace greenloop

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "formats/aligned_bytes.hpp"
 #include "formats/verify.hpp"
@@ -16,7 +17,10 @@ struct ModelFile {
   ModelView view;
 };
 
-/// load_file and verify. Throws std::runtime_error naming the file and what is wrong with it. Offline only.
+/// Verifies `bytes`. Throws std::runtime_error with `name`, usually the file's, and what is wrong. Offline only.
+[[nodiscard]] ModelFile verified_model(AlignedBytes bytes, const std::string& name);
+
+/// load_file and verified_model. Throws std::runtime_error naming the file and what is wrong with it. Offline only.
 [[nodiscard]] ModelFile open_model_file(const std::filesystem::path& path);
 
 }  // namespace greenloop

@@ -270,7 +270,7 @@ std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint
   return model;
 }
 
-void write_file(const std::filesystem::path& path, const std::vector<std::byte>& bytes) {
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   std::filesystem::path part = path;
   part += ".part";
   std::ofstream file(part, std::ios::binary | std::ios::trunc);

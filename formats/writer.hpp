@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,7 @@ struct ModelData {
 [[nodiscard]] std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint32_t q);
 
 /// Writes through a temporary file beside `path` and a rename, so that `path` is never half written.
-void write_file(const std::filesystem::path& path, const std::vector<std::byte>& bytes);
+/// Throws std::runtime_error naming the file and the reason.
+void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace greenloop

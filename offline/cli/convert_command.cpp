@@ -1,0 +1,92 @@
+#include "offline/cli/convert_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "formats/c_array.hpp"
+#include "formats/exchange/surface_io.hpp"
+#include "formats/model_file.hpp"
+#include "formats/model_surface.hpp"
+#include "formats/writer.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+bool is_model(const std::string& extension) { return extension == ".gloop"; }
+bool is_c_source(const std::string& extension) { return extension == ".h" || extension == ".c"; }
+bool is_surface(const std::string& extension) {
+  constexpr std::array surfaces{".off", ".obj", ".stl", ".ply"};
+  return std::find(surfaces.begin(), surfaces.end(), extension) != surfaces.end();
+}
+
+[[noreturn]] void refuse(const ConvertArguments& arguments, const std::string& why) {
+  throw std::runtime_error(
+      fmt::format("convert {} to {}: {}", arguments.input.string(), arguments.output.string(), why));
+}
+
+ModelFile read_model(const ConvertArguments& arguments) {
+  ModelFile model = open_model_file(arguments.input);
+  if (!arguments.levels) return model;
+  if (*arguments.levels < 1 || *arguments.levels > model.view.levels) {
+    refuse(arguments, fmt::format("--levels {}, but the model has {}: name 1 to {}", *arguments.levels,
+                                  model.view.levels, model.view.levels));
+  }
+  const auto whole = model.bytes.span();
+  const auto cut = truncate_to_level({whole.begin(), whole.end()}, *arguments.levels - 1);
+  return verified_model(AlignedBytes(cut), arguments.output.string());
+}
+
+void convert_model(const ConvertArguments& arguments, const std::string& to) {
+  const ModelFile model = read_model(arguments);
+  if (is_c_source(to)) {
+    write_c_array(arguments.output, model.bytes.span());
+  } else if (is_surface(to)) {
+    write_surface(arguments.output, finest_surface(model.view));
+  } else if (is_model(to)) {
+    if (!arguments.levels) refuse(arguments, "name the mesh levels to keep with --levels");
+    write_file(arguments.output, model.bytes.span());
+  } else {
+    refuse(arguments, "a model becomes .h and .c, .gloop with --levels, or .off, .obj, .stl, .ply");
+  }
+}
+
+void convert_surface(const ConvertArguments& arguments, const std::string& to) {
+  if (!is_surface(to)) refuse(arguments, "a surface becomes .off, .obj, .stl or .ply; `greenloop build` makes models");
+  if (arguments.levels) refuse(arguments, "--levels is for models; leave it out");
+  write_surface(arguments.output, read_surface(arguments.input));
+}
+
+}  // namespace
+
+int run_convert(const ConvertArguments& arguments, std::ostream& out) {
+  const std::string from = arguments.input.extension().string(), to = arguments.output.extension().string();
+  if (is_model(from)) {
+    convert_model(arguments, to);
+  } else if (is_surface(from)) {
+    convert_surface(arguments, to);
+  } else {
+    refuse(arguments, fmt::format("do not know \"{}\"; expected .gloop, .off, .obj, .stl or .ply", from));
+  }
+  fmt::print(out, "wrote {}\n", arguments.output.string());
+  return 0;
+}
+
+void add_convert(CLI::App& parent, int& exit_code) {
+  CLI::App* command =
+      parent.add_subcommand("convert", "Model to C source, coarser model or surface; surface to another format");
+  const auto arguments = std::make_shared<ConvertArguments>();
+  command->add_option("input", arguments->input, "Model (.gloop) or surface (.off .obj .stl .ply)")->required();
+  command->add_option("-o,--output", arguments->output, "File to write; its extension says what")->required();
+  command->add_option("--levels", arguments->levels, "Keep this many mesh levels of the model, coarsest first");
+  command->callback([arguments, &exit_code] { exit_code = run_convert(*arguments, std::cout); });
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,151 @@
+#include "offline/cli/inspect_command.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <CLI/CLI.hpp>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/describe.hpp"
+#include "formats/model_file.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t dense_block_bytes = 9 * sizeof(float);
+
+Json sections_of(const ModelFile& model) {
+  Json sections = Json::array();
+  const std::byte* next = model.bytes.data() + sizeof(layout::Header);
+  for (std::uint32_t i = 0; i < model.view.header->section_count; ++i, next += sizeof(layout::SectionEntry)) {
+    layout::SectionEntry entry;
+    std::memcpy(&entry, next, sizeof(entry));
+    sections.push_back({{"kind", section_name(static_cast<layout::SectionKind>(entry.kind), entry.a, entry.b)},
+                        {"a", entry.a},
+                        {"b", entry.b},
+                        {"offset", entry.offset},
+                        {"bytes", entry.bytes}});
+  }
+  return sections;
+}
+
+Json levels_of(const ModelView& view) {
+  Json levels = Json::array();
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    const layout::Level& level = *view.level[c].counts;
+    levels.push_back({{"level", c},
+                      {"columns", level.column_count},
+                      {"kept_blocks", level.kept_blocks},
+                      {"dense_blocks", level.dense_blocks},
+                      {"rms_error", level.rms_error},
+                      {"worst_column_error", level.worst_column_error},
+                      {"force_error", level.force_error}});
+  }
+  return levels;
+}
+
+Json provenance_of(const ModelView& view) {
+  const std::string text(view.provenance.begin(), view.provenance.end());
+  const Json parsed = Json::parse(text, nullptr, false);
+  return parsed.is_discarded() ? Json(text) : parsed;
+}
+
+Json inspection_of(const ModelFile& model) {
+  const ModelView& view = model.view;
+  const layout::Info& info = *view.info;
+  const layout::Level& finest = *view.level[view.levels - 1].counts;
+  return {
+      {"version", fmt::format("{}.{}", view.header->major, view.header->minor)},
+      {"nodes", view.node_count},
+      {"domain_nodes", view.domain_count},
+      {"levels", view.levels},
+      {"complete_levels", info.levels},
+      {"bytes", model.bytes.size()},
+      {"dense_bytes", dense_block_bytes * finest.column_count * view.domain_count},
+      {"kept_blocks", finest.kept_blocks},
+      {"dense_blocks", finest.dense_blocks},
+      {"rms_error", finest.rms_error},
+      {"worst_column_error", finest.worst_column_error},
+      {"epsilon", info.epsilon},
+      {"store_asymmetry", info.store_asymmetry},
+      {"material", {{"young", info.young}, {"poisson", info.poisson}}},
+      {"box", {{"min", info.box_min}, {"max", info.box_max}}},
+      {"scene", {{"rate", info.rate}, {"max_contacts", info.max_contacts}, {"step_work", info.step_work}}},
+      {"units",
+       {{"length", "m"},
+        {"area", "m^2"},
+        {"force", "N"},
+        {"compliance", "m/N"},
+        {"young", "Pa"},
+        {"rate", "Hz"},
+        {"step_work", "multiply-adds"}}},
+      {"constraint_levels", levels_of(view)},
+      {"provenance", provenance_of(view)},
+      {"sections", sections_of(model)},
+  };
+}
+
+std::string percent(const Json& value) { return fmt::format("{:.3g} %", 100 * value.get<double>()); }
+
+std::string ratio(const Json& of, const Json& to) { return fmt::format("{:.1f}", of.get<double>() / to.get<double>()); }
+
+std::string bytes_text(const Json& value) {
+  const auto bytes = value.get<double>();
+  if (bytes < 1e3) return fmt::format("{:.0f} B", bytes);
+  return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3) : fmt::format("{:.1f} MB", bytes / 1e6);
+}
+
+void print_table(const std::filesystem::path& file, const Json& found, std::ostream& out) {
+  const auto row = [&](std::string_view name, const std::string& value) {
+    fmt::print(out, "  {:<20}{}\n", name, value);
+  };
+  const auto& material = found["material"];
+  const auto& scene = found["scene"];
+  fmt::print(out, "{}  (format {})\n", file.string(), found["version"].get<std::string>());
+  row("nodes", fmt::format("{}, {} of them in the domain", found["nodes"].dump(), found["domain_nodes"].dump()));
+  row("levels", fmt::format("{} of {}", found["levels"].dump(), found["complete_levels"].dump()));
+  row("bytes", fmt::format("{}: {} times fewer than the dense matrix ({})", bytes_text(found["bytes"]),
+                           ratio(found["dense_bytes"], found["bytes"]), bytes_text(found["dense_bytes"])));
+  row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
+                                 ratio(found["dense_blocks"], found["kept_blocks"])));
+  row("material",
+      fmt::format("Young's modulus {} Pa, Poisson's ratio {}", material["young"].dump(), material["poisson"].dump()));
+  row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),
+                           scene["max_contacts"].dump(), scene["step_work"].dump()));
+  fmt::print(out, "\n  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", "level", "columns", "kept blocks", "dense",
+             "RMS error", "worst column", "force error");
+  for (const auto& level : found["constraint_levels"]) {
+    fmt::print(out, "  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", level["level"].dump(), level["columns"].dump(),
+               level["kept_blocks"].dump(), level["dense_blocks"].dump(), percent(level["rms_error"]),
+               percent(level["worst_column_error"]), percent(level["force_error"]));
+  }
+  fmt::print(out, "\n  provenance: {}\n", found["provenance"].dump(2));
+}
+
+}  // namespace
+
+int run_inspect(const InspectArguments& arguments, std::ostream& out) {
+  const Json found = inspection_of(open_model_file(arguments.file));
+  if (arguments.json) {
+    out << found.dump(2) << '\n';
+  } else {
+    print_table(arguments.file, found, out);
+  }
+  return 0;
+}
+
+void add_inspect(CLI::App& parent, int& exit_code) {
+  CLI::App* command = parent.add_subcommand("inspect", "Say what a model file holds");
+  const auto arguments = std::make_shared<InspectArguments>();
+  command->add_option("model", arguments->file, "Model file (.gloop)")->required();
+  command->add_flag("--json", arguments->json, "Print JSON, with every section");
+  command->callback([arguments, &exit_code] { exit_code = run_inspect(*arguments, std::cout); });
+}
+
+}  // namespace greenloop::offline

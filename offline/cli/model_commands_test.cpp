@@ -1,0 +1,219 @@
+// inspect, verify and convert, through the functions that the program registers.
+
+#include <doctest/doctest.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "formats/exchange/surface_io.hpp"
+#include "formats/model_file.hpp"
+#include "formats/testing/model_mutant.hpp"
+#include "formats/testing/synthetic_model.hpp"
+#include "offline/cli/convert_command.hpp"
+#include "offline/cli/inspect_command.hpp"
+#include "offline/cli/verify_command.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+using Json = nlohmann::json;
+
+// a folder with sphere.gloop, gone with the test
+class Folder {
+ public:
+  explicit Folder(const std::string& name, const SyntheticOptions& options = {})
+      : path_(std::filesystem::temp_directory_path() / ("greenloop_" + name)) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+    write_file(path_ / "sphere.gloop", encode(synthetic_model(options)));
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() { std::filesystem::remove_all(path_); }
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+Json inspect_json(const std::filesystem::path& file) {
+  std::ostringstream out;
+  CHECK(run_inspect({file, true}, out) == 0);
+  return Json::parse(out.str());
+}
+
+std::string convert_refusal(const ConvertArguments& arguments) {
+  std::ostringstream out;
+  try {
+    run_convert(arguments, out);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
+  const Folder folder("inspect_json", {.levels = 3, .coarsest_constraint_level = 1});
+  const Json found = inspect_json(folder / "sphere.gloop");
+  CHECK(found["version"] == "1.0");
+  CHECK(found["nodes"] == 66);
+  CHECK(found["domain_nodes"] == 41);
+  CHECK(found["levels"] == 3);
+  CHECK(found["bytes"] == std::filesystem::file_size(folder / "sphere.gloop"));
+  CHECK(found["dense_blocks"] == 41 * 41);
+  CHECK(found["dense_bytes"] == 36 * 41 * 41);
+  CHECK(found["kept_blocks"] > 41);
+  CHECK(found["kept_blocks"] < 41 * 41);
+  CHECK(found["rms_error"] > 0);
+  CHECK(found["rms_error"] < 0.03);
+  CHECK(found["worst_column_error"] > 0);
+  CHECK(found["material"] == Json{{"young", 1e5}, {"poisson", 0.4}});
+  CHECK(found["provenance"]["generator"] == "synthetic sphere");
+  CHECK(found["units"]["compliance"] == "m/N");
+
+  REQUIRE(found["constraint_levels"].size() == 2);
+  const Json& finest = found["constraint_levels"][1];
+  CHECK(finest["level"] == 2);
+  CHECK(finest["columns"] == 41);
+  CHECK(finest["rms_error"] == found["rms_error"]);
+  CHECK(finest["worst_column_error"] == found["worst_column_error"]);
+  CHECK(finest["kept_blocks"] == found["kept_blocks"]);
+  CHECK(finest["dense_blocks"] == found["dense_blocks"]);
+  CHECK(finest.contains("force_error"));
+
+  // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 x (Columns, 3 Representatives, 3 Blocks)
+  REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 * 7);
+  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 832}, {"bytes", 256}});
+  CHECK(found["sections"].back()["kind"] == "Blocks(2, 1)");
+}
+
+TEST_CASE("inspect: the table for people says the same") {
+  const Folder folder("inspect_text");
+  std::ostringstream out;
+  CHECK(run_inspect({folder / "sphere.gloop", false}, out) == 0);
+  for (const char* part : {"66, 41 of them in the domain", "3 of 3", "times fewer than the dense matrix (60.5 kB)",
+                           "Young's modulus 100000.0 Pa", "worst column", "synthetic sphere"}) {
+    CAPTURE(part);
+    CHECK(out.str().find(part) != std::string::npos);
+  }
+}
+
+TEST_CASE("inspect: provenance that is not JSON is shown as text") {
+  const Folder folder("inspect_provenance");
+  ModelData data = synthetic_model({.levels = 1});
+  data.provenance = "by hand";
+  write_file(folder / "plain.gloop", encode(data));
+  CHECK(inspect_json(folder / "plain.gloop")["provenance"] == "by hand");
+}
+
+TEST_CASE("inspect: a file that is not valid is an error that names it") {
+  const Folder folder("inspect_wrong");
+  write_file(folder / "wrong.gloop", std::as_bytes(std::span("nothing like a model")));
+  std::ostringstream out;
+  CHECK_THROWS_AS(run_inspect({folder / "wrong.gloop", true}, out), std::runtime_error);
+  CHECK(out.str().empty());
+}
+
+TEST_CASE("verify: exit code 0 only for a valid file, and the first fault in words and JSON") {
+  const Folder folder("verify_command");
+  std::ostringstream good, bad, absent;
+  CHECK(run_verify({folder / "sphere.gloop", true}, good) == 0);
+  CHECK(Json::parse(good.str())["ok"] == true);
+  CHECK(Json::parse(good.str())["rule"] == "ok");
+
+  ModelMutant mutant(SyntheticOptions{});
+  mutant.records<layout::NodeRecord>(layout::SectionKind::nodes, 1)[2].area = -3;
+  (void)mutant.verdict();
+  write_file(folder / "bad.gloop", mutant.bytes());
+  CHECK(run_verify({folder / "bad.gloop", true}, bad) == 1);
+  const Json verdict = Json::parse(bad.str());
+  CHECK(verdict["ok"] == false);
+  CHECK(verdict["rule"] == "out_of_range");
+  CHECK(verdict["section"] == "Nodes(1)");
+  CHECK(verdict["field"] == "area");
+  CHECK(verdict["index"] == 2);
+  CHECK(verdict["value"] == -3);
+  CHECK(verdict["message"].get<std::string>().find("bad.gloop: Nodes(1), field `area`, index 2") != std::string::npos);
+
+  CHECK(run_verify({folder / "absent.gloop", true}, absent) == 1);
+  CHECK(Json::parse(absent.str())["rule"] == "unreadable");
+  std::ostringstream text;
+  CHECK(run_verify({folder / "sphere.gloop", false}, text) == 0);
+  CHECK(text.str() == (folder / "sphere.gloop").string() + ": the file is valid\n");
+}
+
+TEST_CASE("convert: a model becomes C source, header and definition") {
+  const Folder folder("convert_c");
+  std::ostringstream out;
+  CHECK(run_convert({folder / "sphere.gloop", folder / "left-hand.h", {}}, out) == 0);
+  const auto text = [&](const std::string& name) {
+    const AlignedBytes bytes = load_file(folder / name);
+    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  };
+  CHECK(text("left-hand.h").find("extern const unsigned char left_hand[") != std::string::npos);
+  CHECK(text("left-hand.c").find("#include \"left-hand.h\"") == 0);
+}
+
+TEST_CASE("convert: a model becomes a coarser model") {
+  const Folder folder("convert_cut");
+  std::ostringstream out;
+  CHECK(run_convert({folder / "sphere.gloop", folder / "coarse.gloop", 2}, out) == 0);
+  const ModelFile model = open_model_file(folder / "coarse.gloop");
+  CHECK(model.view.levels == 2);
+  CHECK(model.view.node_count == 18);
+  const Json found = inspect_json(folder / "coarse.gloop");
+  CHECK(found["complete_levels"] == 3);
+  CHECK(found["constraint_levels"].size() == 2);
+}
+
+TEST_CASE("convert: a model becomes its surface, at any level, and that another format") {
+  const Folder folder("convert_surface");
+  std::ostringstream out;
+  CHECK(run_convert({folder / "sphere.gloop", folder / "fine.obj", {}}, out) == 0);
+  CHECK(run_convert({folder / "sphere.gloop", folder / "base.off", 1}, out) == 0);
+  CHECK(run_convert({folder / "fine.obj", folder / "fine.ply", {}}, out) == 0);
+  const TriangleMesh fine = read_surface(folder / "fine.ply");
+  CHECK(fine.vertices.size() == 66);
+  CHECK(fine.triangles.size() == 128);
+  CHECK(read_surface(folder / "base.off").triangles.size() == 8);
+  CHECK(read_surface(folder / "fine.obj").vertices == fine.vertices);
+}
+
+TEST_CASE("convert: refuses what makes no sense, and says what would") {
+  const Folder folder("convert_refuse");
+  const auto sphere = folder / "sphere.gloop", obj = folder / "a.obj";
+  std::ostringstream out;
+  REQUIRE(run_convert({sphere, obj, {}}, out) == 0);
+  CHECK(convert_refusal({sphere, folder / "b.gloop", {}}).find("--levels") != std::string::npos);
+  CHECK(convert_refusal({sphere, folder / "b.gloop", 4}).find("--levels 4, but the model has 3") != std::string::npos);
+  CHECK(convert_refusal({sphere, folder / "b.gloop", 0}).find("--levels 0") != std::string::npos);
+  CHECK(convert_refusal({sphere, folder / "b.xyz", {}}).find("a model becomes") != std::string::npos);
+  CHECK(convert_refusal({obj, folder / "b.gloop", {}}).find("greenloop build") != std::string::npos);
+  CHECK(convert_refusal({obj, folder / "b.off", 1}).find("--levels is for models") != std::string::npos);
+  CHECK(convert_refusal({folder / "a.xyz", obj, {}}).find("do not know \".xyz\"") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "b.gloop"));
+}
+
+TEST_CASE("the commands register themselves and set the exit code") {
+  const Folder folder("register");
+  CLI::App app;
+  int exit_code = 7;
+  add_inspect(app, exit_code);
+  add_verify(app, exit_code);
+  add_convert(app, exit_code);
+  app.parse("verify " + (folder / "absent.gloop").string() + " --json", false);
+  CHECK(exit_code == 1);
+  app.parse("convert " + (folder / "sphere.gloop").string() + " -o " + (folder / "c.gloop").string() + " --levels 1",
+            false);
+  CHECK(exit_code == 0);
+  CHECK(std::filesystem::exists(folder / "c.gloop"));
+  CHECK_THROWS_AS(app.parse("inspect", false), CLI::RequiredError);
+}
+
+}  // namespace
+}  // namespace greenloop::offline

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+
+namespace CLI {
+class App;
+}
+
+namespace greenloop::offline {
+
+/// `greenloop verify MODEL [--json]`
+struct VerifyArguments {
+  std::filesystem::path file;
+  bool json = false;
+};
+
+/// Prints whether a model file is valid and, if not, the first rule it breaks, where, and how to mend it.
+/// Returns 0 if the file is valid, 1 if it is not or cannot be read.
+int run_verify(const VerifyArguments& arguments, std::ostream& out);
+
+/// Adds the command; it sets `exit_code` when it runs. Both must outlive the parsing.
+void add_verify(CLI::App& parent, int& exit_code);
+
+}  // namespace greenloop::offline
