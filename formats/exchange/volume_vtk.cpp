@@ -145,7 +145,7 @@ std::string_view next_tag(MeshText& text) {
     const bool comment = text.rest().starts_with("!--");
     const auto end = text.rest().find(comment ? "-->" : ">");
     if (end == std::string_view::npos) {
-      text.fail("<" + std::string(text.rest().substr(0, 20)), "the end of this tag");
+      text.fail(text.rest(), "the end of this tag");
     }
     const auto tag = text.rest().substr(0, end);
     text.skip_bytes(end + (comment ? 3 : 1));
