@@ -207,6 +207,7 @@ void MeshText::skip_bytes(std::size_t bytes) {
   for (; position_ < end; ++position_) {
     line_ += content_[position_] == '\n' ? 1 : 0;
   }
+  token_line_ = line_;
 }
 
 void MeshText::fail(std::string_view found, std::string_view expected) const {

@@ -72,6 +72,9 @@ class MeshText {
   /// Goes forward by so many bytes, at most to the end, counting lines.
   void skip_bytes(std::size_t bytes);
 
+  /// Of the token read last, from 1.
+  [[nodiscard]] std::size_t line_number() const { return token_line_; }
+
   /// Throws for the token read last.
   [[noreturn]] void fail(std::string_view found, std::string_view expected) const;
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <string>
 #include <string_view>
 
 #include "offline/scene/spelling.hpp"
@@ -16,7 +17,7 @@ void check_refused(std::string_view text, Dimension dimension, std::string_view 
     static_cast<void>(parse_quantity(text, dimension));
     FAIL("accepted: " << text);
   } catch (const UnitError& error) {
-    CAPTURE(error.what());
+    CAPTURE(std::string(error.what()));
     CHECK(std::string_view(error.what()).find(message) != std::string_view::npos);
   }
 }
