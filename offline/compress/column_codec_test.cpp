@@ -30,7 +30,7 @@ const Fixture& fixture() {
 TEST_CASE("a transformed column knows its values, norms and largest block") {
   const auto& f = fixture();
   const auto column = f.column(17);
-  const Eigen::MatrixXd exact = f.body.compliance.middleCols<3>(3 * 17);
+  const Eigen::MatrixXd exact = f.body.compliance.middleCols<3>(Eigen::Index{3} * 17);
   double largest = 0;
   for (std::size_t i = 0; i < f.wavelet.rows(); ++i) {
     const Eigen::Matrix3d block = exact.middleRows<3>(static_cast<Eigen::Index>(3 * i));

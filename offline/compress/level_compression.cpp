@@ -1,6 +1,7 @@
 #include "offline/compress/level_compression.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -76,7 +77,11 @@ CompressedLevel compress_level(ColumnCoder& coder, const ConstraintLevel& level,
   for (int pass = 0; pass < passes; ++pass) {
     const auto encoding = search_encoding(coder, sample, aim, wide_levels);
     if (!encoding) break;
-    auto coded = code_all(coder, level, source, *encoding, accuracy, progress);
+    // how many passes there will be is not known: each gets half of what is left of the bar
+    const Progress halved = [&](double fraction, std::string_view stage) {
+      progress(1.0 - std::ldexp(1.0 - 0.5 * fraction, -pass), stage);
+    };
+    auto coded = code_all(coder, level, source, *encoding, accuracy, halved);
     const double rms = coded.tally.rms();
     if (coded.tally.worst_column > accuracy.worst_column) {
       ++wide_levels;  // some column outside the sample needs finer quanta
@@ -89,6 +94,7 @@ CompressedLevel compress_level(ColumnCoder& coder, const ConstraintLevel& level,
     aim.rms *= accuracy.rms / rms * 0.997;
   }
   if (best.blocks.empty()) unreachable_accuracy(level, accuracy);
+  progress(1.0, "code columns");
   return best;
 }
 

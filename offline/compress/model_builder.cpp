@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -121,7 +122,9 @@ void store_level(ModelData& model, const SemiRegularMesh& mesh, const Constraint
   auto& data = model.levels[level.level];
   data.counts.rms_error = static_cast<float>(report.rms_error);
   data.counts.worst_column_error = static_cast<float>(report.worst_column_error);
-  data.counts.force_error = static_cast<float>(report.force_error);
+  // a model file holds finite numbers only
+  const double largest = static_cast<double>(std::numeric_limits<float>::max());
+  data.counts.force_error = static_cast<float>(std::min(report.force_error, largest));
   data.columns = level.columns;
   data.blocks = std::move(compressed.blocks);
   std::size_t begin = 0;

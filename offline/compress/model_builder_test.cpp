@@ -2,13 +2,14 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "formats/aligned_bytes.hpp"
 #include "formats/describe.hpp"
 #include "offline/compress/force_error.hpp"
 #include "offline/compress/hierarchy.hpp"
+#include "offline/compress/node_order.hpp"
 #include "offline/compress/test_body.hpp"
 
 namespace greenloop::offline {
@@ -165,7 +166,7 @@ TEST_CASE("constraint levels start where asked and where columns exist; progress
   double last = 0;
   bool forward = true;
   const auto model = build_model(input, [&](double fraction, std::string_view) {
-    forward = forward && fraction >= 0 && fraction <= 1;
+    forward = forward && fraction >= last && fraction <= 1;
     last = fraction;
   });
   CHECK(forward);
@@ -174,6 +175,66 @@ TEST_CASE("constraint levels start where asked and where columns exist; progress
   CHECK(model.model.levels[0].blocks.empty());
   CHECK_FALSE(model.model.levels[1].columns.empty());
   CHECK(model.model.info.coarsest_constraint_level == 1);
+}
+
+TEST_CASE("only touched columns and needed rows are stored") {
+  const auto& whole = body();
+  auto flags = whole.flags;
+  for (std::size_t node = 0; node < flags.size(); ++node) {
+    const auto& p = whole.mesh.positions[node];
+    flags[node] &= layout::node_fixed;
+    if (p.z() > 0.2) flags[node] |= layout::node_read;
+    if (p.z() > 0.4) flags[node] |= layout::node_touchable;
+  }
+  flags = mark_domain(whole.mesh, flags);
+  const auto ordered = order_nodes(whole.mesh, flags);
+  flags = ordered.reorder(flags);
+  const auto area = ordered.reorder(whole.area);
+  std::vector<std::size_t> columns;
+  std::vector<Eigen::Index> rows;  // of the whole body's compliance
+  for (std::size_t node = 0; node < flags.size(); ++node) {
+    if ((flags[node] & layout::node_domain) == 0) continue;
+    const auto row = std::lower_bound(whole.column_nodes.begin(), whole.column_nodes.end(), ordered.source[node]);
+    rows.push_back(row - whole.column_nodes.begin());
+    if ((flags[node] & layout::node_touchable) != 0) columns.push_back(node);
+  }
+  REQUIRE(columns.size() > 50);
+  REQUIRE(rows.size() > columns.size() + 50);
+  REQUIRE(rows.size() + 50 < whole.column_nodes.size());
+
+  const ColumnSource source = [&](std::size_t first, std::size_t count) {
+    Eigen::MatrixXd block(static_cast<Eigen::Index>(3 * rows.size()), static_cast<Eigen::Index>(3 * count));
+    for (std::size_t j = 0; j < count; ++j) {
+      const auto column =
+          std::lower_bound(whole.column_nodes.begin(), whole.column_nodes.end(), ordered.source[columns[first + j]]) -
+          whole.column_nodes.begin();
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        block.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) =
+            whole.compliance.block<3, 3>(3 * rows[i], 3 * column);
+      }
+    }
+    return block;
+  };
+  const auto part = build_model({ordered.mesh, flags, area, columns, source, {0.02, 0.05}, facts(), ""}, {});
+  CHECK(part.report.levels.back().columns == columns.size());
+  CHECK(part.report.levels.back().dense_blocks == columns.size() * rows.size());
+  CHECK(part.report.levels.back().rms_error <= 0.02);
+  CHECK(part.report.levels.back().worst_column_error <= 0.05);
+  const auto file = encode(part.model);
+  ModelView view;
+  AlignedBytes aligned(file);
+  const auto verdict = verify(aligned.span(), view);
+  CHECK_MESSAGE(verdict.ok(), describe(verdict));
+  CHECK(view.domain_count == rows.size());
+}
+
+TEST_CASE("a mesh of one level is stored without wavelets") {
+  const auto b = test::make_body(0);
+  const auto model = build_model(input_of(b, {1e-3, 1e-3}), {});
+  REQUIRE(model.report.levels.size() == 1);
+  CHECK(model.report.levels[0].kept_blocks == b.column_nodes.size() * b.column_nodes.size());
+  CHECK(model.report.levels[0].rms_error <= 1e-3);
+  CHECK(encode(model.model).size() > 0);
 }
 
 TEST_CASE("input that does not fit together is refused") {
