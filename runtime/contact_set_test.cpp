@@ -40,7 +40,8 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
   for (int trial = 0; trial < 50; ++trial) {
     std::shuffle(nodes.begin(), nodes.end(), random);
     std::vector<Contact> contacts;
-    for (std::size_t i = 0; i < 1 + random() % 40; ++i) {
+    const std::size_t count = 1 + random() % 40;
+    for (std::size_t i = 0; i < count; ++i) {
       contacts.push_back({nodes[i], {static_cast<float>(i), 1.0F, -2.0F}});
     }
     Memory memory(view, contacts.size());

@@ -88,7 +88,7 @@ TEST_CASE("a point functional gives what the inverse transform gives there, at e
   std::uint32_t most_neighbours[layout::max_levels] = {};
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     most_neighbours[q] = count_lifting(view, q).most_neighbours;
-    CHECK(most_neighbours[q] == 6);
+    CHECK(most_neighbours[q] == (q == 1 ? 4 : 6));  // an octahedron's corners have four edges
   }
   std::mt19937_64 random(3);
   std::vector<Float4> coefficients(view.node_count);
