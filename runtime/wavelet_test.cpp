@@ -77,7 +77,7 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
     for (std::size_t r = 0; r < 3; ++r) {
       CHECK(std::abs(double{field[node][r]} - x[node][r]) <= 8 * view.levels * 0x1p-24);
     }
-    CHECK(field[node][3] == 0);
+    CHECK(float{field[node][3]} == 0);
   }
 }
 
@@ -130,7 +130,7 @@ TEST_CASE("details above the field level are interpolated") {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
       const std::uint32_t* parent = level.refinement[i].parent;
-      CHECK(field[level.node_begin + i][1] == 0.5F * (field[parent[0]][1] + field[parent[1]][1]));
+      CHECK(float{field[level.node_begin + i][1]} == 0.5F * (field[parent[0]][1] + field[parent[1]][1]));
     }
   }
 }
