@@ -2,11 +2,15 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
+#include "runtime/domain.hpp"
 #include "runtime/testing/dense_reference.hpp"
 #include "runtime/testing/test_body.hpp"
 
@@ -68,6 +72,288 @@ TEST_CASE("every constraint level agrees with a dense double-precision solution 
     }
     CHECK((levels_seen & 1U << (model.view().levels - 1)) != 0);
   }
+}
+
+TEST_CASE("dense 16-bit columns reproduce the exact compliance to quantisation error") {
+  const TestModel model({.levels = 3, .value_bytes = 2, .dense = true});
+  const ModelView& view = model.view();
+  TestBody body(model, {.max_contacts = 8, .cached_factors = 1});
+  // the compliance that formats/testing/synthetic_model.hpp describes
+  Eigen::Matrix3d coupling;
+  coupling << 1, 0.2, 0.1, 0.2, 0.9, 0.15, 0.1, 0.15, 0.8;
+  const auto position = [&view](std::uint32_t node) {
+    const LevelView& level = view.level[level_of(view, node)];
+    const float* x = level.nodes[node - level.node_begin].position;
+    return Eigen::Vector3d(x[0], x[1], x[2]);
+  };
+  const auto compliance = [&](std::uint32_t i, std::uint32_t j) -> Eigen::Matrix3d {
+    return 1e-3 * std::exp(-(position(i) - position(j)).norm() / 0.05) * coupling;
+  };
+  std::mt19937_64 random(5);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto contacts = random_contacts(random, model.touchable(), 8);
+    REQUIRE(body.step(contacts, any_budget).status == Status::ok);
+    const auto n = static_cast<Eigen::Index>(contacts.size());
+    Eigen::MatrixXd a(3 * n, 3 * n);
+    Eigen::VectorXd prescribed(3 * n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        a.block<3, 3>(3 * i, 3 * j) = compliance(contacts[i].node, contacts[j].node);
+      }
+      for (Eigen::Index r = 0; r < 3; ++r) {
+        prescribed(3 * i + r) = contacts[i].displacement[r];
+      }
+    }
+    const Eigen::VectorXd force = a.ldlt().solve(prescribed);
+    const double condition = a.norm() * a.inverse().norm();
+    // a coefficient is off by half a quantum; lifting and prediction add those of at most four coefficients a level
+    const double quantum = 0.5 / 32767;
+    const double tolerance = condition * (4 * view.levels * quantum + 60 * 0x1p-24);
+    CHECK(relative_error(body.force(), 3, force) <= tolerance);
+    Eigen::VectorXd displacement = Eigen::VectorXd::Zero(3 * view.node_count);
+    for (std::uint32_t node = 0; node < view.node_count; ++node) {
+      for (Eigen::Index j = 0; in_domain(view, node) && j < n; ++j) {
+        displacement.segment<3>(3 * node) += compliance(node, contacts[j].node) * force.segment<3>(3 * j);
+      }
+    }
+    CHECK(relative_error(body.field(), 4, displacement) <= tolerance);
+  }
+}
+
+TEST_CASE("budgets: the level is the finest that fits, never a unit over, and finer with more") {
+  const TestModel model({.levels = 4});
+  for (const bool with_field : {true, false}) {
+    TestBody body(model, {.max_contacts = 12, .cached_factors = 2});
+    const Requirement& need = body.requirement();
+    std::mt19937_64 random(6);
+    const auto contacts = random_contacts(random, model.touchable(), 12);
+    std::uint32_t rank = 0;
+    std::uint32_t seen = 0;
+    for (std::uint64_t budget = need.least_work; budget <= need.worst_work[3] + 1000; budget += 997) {
+      // a body of its own: no factor is cached
+      TestBody fresh(model, {.max_contacts = 12, .cached_factors = 2});
+      const StepReport report = fresh.step(contacts, budget, with_field);
+      REQUIRE(report.status <= Status::coarser);
+      CHECK(report.work <= budget);
+      CHECK(report.work <= need.worst_work[report.constraint_level]);
+      CHECK((report.status == Status::ok) == (report.constraint_level == 3 && report.field_level == 3));
+      CHECK(report.error == model.view().level[report.constraint_level].counts->worst_column_error);
+      const std::uint32_t now = 4 * report.constraint_level + report.field_level;
+      CHECK(now >= rank);
+      rank = now;
+      seen |= 1U << report.constraint_level;
+    }
+    CHECK(rank == 15);
+    CHECK(seen == 0xf);
+    // one unit less than a level costs is a coarser level
+    const StepReport whole = TestBody(model, {.max_contacts = 12}).step(contacts, any_budget, with_field);
+    CHECK(TestBody(model, {.max_contacts = 12}).step(contacts, whole.work, with_field).constraint_level == 3);
+    CHECK(TestBody(model, {.max_contacts = 12}).step(contacts, whole.work - 1, with_field).constraint_level == 2);
+  }
+}
+
+TEST_CASE("a field cut off at a level keeps the coarse part and interpolates the rest") {
+  const TestModel model({.levels = 5, .coarsest_constraint_level = 4, .touchable_above = 0.8});
+  TestBody body(model, {.max_contacts = 1, .cached_factors = 1});
+  std::mt19937_64 random(8);
+  const auto contacts = random_contacts(random, model.touchable(), 1);
+  const StepReport report = body.step(contacts, body.requirement().least_work);
+  CHECK(report.status == Status::coarser);
+  CHECK(report.constraint_level == 4);
+  REQUIRE(report.field_level < 4);
+  const ModelView& view = model.view();
+  for (std::uint32_t q = report.field_level + 1; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      const std::uint32_t* parent = level.refinement[i].parent;
+      for (std::size_t r = 0; r < 4; ++r) {
+        CHECK(body.field()[4 * (level.node_begin + i) + r] ==
+              0.5F * (body.field()[4 * parent[0] + r] + body.field()[4 * parent[1] + r]));
+      }
+    }
+  }
+}
+
+TEST_CASE("a factor is reused bit for bit, in any order of the contacts") {
+  const TestModel model({.levels = 4});
+  TestBody body(model, {.max_contacts = 10, .cached_factors = 3});
+  std::mt19937_64 random(9);
+  auto contacts = random_contacts(random, model.touchable(), 10);
+  const StepReport fresh = body.step(contacts, any_budget);
+  CHECK_FALSE(fresh.cached_factor);
+  const std::vector<float> field(body.field().begin(), body.field().end());
+  std::reverse(contacts.begin(), contacts.end());
+  const StepReport cached = body.step(contacts, any_budget);
+  CHECK(cached.cached_factor);
+  CHECK(cached.work < fresh.work);
+  CHECK(std::equal(field.begin(), field.end(), body.field().begin()));
+  // an unrelated set comes between
+  body.step(random_contacts(random, model.touchable(), 3), any_budget);
+  CHECK(body.step(contacts, any_budget).cached_factor);
+}
+
+TEST_CASE("released: no contact, no field") {
+  const TestModel model({.levels = 3});
+  TestBody body(model, {.max_contacts = 4, .cached_factors = 1});
+  std::mt19937_64 random(10);
+  body.step(random_contacts(random, model.touchable(), 4), any_budget);
+  const StepReport report = body.step({}, body.requirement().least_work);
+  CHECK(report.status == Status::ok);
+  CHECK(std::all_of(body.field().begin(), body.field().end(), [](float u) { return u == 0; }));
+}
+
+// a body that has answered once, and what it must still show after a refusal
+struct Held {
+  explicit Held(const TestModel& model) : body(model, {.max_contacts = 4, .cached_factors = 2}) {
+    std::mt19937_64 random(11);
+    contacts = random_contacts(random, model.touchable(), 4);
+    CHECK(body.step(contacts, any_budget).status == Status::ok);
+    force.assign(body.force().begin(), body.force().end());
+    field.assign(body.field().begin(), body.field().end());
+  }
+  // refused with `status`, nothing written, and the next good step is answered as before
+  void refuses(std::span<const Contact> bad, Status status, std::uint64_t work = any_budget) {
+    const StepReport report = body.step(bad, work);
+    CHECK(report.status == status);
+    CHECK(report.work <= body.requirement().worst_work[2]);
+    CHECK(std::equal(field.begin(), field.end(), body.field().begin()));
+    if (bad.size() == contacts.size()) {
+      CHECK(std::equal(force.begin(), force.end(), body.force().begin()));
+    }
+    CHECK(body.step(contacts, any_budget).status == Status::ok);
+    CHECK(std::equal(field.begin(), field.end(), body.field().begin()));
+  }
+  TestBody body;
+  std::vector<Contact> contacts;
+  std::vector<float> force, field;
+};
+
+TEST_CASE("refusals have a name, write nothing and leave the body usable") {
+  const TestModel model({.levels = 3});
+  Held held(model);
+  auto bad = held.contacts;
+  bad[3].displacement[1] = std::numeric_limits<float>::quiet_NaN();
+  held.refuses(bad, Status::held_not_finite);
+  bad = held.contacts;
+  bad[3].node = model.view().node_count;
+  held.refuses(bad, Status::held_out_of_range);
+  bad = held.contacts;
+  bad[0].node = bad[3].node;
+  held.refuses(bad, Status::held_duplicate);
+  bad = held.contacts;
+  bad[2].node = model.view().node_count - 1;
+  held.refuses(bad, Status::held_not_touchable);
+  bad = held.contacts;
+  bad[1].displacement[2] = std::numeric_limits<float>::max();
+  held.refuses(bad, Status::held_overflow);
+  held.refuses(held.contacts, Status::held_over_budget, held.body.requirement().least_work - 1);
+  held.refuses(held.contacts, Status::held_over_budget, 0);
+  bad = held.contacts;
+  const auto nodes = model.touchable();
+  bad.push_back({*std::find_if(nodes.begin(), nodes.end(),
+                               [&](std::uint32_t node) {
+                                 return std::none_of(bad.begin(), bad.end(),
+                                                     [node](const Contact& c) { return c.node == node; });
+                               }),
+                 {}});
+  held.refuses(bad, Status::held_out_of_range);
+}
+
+TEST_CASE("response buffers of the wrong size or alignment are refused") {
+  const TestModel model({.levels = 2});
+  TestBody body(model, {.max_contacts = 2, .cached_factors = 1});
+  const std::vector<Contact> contacts = {{model.touchable()[0], {1e-3F, 0, 0}}};
+  std::vector<float> force(3, 42.0F);
+  const auto field = body.field();
+  const auto status = [&](std::span<float> forces, std::span<float> displacement) {
+    return body.body().step(contacts, {any_budget}, {forces, displacement}).status;
+  };
+  CHECK(status(std::span(force).first(2), field) == Status::held_response_size);
+  CHECK(status({}, field) == Status::held_response_size);
+  CHECK(status(force, field.first(field.size() - 1)) == Status::held_response_size);
+  AlignedBytes crooked(field.size_bytes() + 64);
+  CHECK(status(force, {reinterpret_cast<float*>(crooked.data() + 4), field.size()}) == Status::held_response_size);
+  CHECK(std::all_of(force.begin(), force.end(), [](float f) { return f == 42.0F; }));
+  CHECK(status(force, {}) == Status::ok);
+  CHECK(status(force, field) == Status::ok);
+}
+
+TEST_CASE("a singular capacitance matrix is refused, not answered with garbage") {
+  ModelData data = synthetic_model({.levels = 3});
+  for (BlocksData& blocks : data.levels[2].blocks) {
+    blocks.scale[5] = 0;
+  }
+  const std::uint32_t node = data.levels[2].columns[5].node;
+  const TestModel model(encode(data));
+  Held held(model);
+  held.refuses(std::vector<Contact>{{node, {1e-3F, 0, 0}}}, Status::held_singular);
+}
+
+TEST_CASE("a level without a column for a contact is not offered for that set") {
+  ModelData data = synthetic_model({.levels = 3});
+  const std::uint32_t node = data.levels[2].columns.back().node;
+  const auto begin = static_cast<std::uint32_t>(data.levels[0].nodes.size() + data.levels[1].nodes.size());
+  REQUIRE(node >= begin);
+  for (std::uint32_t c = 0; c < 2; ++c) {
+    data.levels[c].representatives[2][node - begin] = layout::none;
+  }
+  const TestModel model(encode(data));
+  TestBody body(model, {.max_contacts = 2, .cached_factors = 1});
+  const std::uint64_t least = body.requirement().least_work;
+  CHECK(body.step(std::vector<Contact>{{node, {1e-3F, 0, 0}}}, least).constraint_level == 2);
+  CHECK(body.step(std::vector<Contact>{{model.touchable()[0], {1e-3F, 0, 0}}, {node, {}}}, least).status <=
+        Status::coarser);
+}
+
+TEST_CASE("create: what is short or wrong is said in numbers") {
+  const TestModel model({.levels = 2});
+  const Limits limits{.max_contacts = 5, .cached_factors = 2};
+  const Requirement need = Elastostatic::required(model.model(), limits);
+  CHECK(need.alignment == 64);
+  AlignedBytes memory(need.bytes + 64);
+  const auto create = [&](const Limits& l, std::size_t offset, std::size_t size) {
+    return Elastostatic::create(model.model(), l, {memory.data() + offset, size});
+  };
+  CHECK(create(limits, 0, need.bytes));
+  const auto small = create(limits, 0, need.bytes - 10);
+  CHECK(small.error == CreateError::arena_too_small);
+  CHECK(small.requested == need.bytes);
+  CHECK(small.available == need.bytes - 10);
+  CHECK(small.missing == 10);
+  CHECK(create(limits, 4, need.bytes).error == CreateError::arena_misaligned);
+  for (const Limits& bad : {Limits{0, 1}, Limits{4097, 1}, Limits{1, 0}, Limits{1, 1025}}) {
+    CHECK(create(bad, 0, memory.size()).error == CreateError::bad_limits);
+    CHECK(Elastostatic::required(model.model(), bad).bytes == 0);
+  }
+  CHECK(Elastostatic::required(model.model(), {.max_contacts = 4096, .cached_factors = 1024}).bytes > need.bytes);
+}
+
+TEST_CASE("create refuses a refinement whose points hang on more than three coarse nodes") {
+  ModelData data = synthetic_model({.levels = 4});
+  // a midpoint of the finest level between two midpoints of edges that share no triangle
+  auto& refinement = data.levels[3].refinement;
+  const auto& coarser = data.levels[2].refinement;
+  const auto begin = static_cast<std::uint32_t>(data.levels[0].nodes.size() + data.levels[1].nodes.size());
+  std::uint32_t other = 1;
+  const auto shares = [&](std::uint32_t i) {
+    return coarser[0].parent[0] == coarser[i].parent[0] || coarser[0].parent[0] == coarser[i].parent[1] ||
+           coarser[0].parent[1] == coarser[i].parent[0] || coarser[0].parent[1] == coarser[i].parent[1];
+  };
+  const auto in_domain_with_parents = [&](std::uint32_t i) {
+    return (data.levels[2].nodes[i].flags & layout::node_domain) != 0;
+  };
+  while (shares(other) || !in_domain_with_parents(other)) {
+    ++other;
+  }
+  const std::uint32_t column = data.levels[3].columns.back().node;
+  const auto first = begin + static_cast<std::uint32_t>(data.levels[2].nodes.size());
+  refinement[column - first].parent[0] = begin;
+  refinement[column - first].parent[1] = begin + other;
+  const TestModel model(encode(data));
+  AlignedBytes memory(1 << 20);
+  const auto created = Elastostatic::create(model.model(), {}, {memory.data(), memory.size()});
+  CHECK(created.error == CreateError::unsupported_model);
+  CHECK(Elastostatic::required(model.model(), {}).bytes == 0);
 }
 
 }  // namespace

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# The libraries of the loop include nothing but their own headers and these.
+set -euo pipefail
+allowed='cassert cfloat climits cmath cstddef cstdint cstring limits new span algorithm array bit type_traits'
+loop_half='aligned_bytes|describe|model_file|writer'  # of formats: not linked into the loop
+files=$(git ls-files --cached --others --exclude-standard 'runtime/*.[ch]pp' 'formats/*.[ch]pp' |
+  grep -vE "_test\.cpp$|/testing/|/exchange/|^formats/($loop_half)\.")
+[ -n "$files" ] || exit 1
+used=$(grep -hoE '^ *# *include <[^>]+>' $files | sed -E 's/.*<(.*)>/\1/' | sort -u)
+foreign=$(comm -23 <(echo "$used") <(printf '%s\n' $allowed | sort))
+if [ -n "$foreign" ]; then
+  printf 'headers not allowed in the loop: %s\n' "$(echo "$foreign" | tr '\n' ' ')"
+  exit 1
+fi

@@ -1,0 +1,187 @@
+// Runs steps with every guard armed: no allocation, lock, system call or page fault in the loop. Each guard is first
+// shown to trip.
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <random>
+#include <vector>
+
+#include "runtime/testing/test_body.hpp"
+#include "sim_hw/guard/allocation_guard.hpp"
+#include "sim_hw/guard/mutex_guard.hpp"
+#include "sim_hw/guard/system_call_guard.hpp"
+
+namespace greenloop {
+namespace {
+
+constexpr int cycles = 2000;
+
+// contact sets of every kind a loop meets, refused ones among them, made before the loop
+class Scripted {
+ public:
+  Scripted() : model_({.levels = 4}), body_(model_, {.max_contacts = 16, .cached_factors = 4}) {
+    std::mt19937_64 random(12);
+    const auto nodes = model_.touchable();
+    for (int k = 0; k < 40; ++k) {
+      std::vector<Contact> contacts;
+      const std::size_t first = random() % nodes.size();
+      for (std::size_t i = 0; i < random() % 17; ++i) {
+        contacts.push_back({nodes[(first + 7 * i) % nodes.size()], {1e-3F, 0, static_cast<float>(k) * 1e-5F}});
+      }
+      if (k % 10 == 9) {
+        contacts.push_back({0xffffffff, {}});
+      }
+      sets_.push_back(contacts);
+      forces_.emplace_back(3 * contacts.size());
+    }
+  }
+
+  StepReport cycle(int i) {
+    const std::size_t k = static_cast<std::size_t>(i) * 7 % sets_.size();
+    const auto& need = body_.requirement();
+    const std::uint64_t budget = i % 3 == 0 ? need.least_work : need.worst_work[3];
+    const auto field = i % 5 == 0 ? std::span<float>() : body_.field();
+    return body_.body().step(sets_[k], {budget}, {forces_[k], field});
+  }
+
+ private:
+  TestModel model_;
+  TestBody body_;
+  std::vector<std::vector<Contact>> sets_;
+  std::vector<std::vector<float>> forces_;
+};
+
+long minor_faults() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt;
+}
+
+TEST_CASE("the allocation guard trips on malloc, new and free") {
+  void* volatile memory = nullptr;
+  const auto trips = [](auto act) {
+    const std::uint64_t before = allocation_guard::count();
+    allocation_guard::arm();
+    act();
+    allocation_guard::disarm();
+    return allocation_guard::count() - before;
+  };
+  CHECK(trips([&] { memory = std::malloc(10); }) == 1);
+  CHECK(trips([&] { std::free(memory); }) == 1);
+  CHECK(trips([] { std::vector<int>(100)[3] = 1; }) == 2);
+  CHECK(trips([&] { memory = std::aligned_alloc(64, 128); }) == 1);
+  CHECK(trips([] {}) == 0);
+  std::free(memory);
+}
+
+TEST_CASE("the mutex guard trips on a lock") {
+  std::mutex mutex;
+  const std::uint64_t before = mutex_guard::count();
+  mutex_guard::arm();
+  { const std::lock_guard lock(mutex); }
+  mutex_guard::disarm();
+  CHECK(mutex_guard::count() == before + 1);
+  { const std::lock_guard lock(mutex); }
+  CHECK(mutex_guard::count() == before + 1);
+}
+
+TEST_CASE("no allocation and no lock in the loop") {
+  Scripted scripted;
+  const std::uint64_t allocations = allocation_guard::count();
+  const std::uint64_t locks = mutex_guard::count();
+  int refused = 0;
+  for (int i = 0; i < cycles; ++i) {
+    allocation_guard::arm();
+    mutex_guard::arm();
+    const StepReport report = scripted.cycle(i);
+    mutex_guard::disarm();
+    allocation_guard::disarm();
+    refused += report.status > Status::coarser ? 1 : 0;
+  }
+  CHECK(allocation_guard::count() == allocations);
+  CHECK(mutex_guard::count() == locks);
+  CHECK(refused > 0);
+  CHECK(refused < cycles / 2);
+}
+
+TEST_CASE("no minor page fault in the loop once it is warm; a fresh page is seen") {
+  Scripted scripted;
+  for (int i = 0; i < 100; ++i) {
+    scripted.cycle(i);
+  }
+  const long before = minor_faults();
+  for (int i = 0; i < cycles; ++i) {
+    scripted.cycle(i);
+  }
+  CHECK(minor_faults() == before);
+  constexpr std::size_t bytes = 64 << 20;
+  auto* fresh = static_cast<volatile char*>(std::malloc(bytes));
+  for (std::size_t i = 0; i < bytes; i += 4096) {
+    fresh[i] = 1;
+  }
+  CHECK(minor_faults() > before);
+  std::free(const_cast<char*>(fresh));
+}
+
+TEST_CASE("no system call in the loop, by Syscall User Dispatch") {
+  if (!system_call_guard::install()) {
+    MESSAGE("this kernel has no Syscall User Dispatch: system calls are watched by the seccomp test alone");
+    return;
+  }
+  Scripted scripted;
+  system_call_guard::arm();
+  const long pid = syscall(SYS_getppid);
+  system_call_guard::disarm();
+  CHECK(system_call_guard::count() == 1);
+  CHECK(system_call_guard::last() == SYS_getppid);
+  CHECK(pid == getppid());
+  for (int i = 0; i < cycles; ++i) {
+    system_call_guard::arm();
+    scripted.cycle(i);
+    system_call_guard::disarm();
+  }
+  CHECK(system_call_guard::count() == 1);
+}
+
+// status of a child in which every system call but read, write and exit is deadly
+template <class Work>
+int strict_child(Work work) {
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT) != 0) {
+      syscall(SYS_exit, 99);
+    }
+    work();
+    syscall(SYS_exit, 0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+TEST_CASE("no system call in the loop, by strict seccomp") {
+  Scripted scripted;
+  const int caught = strict_child([] { static_cast<void>(syscall(SYS_getppid)); });
+  REQUIRE(!(WIFEXITED(caught) && WEXITSTATUS(caught) == 99));
+  CHECK(WIFSIGNALED(caught));
+  const int clean = strict_child([&scripted] {
+    for (int i = 0; i < cycles; ++i) {
+      scripted.cycle(i);
+    }
+  });
+  CHECK(WIFEXITED(clean));
+  CHECK(WEXITSTATUS(clean) == 0);
+}
+
+}  // namespace
+}  // namespace greenloop
