@@ -7,10 +7,10 @@
 namespace greenloop {
 namespace {
 
-double thread_cpu_us() {
+std::int64_t thread_cpu_ns() {
   timespec now{};
   (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+  return std::int64_t{1000000000} * now.tv_sec + now.tv_nsec;
 }
 
 }  // namespace
@@ -41,14 +41,14 @@ void LoopThread::run() {
 void LoopThread::run_cycle() {
   if (!states_.take(state_)) return;
   allocation_guard::arm();
-  const double begin = thread_cpu_us();
+  const std::int64_t begin = thread_cpu_ns();
   loop_->cycle(state_);
-  const double end = thread_cpu_us();
+  const std::int64_t end = thread_cpu_ns();
   loop_->answer(command_);
   commands_.put(command_);
   allocation_guard::disarm();
   allocations_ = allocation_guard::count();
-  log_->add(*loop_, state_.cycle, end - begin);
+  log_->add(*loop_, state_.cycle, static_cast<double>(end - begin) / 1000);
 }
 
 }  // namespace greenloop

@@ -61,7 +61,7 @@ void HapticDevice::measure() {
     const double coordinate[3] = {position.x, position.y, position.z}, direction[3] = {axis.x, axis.y, axis.z};
     for (int i = 0; i < 3; ++i) {
       state_.position[p][i] = encoder_counts(coordinate[i], Coupling::resolution);
-      const double unit_counts = direction[i] * messages::device_state::axis_unit;
+      const double unit_counts = direction[i] * int{messages::device_state::axis_unit};
       state_.axis[p][i] = static_cast<std::int16_t>(encoder_counts(unit_counts, 1));
     }
   }

@@ -1,9 +1,10 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <iostream>
-#include <map>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -32,43 +33,56 @@ void read_delay(const std::string& text, greenloop::InjectedFaults& faults) {
   }
 }
 
-void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs) {
-  using greenloop::Script;
+greenloop::Script read_script(const std::string& name) {
+  const auto* found = std::find(std::begin(greenloop::script_names), std::end(greenloop::script_names), name);
+  return static_cast<greenloop::Script>(found - std::begin(greenloop::script_names));
+}
+
+greenloop::Transport read_transport(const std::string& name) {
   using greenloop::Transport;
-  const std::map<std::string, Script> scripts{
-      {"press", Script::press}, {"slide", Script::slide}, {"grasp", Script::grasp}, {"all", Script::all}};
-  const std::map<std::string, Transport> transports{
-      {"auto", Transport::automatic}, {"udpm", Transport::udpm}, {"memq", Transport::memq}};
-  app.add_option("model", options.model, "The model file, .gloop")->required();
+  return name == "udpm" ? Transport::udpm : name == "memq" ? Transport::memq : Transport::automatic;
+}
+
+void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
   app.add_option("--seconds", options.seconds, "Virtual time of the run")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 3600.0));
   app.add_option("--rate", options.rate, "Cycles per second")->capture_default_str()->check(CLI::Range(100.0, 1e5));
-  app.add_option("--script", options.script, "What the hands do: press, slide, grasp or all (default)")
-      ->transform(CLI::CheckedTransformer(scripts))
-      ->type_name("NAME");
+  app.add_option_function<std::string>(
+         "--script", [&options](const std::string& name) { options.script = read_script(name); },
+         "What the hands do (default: all)")
+      ->check(CLI::IsMember({"press", "slide", "grasp", "all"}));
   app.add_option("--budget", options.budget, "Work units per cycle (default: the model's)")->check(CLI::PositiveNumber);
-  app.add_option("--starve", options.starve, "Multiplies the budget, in (0, 1]")
+  app.add_option("--starve", options.starve, "Multiplies the budget")
       ->capture_default_str()
       ->check(CLI::Range(1e-9, 1.0));
-  app.add_option("--transport", options.transport,
-                 "udpm: two processes in a network namespace; memq: one; auto (default): udpm where permitted")
-      ->transform(CLI::CheckedTransformer(transports))
-      ->type_name("NAME");
-  app.add_option("--field", options.field_every, "The whole displacement field every N cycles")
+  app.add_option_function<std::string>(
+         "--transport", [&options](const std::string& name) { options.transport = read_transport(name); },
+         "udpm: two processes in a network namespace; memq: one; auto (default): udpm where permitted")
+      ->check(CLI::IsMember({"auto", "udpm", "memq"}));
+  app.add_option("--field", options.field_every, "The displacement of the whole body every N cycles")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
-  app.add_option("--trace", outputs.trace, "Writes one line per cycle to this CSV file");
-  app.add_option("--snapshot", outputs.snapshot, "Writes the field of the largest force to this CSV file");
-  app.add_flag("--json", outputs.json, "Prints the verdict as JSON");
+}
+
+void declare_faults(CLI::App& app, greenloop::SessionOptions& options) {
   app.add_option_function<std::string>(
          "--inject-delay", [&options](const std::string& text) { read_delay(text, options.faults); },
-         "N:CYCLES: from cycle N on the link holds commands back for so many cycles of virtual time")
+         "From cycle N on the link holds commands back for so many cycles of virtual time")
       ->type_name("N:CYCLES");
   app.add_option("--inject-loss", options.faults.loss_every, "The link loses every K-th command")
       ->check(CLI::PositiveNumber);
   app.add_option("--inject-overrun", options.overrun_cycle, "Negative control: this cycle overspends its budget")
       ->check(CLI::NonNegativeNumber);
+}
+
+void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs) {
+  app.add_option("model", options.model, "The model file, .gloop")->required();
+  declare_run(app, options);
+  declare_faults(app, options);
+  app.add_option("--trace", outputs.trace, "Writes one line per cycle to this CSV file");
+  app.add_option("--snapshot", outputs.snapshot, "Writes the field of the largest force to this CSV file");
+  app.add_flag("--json", outputs.json, "Prints the verdict as JSON");
 }
 
 int run(const greenloop::SessionOptions& options, const Outputs& outputs) {
