@@ -92,8 +92,8 @@ void slide(Track& track, const std::vector<TouchPlace>& row) {
   const Vec3 axis = -row.front().outward;
   track.travel(track.above(row.front()), axis);
   track.press_in(row.front());
-  track.move(2.5, there, axis);
-  track.move(2.5, back, axis);
+  track.move(2.0, there, axis);
+  track.move(2.0, back, axis);
   track.lift(row.front());
 }
 
@@ -126,7 +126,7 @@ ProbeSize probe_size(const BodySurface& surface) {
 
 std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe,
                                       double seconds) {
-  const std::vector<TouchPlace> places = touch_places(surface, probe.radius, 4);
+  const std::vector<TouchPlace> places = touch_places(surface, probe.radius, 3);
   const bool wants_grasp = script == Script::grasp || script == Script::all;
   const auto pair = wants_grasp ? opposing_places(surface, probe.radius) : std::nullopt;
   if (script == Script::grasp && !pair) {

@@ -23,7 +23,7 @@ struct ProbeSize {
 [[nodiscard]] ProbeSize probe_size(const BodySurface& surface);
 
 /// A scripted motion of one or two probes around and into the body; one round takes `seconds`.
-/// press: into up to four places, one after the other. slide: press, and to and fro along the surface.
+/// press: into up to three places, one after the other. slide: press, and to and fro along the surface.
 /// grasp: two probes from opposite sides. all: press, slide, grasp; without grasp where no two places exist.
 /// Throws std::runtime_error if the body offers no place, or `grasp` alone is asked for and there are no two.
 [[nodiscard]] std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe,
