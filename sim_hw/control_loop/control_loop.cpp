@@ -1,0 +1,90 @@
+#include "sim_hw/control_loop/control_loop.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "sim_hw/device/encoder.hpp"
+
+namespace greenloop {
+
+ControlLoop::ControlLoop(const Elastostatic& body, const BodySurface& surface, const LoopSetup& setup)
+    : body_(body),
+      setup_(setup),
+      probe_contacts_(surface, setup.probe_radius, setup.max_contacts),
+      force_(std::size_t{3} * setup.max_contacts),
+      field_(surface.position.size()) {}
+
+void ControlLoop::cycle(const messages::device_state& state) noexcept {
+  read(state);
+  contacts_ = probe_contacts_.find(probes(), field());
+  step(state.cycle);
+  if (held(report_.status)) return;  // the hands feel the last good force
+  probe_contacts_.settle(probes(), force());
+  sum_hand_force();
+}
+
+void ControlLoop::read(const messages::device_state& state) noexcept {
+  cycle_ = state.cycle;
+  probe_count_ = static_cast<std::size_t>(std::clamp<std::int32_t>(state.probe_count, 0, state.max_probes));
+  const Vec3 origin{state.origin[0], state.origin[1], state.origin[2]};
+  for (std::size_t p = 0; p < probe_count_; ++p) {
+    probe_[p].centre = origin + encoder_value(state.position[p], state.resolution);
+    const std::int16_t(&axis)[3] = state.axis[p];
+    probe_[p].axis = unit({static_cast<double>(axis[0]), static_cast<double>(axis[1]), static_cast<double>(axis[2])});
+  }
+}
+
+void ControlLoop::step(std::int64_t cycle) noexcept {
+  field_is_new_ = cycle % setup_.field_every == 0;
+  Response response{.force = {force_.data(), 3 * contacts_.size()}, .displacement = {}};
+  if (field_is_new_) response.displacement = {field_data(), 4 * field_.size()};
+  if (cycle == setup_.overrun_cycle) {
+    overrun(response);
+  } else {
+    report_ = body_.step(contacts_, setup_.budget, response);
+  }
+}
+
+/// Repeats the step without a limit until more than the budget is spent.
+void ControlLoop::overrun(const Response& response) noexcept {
+  constexpr Budget unlimited{std::numeric_limits<std::uint64_t>::max()};
+  std::uint64_t work = 0;
+  do {
+    report_ = body_.step(contacts_, unlimited, response);
+    work += std::max<std::uint64_t>(report_.work, 1);
+  } while (work <= setup_.budget.work);
+  report_.work = work;
+}
+
+void ControlLoop::sum_hand_force() noexcept {
+  hand_force_ = {};
+  const auto holder = probe_contacts_.holder();
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    hand_force_[holder[i]] += -Vec3{force_[3 * i], force_[3 * i + 1], force_[3 * i + 2]};
+  }
+}
+
+void ControlLoop::answer(messages::loop_command& command) noexcept {
+  digest_.add(std::as_bytes(force()));
+  if (field_is_new_) digest_.add(std::as_bytes(field()));
+  command.cycle = cycle_;
+  command.work = static_cast<std::int64_t>(report_.work);
+  command.budget = static_cast<std::int64_t>(setup_.budget.work);
+  command.level = static_cast<std::int32_t>(report_.constraint_level);
+  command.field_level = static_cast<std::int32_t>(report_.field_level);
+  command.status = static_cast<std::int32_t>(report_.status);
+  command.digest = static_cast<std::int64_t>(digest_.value());
+  for (std::size_t p = 0; p < probe_.size(); ++p) {
+    const Vec3& force_on_hand = hand_force_[p];
+    command.hand_force[p][0] = force_on_hand.x;
+    command.hand_force[p][1] = force_on_hand.y;
+    command.hand_force[p][2] = force_on_hand.z;
+  }
+  command.contact_count = static_cast<std::int32_t>(contacts_.size());
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    command.contact_node[i] = static_cast<std::int32_t>(contacts_[i].node);
+    std::copy_n(&force_[3 * i], 3, command.contact_force[i]);
+  }
+}
+
+}  // namespace greenloop

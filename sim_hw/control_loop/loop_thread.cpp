@@ -1,0 +1,54 @@
+#include "sim_hw/control_loop/loop_thread.hpp"
+
+#include <ctime>
+
+#include "sim_hw/guard/allocation_guard.hpp"
+
+namespace greenloop {
+namespace {
+
+std::int64_t thread_cpu_ns() {
+  timespec now{};
+  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return std::int64_t{1000000000} * now.tv_sec + now.tv_nsec;
+}
+
+}  // namespace
+
+LoopThread::LoopThread(ControlLoop& loop, RunLog& log) : loop_(&loop), log_(&log), thread_([this] { run(); }) {}
+
+LoopThread::~LoopThread() {
+  stop_ = true;
+  state_waits_.release();
+  thread_.join();
+}
+
+const messages::loop_command& LoopThread::answer(const messages::device_state& state) {
+  states_.put(state);
+  state_waits_.release();
+  command_waits_.acquire();
+  (void)commands_.take(newest_answer_);
+  return newest_answer_;
+}
+
+void LoopThread::run() {
+  for (state_waits_.acquire(); !stop_; state_waits_.acquire()) {
+    run_cycle();
+    command_waits_.release();
+  }
+}
+
+void LoopThread::run_cycle() {
+  if (!states_.take(state_)) return;
+  allocation_guard::arm();
+  const std::int64_t begin = thread_cpu_ns();
+  loop_->cycle(state_);
+  const std::int64_t end = thread_cpu_ns();
+  loop_->answer(command_);
+  commands_.put(command_);
+  allocation_guard::disarm();
+  allocations_ = allocation_guard::count();
+  log_->add(*loop_, state_.cycle, static_cast<double>(end - begin) / 1000);
+}
+
+}  // namespace greenloop

@@ -1,0 +1,115 @@
+#include "sim_hw/control_loop/run_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace greenloop {
+namespace {
+
+/// A text file that is complete or an error.
+class TextFile {
+ public:
+  explicit TextFile(const std::filesystem::path& path) : path_(path), file_(std::fopen(path.c_str(), "w")) {
+    if (file_ == nullptr) fail();
+  }
+  TextFile(const TextFile&) = delete;
+  TextFile& operator=(const TextFile&) = delete;
+  ~TextFile() {
+    if (file_ != nullptr) (void)std::fclose(file_);
+  }
+  void write(const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
+  }
+  void close() {
+    std::FILE* const file = std::exchange(file_, nullptr);
+    if (std::fclose(file) != 0) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw std::runtime_error(path_.string() + ": cannot be written; check the folder and the space left");
+  }
+  std::filesystem::path path_;
+  std::FILE* file_;
+};
+
+std::string vector_columns(const std::array<Vec3, messages::device_state::max_probes>& vectors) {
+  return fmt::format("{},{},{},{},{},{}", vectors[0].x, vectors[0].y, vectors[0].z, vectors[1].x, vectors[1].y,
+                     vectors[1].z);
+}
+
+}  // namespace
+
+RunLog::RunLog(std::size_t cycles, std::size_t nodes) : largest_field_(4 * nodes) { records_.reserve(cycles); }
+
+void RunLog::add(const ControlLoop& loop, std::int64_t cycle, double cpu_us) noexcept {
+  if (records_.size() == records_.capacity()) return;
+  CycleRecord record{.cycle = cycle, .report = loop.report(), .cpu_us = cpu_us};
+  for (std::size_t p = 0; p < loop.probes().size(); ++p) {
+    record.centre[p] = loop.probes()[p].centre;
+    record.hand_force[p] = loop.hand_force()[p];
+  }
+  record.contacts = static_cast<std::uint32_t>(loop.contacts().size());
+  records_.push_back(record);
+  if (loop.field_is_new() && record.total_force() > largest_force_) {
+    largest_force_ = record.total_force();
+    std::copy(loop.field().begin(), loop.field().end(), largest_field_.begin());
+  }
+}
+
+void RunLog::write_trace(const std::filesystem::path& file, double period, const Budget& budget) const {
+  TextFile out(file);
+  out.write(
+      "time,x0,y0,z0,x1,y1,z1,force_x0,force_y0,force_z0,force_x1,force_y1,force_z1,force,contacts,level,field_level,"
+      "work,budget,status\n");
+  for (const CycleRecord& r : records_) {
+    out.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", static_cast<double>(r.cycle) * period,
+                          vector_columns(r.centre), vector_columns(r.hand_force), r.total_force(), r.contacts,
+                          r.report.constraint_level, r.report.field_level, r.report.work, budget.work,
+                          name(r.report.status)));
+  }
+  out.close();
+}
+
+void RunLog::write_snapshot(const std::filesystem::path& file) const {
+  TextFile out(file);
+  out.write("node,x,y,z\n");
+  for (std::size_t i = 0; i < largest_field_.size(); i += 4) {
+    out.write(fmt::format("{},{},{},{}\n", i / 4, largest_field_[i], largest_field_[i + 1], largest_field_[i + 2]));
+  }
+  out.close();
+}
+
+const char* name(Status status) {
+  switch (status) {
+    case Status::ok:
+      return "ok";
+    case Status::coarser:
+      return "coarser";
+    case Status::held_not_finite:
+      return "held_not_finite";
+    case Status::held_out_of_range:
+      return "held_out_of_range";
+    case Status::held_not_touchable:
+      return "held_not_touchable";
+    case Status::held_duplicate:
+      return "held_duplicate";
+    case Status::held_response_size:
+      return "held_response_size";
+    case Status::held_over_budget:
+      return "held_over_budget";
+    case Status::held_singular:
+      return "held_singular";
+    case Status::held_overflow:
+      return "held_overflow";
+  }
+  return "unknown";
+}
+
+}  // namespace greenloop

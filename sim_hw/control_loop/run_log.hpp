@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "sim_hw/control_loop/control_loop.hpp"
+
+namespace greenloop {
+
+/// What one cycle of the loop did.
+struct CycleRecord {
+  std::int64_t cycle = 0;
+  std::array<Vec3, messages::device_state::max_probes> centre{};      ///< m, of the probes
+  std::array<Vec3, messages::device_state::max_probes> hand_force{};  ///< N, on the probes
+  std::uint32_t contacts = 0;
+  StepReport report;
+  double cpu_us = 0;  ///< thread CPU time of the cycle
+
+  /// N, sum of the magnitudes: two fingers of a grasp do not cancel.
+  [[nodiscard]] double total_force() const { return norm(hand_force[0]) + norm(hand_force[1]); }
+  [[nodiscard]] bool missed(const Budget& budget) const { return report.work > budget.work || held(report.status); }
+};
+
+/// Everything a run is judged and drawn by. All memory is taken at start-up.
+class RunLog {
+ public:
+  RunLog(std::size_t cycles, std::size_t nodes);
+
+  /// Adds the last cycle of `loop`; beyond the cycles announced nothing is added. No heap.
+  void add(const ControlLoop& loop, std::int64_t cycle, double cpu_us) noexcept;
+
+  [[nodiscard]] const std::vector<CycleRecord>& records() const { return records_; }
+
+  /// One line per cycle: time in s, positions in m, forces in N. Numbers read back exactly.
+  /// Throws std::runtime_error if the file cannot be written.
+  void write_trace(const std::filesystem::path& file, double period, const Budget& budget) const;
+
+  /// node, x, y, z: the displacement in m of every node in the cycle of the largest total force that had a field.
+  void write_snapshot(const std::filesystem::path& file) const;
+
+ private:
+  std::vector<CycleRecord> records_;
+  std::vector<float> largest_field_;  ///< [4 * nodes] m
+  double largest_force_ = -1;
+};
+
+[[nodiscard]] const char* name(Status status);
+
+}  // namespace greenloop

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "greenloop/messages/device_state.hpp"
+#include "greenloop/messages/loop_command.hpp"
+#include "sim_hw/body/body_surface.hpp"
+#include "sim_hw/device/command_arrival.hpp"
+#include "sim_hw/device/hand.hpp"
+#include "sim_hw/device/motion_script.hpp"
+#include "sim_hw/device/script.hpp"
+
+namespace greenloop {
+
+/// How a device the size of a desk is coupled to a body of any size and stiffness, as haptic programs do it.
+struct Coupling {
+  static constexpr double reach = 0.1;        ///< m, how far the handle moves to either side
+  static constexpr double resolution = 1e-5;  ///< m of the handle per encoder count
+
+  double motion_scale = 1;  ///< m of the body per m of the handle
+  double force_scale = 1;   ///< N on the handle per N on the probe, at most 1
+};
+
+/// The whole body within reach; the force scaled down until a rigid sphere pressed into a half-space of the model's
+/// material (Hertz, F = 4/3 E* sqrt(R) d^1.5) at two thirds of the target's depth balances half of the hand's spring.
+[[nodiscard]] Coupling coupling(const layout::Info& info, const BodySurface& surface, const ProbeSize& probe,
+                                const HandParameters& hand);
+
+/// What the device knows about its run, counted on its side.
+struct DeviceSummary {
+  std::int64_t cycles = 0;         ///< commands received in order
+  std::int64_t late = 0;           ///< of these, not there by the end of their cycle
+  std::int64_t late_injected = 0;  ///< late because the injected faults said so
+  std::int64_t retransmits = 0;    ///< states sent again because no answer came
+  std::int64_t digest = 0;         ///< of the last command received
+  bool stopped = false;            ///< too many late commands in a row
+};
+
+struct DeviceSetup {
+  std::vector<MotionScript> motion;  ///< one or two probes
+  Coupling coupling;
+  HandParameters hand;
+  Vec3 origin;              ///< m, middle of the workspace in the frame of the body
+  double period = 1e-3;     ///< s
+  std::int64_t cycles = 0;  ///< how many the run has
+  InjectedFaults faults;
+};
+
+/// A simulated haptic device: hands that pull its handles along a script, encoders, and motors that render the
+/// loop's force. It advances one cycle per command, so its time is virtual and every run has the same bits.
+class HapticDevice {
+ public:
+  explicit HapticDevice(DeviceSetup setup);
+
+  /// What the encoders say at the start of the current cycle.
+  [[nodiscard]] const messages::device_state& state() const { return state_; }
+
+  /// Renders the command of the current cycle, or holds the last one if it is late, and goes to the next cycle.
+  void apply(const messages::loop_command& command);
+
+  [[nodiscard]] bool finished() const { return summary_.stopped || summary_.cycles >= setup_.cycles; }
+  [[nodiscard]] const DeviceSummary& summary() const { return summary_; }
+  [[nodiscard]] DeviceSummary& summary() { return summary_; }
+
+ private:
+  void measure();
+  [[nodiscard]] Vec3 handle_target(std::size_t probe, double time) const;
+
+  DeviceSetup setup_;
+  CommandArrival arrival_;
+  std::vector<Hand> hands_;
+  std::vector<Vec3> motor_force_;  ///< N on the handle, held
+  messages::device_state state_{};
+  DeviceSummary summary_;
+};
+
+}  // namespace greenloop

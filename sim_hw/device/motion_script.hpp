@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "sim_hw/body/vec3.hpp"
+
+namespace greenloop {
+
+/// Where a person wants a probe to be, in the frame of the body.
+struct ProbeTarget {
+  Vec3 centre;  ///< m
+  Vec3 axis;    ///< unit vector, where the probe points
+};
+
+/// Part of a motion: from the first to the last knot, starting and ending at rest.
+struct MotionSegment {
+  double duration = 0;      ///< share of the script, in any unit
+  std::vector<Vec3> knots;  ///< m, at least one; passed at equal intervals
+  Vec3 axis;
+};
+
+/// The motion of one probe, made of segments and polynomials in time only.
+class MotionScript {
+ public:
+  /// `seconds` is how long all segments together take; afterwards they begin again.
+  MotionScript(std::vector<MotionSegment> segments, double seconds);
+
+  [[nodiscard]] ProbeTarget target(double time) const;
+
+ private:
+  std::vector<MotionSegment> segments_;
+  std::vector<double> end_;  ///< s, when each segment ends
+};
+
+/// 6 s^5 - 15 s^4 + 10 s^3: from 0 to 1 with zero speed and acceleration at both ends; s in [0, 1].
+[[nodiscard]] constexpr double smoothstep(double s) { return s * s * s * (10 + s * (6 * s - 15)); }
+
+}  // namespace greenloop

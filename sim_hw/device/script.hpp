@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "sim_hw/body/body_surface.hpp"
+#include "sim_hw/device/motion_script.hpp"
+
+namespace greenloop {
+
+enum class Script { press, slide, grasp, all };
+
+inline constexpr std::string_view script_names[] = {"press", "slide", "grasp", "all"};
+
+/// What the scripts move: spheres, and how deep the person tries to push them in.
+struct ProbeSize {
+  double radius = 0;  ///< m
+  double depth = 0;   ///< m, that the target goes beyond the first touch
+};
+
+/// 6 % of the body's diagonal, but never so small that it slips between the nodes; half as deep as wide.
+[[nodiscard]] ProbeSize probe_size(const BodySurface& surface);
+
+/// A scripted motion of one or two probes around and into the body; one round takes `seconds`.
+/// press: into up to three places, one after the other. slide: press, and to and fro along the surface.
+/// grasp: two probes from opposite sides. all: press, slide, grasp; without grasp where no two places exist.
+/// Throws std::runtime_error if the body offers no place, or `grasp` alone is asked for and there are no two.
+[[nodiscard]] std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe,
+                                                    double seconds);
+
+}  // namespace greenloop

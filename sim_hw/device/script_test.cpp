@@ -1,0 +1,90 @@
+#include "sim_hw/device/script.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include "formats/aligned_bytes.hpp"
+#include "formats/testing/synthetic_model.hpp"
+#include "formats/verify.hpp"
+
+namespace greenloop {
+namespace {
+
+BodySurface sphere(double touchable_above) {
+  const auto encoded = encode(synthetic_model({.levels = 4, .touchable_above = touchable_above}));
+  const AlignedBytes bytes(encoded);
+  ModelView view;
+  REQUIRE(verify(bytes.span(), view).ok());
+  return body_surface(view);
+}
+
+/// How deep a sphere reaches beyond the nearest node, m; negative outside.
+double penetration(const BodySurface& surface, const ProbeSize& probe, const Vec3& centre) {
+  double nearest = norm(surface.position[0] - centre);
+  for (const Vec3& position : surface.position) nearest = std::min(nearest, norm(position - centre));
+  return probe.radius - nearest;
+}
+
+TEST_CASE("smoothstep starts and ends at rest") {
+  CHECK(smoothstep(0) == 0);
+  CHECK(smoothstep(1) == 1);
+  CHECK(smoothstep(0.5) == 0.5);
+  CHECK(smoothstep(1e-4) < 1e-10);
+  CHECK(1 - smoothstep(1 - 1e-4) < 1e-10);
+}
+
+constexpr double seconds = 10;
+
+/// The longest way between two targets `dt` seconds apart.
+double longest_step(const MotionScript& motion, double dt) {
+  double longest = 0;
+  for (double time = 0; time < seconds; time += dt) {
+    longest = std::max(longest, norm(motion.target(time + dt).centre - motion.target(time).centre));
+  }
+  return longest;
+}
+
+TEST_CASE("every script goes as deep as it should, moves without jumps, and begins again") {
+  const BodySurface surface = sphere(-0.2);
+  const ProbeSize probe = probe_size(surface);
+  for (const Script script : {Script::press, Script::slide, Script::grasp, Script::all}) {
+    CAPTURE(script_names[static_cast<std::size_t>(script)]);
+    const auto motions = make_script(script, surface, probe, seconds);
+    CHECK(motions.size() == (script == Script::press || script == Script::slide ? 1 : 2));
+    for (const MotionScript& motion : motions) {
+      double deepest = -1;
+      for (double time = 0; time < seconds; time += 0.002) {
+        const ProbeTarget target = motion.target(time);
+        deepest = std::max(deepest, penetration(surface, probe, target.centre));
+        CHECK(norm(target.axis) == doctest::Approx(1));
+      }
+      // along a slide the path is straight between places, and cuts a little into a round body
+      CHECK(deepest <= 1.01 * probe.depth);
+      CHECK(deepest > 0.3 * probe.depth);
+      CHECK(longest_step(motion, 0.001) < 0.51 * longest_step(motion, 0.002));
+      CHECK(norm(motion.target(seconds).centre - motion.target(0).centre) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("grasping comes from opposite sides") {
+  const BodySurface surface = sphere(-0.2);
+  const ProbeSize probe = probe_size(surface);
+  const auto motions = make_script(Script::grasp, surface, probe, seconds);
+  REQUIRE(motions.size() == 2);
+  CHECK(dot(motions[0].target(5).axis, motions[1].target(5).axis) == doctest::Approx(-1));
+}
+
+TEST_CASE("a small patch can be pressed; where two probes have no place, all leaves the grasp out") {
+  const BodySurface surface = sphere(0.99);
+  const ProbeSize probe = probe_size(surface);
+  CHECK(make_script(Script::press, surface, probe, seconds).size() == 1);
+  CHECK(make_script(Script::all, surface, probe, seconds).size() == 1);
+  CHECK_THROWS_AS((void)make_script(Script::grasp, surface, probe, seconds), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace greenloop

@@ -1,0 +1,94 @@
+#include "sim_hw/session/device_process.hpp"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "sim_hw/transport/channel.hpp"
+#include "sim_hw/transport/lock_step.hpp"
+
+namespace greenloop {
+namespace {
+
+void close_end(int& end) {
+  if (end >= 0) (void)close(end);
+  end = -1;
+}
+
+void run_device(HapticDevice& device) {
+  Channel channel(Channel::multicast);
+  DeviceEnd end(device, [&](const messages::device_state& state) { channel.send(state); });
+  channel.on_command([&](const messages::loop_command& command) { end.receive(command); });
+  end.start();
+  while (!device.finished()) {
+    if (!channel.receive(DeviceEnd::patience_ms)) end.silence();
+  }
+}
+
+/// The whole life of the child.
+[[noreturn]] void child_main(HapticDevice& device, int start, int summary) {
+  (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
+  int status = 1;
+  try {
+    char go = 0;
+    if (read(start, &go, 1) == 1) {
+      run_device(device);
+      const DeviceSummary& counted = device.summary();
+      status = write(summary, &counted, sizeof(counted)) == static_cast<ssize_t>(sizeof(counted)) ? 0 : 1;
+    }
+  } catch (const std::exception& error) {
+    (void)std::fprintf(stderr, "greenloop-loop: %s\n", error.what());
+  }
+  _exit(status);
+}
+
+}  // namespace
+
+DeviceProcess::DeviceProcess(HapticDevice& device) {
+  if (pipe(start_pipe_) != 0 || pipe(summary_pipe_) != 0) throw std::runtime_error("device: no pipe for its process");
+  child_ = fork();
+  if (child_ < 0) throw std::runtime_error("device: its process cannot be started");
+  if (child_ == 0) {
+    close_end(start_pipe_[1]);
+    close_end(summary_pipe_[0]);
+    child_main(device, start_pipe_[0], summary_pipe_[1]);
+  }
+  close_end(start_pipe_[0]);
+  close_end(summary_pipe_[1]);
+}
+
+DeviceProcess::~DeviceProcess() {
+  if (child_ > 0) {
+    (void)kill(child_, SIGKILL);
+    (void)waitpid(child_, nullptr, 0);
+  }
+  close_end(start_pipe_[1]);
+  close_end(summary_pipe_[0]);
+}
+
+void DeviceProcess::start() {
+  if (write(start_pipe_[1], "g", 1) != 1) throw std::runtime_error("device: its process cannot be reached");
+}
+
+bool DeviceProcess::ended() {
+  if (child_ < 0) return true;
+  int status = 0;
+  if (waitpid(child_, &status, WNOHANG) != child_) return false;
+  child_ = -1;
+  read_summary(status);
+  return true;
+}
+
+void DeviceProcess::read_summary(int exit_status) {
+  const bool well = WIFEXITED(exit_status) && WEXITSTATUS(exit_status) == 0;
+  if (!well || read(summary_pipe_[0], &summary_, sizeof(summary_)) != static_cast<ssize_t>(sizeof(summary_))) {
+    throw std::runtime_error("device: its process ended early; no result");
+  }
+}
+
+}  // namespace greenloop

@@ -1,0 +1,236 @@
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "formats/testing/synthetic_model.hpp"
+#include "sim_hw/session/testing/program_run.hpp"
+
+namespace greenloop {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A folder of this process with the synthetic model in it.
+class Workspace {
+ public:
+  Workspace() : folder_(std::filesystem::temp_directory_path() / ("greenloop_loop_test_" + std::to_string(getpid()))) {
+    std::filesystem::create_directories(folder_);
+    ModelData data = synthetic_model({.levels = 5, .touchable_above = -0.2});
+    data.info.max_contacts = 16;
+    data.info.step_work = 60000;
+    write_file(model(), encode(data));
+  }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+  ~Workspace() { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string file(const std::string& name) const { return folder_ / name; }
+  [[nodiscard]] std::string model() const { return file("sphere.gloop"); }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+const Workspace& workspace() {
+  static const Workspace only;
+  return only;
+}
+
+/// One second of the whole script.
+ProgramRun run_text(const Words& more, bool deny_namespaces = false) {
+  Words words{workspace().model(), "--seconds", "1"};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_program(GREENLOOP_LOOP, words, deny_namespaces);
+}
+
+/// The same, its JSON read; the exit status must be `expected`.
+nlohmann::json run_json(Words more, int expected = 0, bool deny_namespaces = false) {
+  more.emplace_back("--json");
+  const ProgramRun run = run_text(more, deny_namespaces);
+  INFO(run.output << run.errors);
+  REQUIRE(run.exit_status == expected);
+  return nlohmann::json::parse(run.output);
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::int64_t cycles_below(const nlohmann::json& json, std::uint32_t finest) {
+  std::int64_t cycles = 0;
+  for (const auto& used : json["levels_used"]) {
+    if (used["level"] < finest) cycles += used["cycles"].get<std::int64_t>();
+  }
+  return cycles;
+}
+
+TEST_CASE("in one process every cycle holds its budget, and every run has the same digest") {
+  const auto json = run_json({"--transport", "memq"});
+  CHECK(json["cycles"] == 1000);
+  CHECK(json["misses"] == 0);
+  CHECK(json["late"] == 0);
+  CHECK(json["allocations"] == 0);
+  CHECK(json["budget_work"] == 60000);
+  CHECK(json["worst_work"] <= 60000);
+  CHECK(json["worst_work"] > 0);
+  CHECK(json["contacts_max"] >= 3);
+  CHECK(json["force_max"] > 1.0);
+  CHECK(json["contact_cycles"] > 200);
+  CHECK(json["processes"] == 1);
+  CHECK(json["transport"] == "memq");
+  CHECK(json["reason"] == "asked for");
+  CHECK(json["script"] == "all");
+  CHECK(json["seconds"] == 1.0);
+  CHECK(json["step_us"]["median"] <= json["step_us"]["p99"]);
+  CHECK(json["step_us"]["p99"] <= json["step_us"]["max"]);
+  CHECK(json["digest"].get<std::string>().size() == 16);
+  CHECK(run_json({"--transport", "memq"})["digest"] == json["digest"]);
+  CHECK(run_json({"--transport", "memq", "--script", "press"})["digest"] != json["digest"]);
+}
+
+TEST_CASE("two processes in a network namespace compute what one does") {
+  const auto here = run_json({"--transport", "memq"});
+  const auto json = run_json({});
+  CHECK(json["digest"] == here["digest"]);
+  CHECK(json["cycles"] == 1000);
+  CHECK(json["misses"] == 0);
+  if (json["transport"] == "udpm") {
+    CHECK(json["processes"] == 2);
+    CHECK_FALSE(json.contains("reason"));
+  } else {
+    MESSAGE("network namespaces are not permitted here: " << json["reason"]);
+    CHECK(json["processes"] == 1);
+    CHECK_FALSE(json["reason"].get<std::string>().empty());
+  }
+}
+
+TEST_CASE("where namespaces are refused, auto says so and runs in one process, and udpm is an error") {
+  const auto json = run_json({}, 0, true);
+  CHECK(json["transport"] == "memq");
+  CHECK(json["processes"] == 1);
+  CHECK(contains(json["reason"], "namespace"));
+  CHECK(json["digest"] == run_json({"--transport", "memq"})["digest"]);
+  const ProgramRun refused = run_text({"--transport", "udpm"}, true);
+  CHECK(refused.exit_status == 1);
+  CHECK(contains(refused.errors, "namespace"));
+}
+
+TEST_CASE("starved, it answers at coarser levels and misses nothing") {
+  const auto fed = run_json({"--transport", "memq"});
+  const auto starved = run_json({"--transport", "memq", "--starve", "0.42"});
+  CHECK(cycles_below(fed, 4) == 0);
+  CHECK(cycles_below(starved, 4) > 50);
+  CHECK(starved["misses"] == 0);
+  CHECK(starved["budget_work"] == 25200);
+  CHECK(starved["worst_work"] <= 25200);
+  CHECK(starved["digest"] != fed["digest"]);
+}
+
+TEST_CASE("a budget below the coarsest answer is refused with the least one, which then holds") {
+  const std::string least = std::to_string(run_json({"--transport", "memq"})["least_work"].get<std::uint64_t>());
+  const ProgramRun refused = run_text({"--budget", "100"});
+  CHECK(refused.exit_status == 1);
+  CHECK(refused.output.empty());
+  CHECK(contains(refused.errors, least));
+  const auto json = run_json({"--transport", "memq", "--budget", least});
+  CHECK(json["misses"] == 0);
+  CHECK(json["worst_work"] <= json["least_work"]);
+}
+
+TEST_CASE("a cycle that overspends is a miss and fails the run") {
+  const auto json = run_json({"--transport", "memq", "--inject-overrun", "500"}, 1);
+  CHECK(json["misses"] == 1);
+  CHECK(json["late"] == 1);
+  CHECK(json["late_injected"] == 0);
+  CHECK(json["worst_work"] > json["budget_work"]);
+  CHECK(json["passed"] == false);
+}
+
+TEST_CASE("injected delays and losses are late in exactly as many cycles, and are no misses") {
+  const auto delayed = run_json({"--transport", "memq", "--inject-delay", "300:7"});
+  CHECK(delayed["late"] == 7);
+  CHECK(delayed["misses"] == 0);
+  const auto lossy = run_json({"--transport", "memq", "--inject-loss", "7"});
+  CHECK(lossy["late"] == 142);
+  CHECK(lossy["misses"] == 0);
+  const auto both = run_json({"--inject-loss", "10", "--inject-delay", "300:15"});
+  CHECK(both["late"] == 100 + 15 - 1);  // cycle 309 is both
+  CHECK(both["digest"] != delayed["digest"]);
+}
+
+TEST_CASE("twenty late commands in a row stop the run, which has then failed") {
+  for (const char* transport : {"memq", "auto"}) {
+    const auto json = run_json({"--transport", transport, "--inject-delay", "300:400"}, 1);
+    CHECK(json["stopped"] == true);
+    CHECK(json["late"] == 20);
+    CHECK(json["cycles"] == 320);
+    CHECK(json["misses"] == 0);
+  }
+}
+
+TEST_CASE("the trace has a line per cycle, the snapshot one per node") {
+  const std::string trace = workspace().file("trace.csv"), snapshot = workspace().file("snapshot.csv");
+  const auto json = run_json({"--transport", "memq", "--trace", trace, "--snapshot", snapshot});
+  std::ifstream lines(trace);
+  std::string line;
+  std::getline(lines, line);
+  CHECK(line ==
+        "time,x0,y0,z0,x1,y1,z1,force_x0,force_y0,force_z0,force_x1,force_y1,force_z1,force,contacts,level,field_level,"
+        "work,budget,status");
+  std::size_t count = 0;
+  double largest = 0;
+  for (; std::getline(lines, line); ++count) {
+    std::istringstream columns(line);
+    std::vector<std::string> column;
+    for (std::string text; std::getline(columns, text, ',');) column.push_back(text);
+    REQUIRE(column.size() == 20);
+    largest = std::max(largest, std::stod(column[13]));
+  }
+  CHECK(count == 1000);
+  CHECK(largest == json["force_max"].get<double>());
+  std::ifstream nodes(snapshot);
+  double deepest = 0;
+  for (count = 0, std::getline(nodes, line); std::getline(nodes, line); ++count) {
+    deepest = std::min(deepest, std::stod(line.substr(line.rfind(',') + 1)));
+  }
+  CHECK(count == 1026);
+  CHECK(deepest < 0);
+}
+
+TEST_CASE("a field now and then costs less and changes the digest") {
+  const auto always = run_json({"--transport", "memq"});
+  const auto seldom = run_json({"--transport", "memq", "--field", "16"});
+  CHECK(seldom["misses"] == 0);
+  CHECK(seldom["digest"] != always["digest"]);
+}
+
+TEST_CASE("the text for people says the same") {
+  const ProgramRun held = run_text({"--transport", "memq"});
+  CHECK(held.exit_status == 0);
+  CHECK(contains(held.output, "HELD: 1000 of 1000 cycles at 1000 Hz, 0 misses, 0 late, 0 allocations"));
+  const ProgramRun failed = run_text({"--transport", "memq", "--inject-overrun", "500"});
+  CHECK(contains(failed.output, "FAILED: 1000 of 1000 cycles at 1000 Hz, 1 misses, 1 late"));
+  CHECK(contains(failed.output, "first miss in cycle 500"));
+}
+
+TEST_CASE("a file that is no model, and words that are no options, are refused") {
+  const std::string broken = workspace().file("broken.gloop");
+  std::ofstream(broken) << "not a model";
+  const ProgramRun no_model = run_program(GREENLOOP_LOOP, {broken});
+  CHECK(no_model.exit_status == 1);
+  CHECK(contains(no_model.errors, broken));
+  CHECK(run_program(GREENLOOP_LOOP, {workspace().file("absent.gloop")}).exit_status == 1);
+  CHECK(run_text({"--inject-delay", "7"}).exit_status == 2);
+  CHECK(run_text({"--starve", "0"}).exit_status == 2);
+  CHECK(run_text({"--starve", "1.5"}).exit_status == 2);
+  CHECK(run_text({"--script", "juggle"}).exit_status == 2);
+  CHECK(run_program(GREENLOOP_LOOP, {}).exit_status == 2);
+}
+
+}  // namespace
+}  // namespace greenloop

@@ -1,0 +1,143 @@
+#include "sim_hw/session/session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "sim_hw/control_loop/loop_thread.hpp"
+#include "sim_hw/session/device_process.hpp"
+#include "sim_hw/session/loaded_model.hpp"
+#include "sim_hw/transport/channel.hpp"
+#include "sim_hw/transport/lock_step.hpp"
+#include "sim_hw/transport/network_namespace.hpp"
+
+namespace greenloop {
+namespace {
+
+Limits limits_of(const Model& model) {
+  constexpr std::uint32_t most = messages::loop_command::max_contacts;
+  const std::uint32_t wanted = model.view().info->max_contacts;
+  return {.max_contacts = wanted == 0 ? Limits{}.max_contacts : std::min(wanted, most)};
+}
+
+Budget budget_of(const SessionOptions& options, const Model& model, const Requirement& need) {
+  const std::uint64_t own = model.view().info->step_work;
+  const std::uint64_t finest = need.worst_work[model.level_count() - 1];
+  const std::uint64_t whole = options.budget != 0 ? options.budget : own != 0 ? own : finest;
+  const Budget budget{static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve))};
+  if (budget.work < need.least_work) {
+    throw std::runtime_error("budget: " + std::to_string(budget.work) + " units per cycle cannot hold even the " +
+                             "coarsest answer; the least budget of this model is " + std::to_string(need.least_work));
+  }
+  return budget;
+}
+
+DeviceSetup device_setup(const SessionOptions& options, const BodySurface& surface, const layout::Info& info) {
+  constexpr double round_seconds = 10;
+  const double rounds = std::max(1.0, std::floor(options.seconds / round_seconds + 0.5));
+  const ProbeSize probe = probe_size(surface);
+  DeviceSetup setup;
+  setup.motion = make_script(options.script, surface, probe, options.seconds / rounds);
+  setup.coupling = coupling(info, surface, probe, setup.hand);
+  setup.origin = surface.centre;
+  setup.period = 1 / options.rate;
+  setup.cycles = std::llround(options.seconds * options.rate);
+  setup.faults = options.faults;
+  return setup;
+}
+
+/// Decides before the run; `transport_reason` says why it is not two processes.
+void choose_transport(const SessionOptions& options, SessionResult& result) {
+  result.transport = "memq";
+  result.processes = 1;
+  if (options.transport == Transport::memq) {
+    result.transport_reason = "asked for";
+    return;
+  }
+  const NamespaceEntry entry = enter_loopback_namespace();
+  if (entry.entered) {
+    result.transport = "udpm";
+    result.processes = 2;
+  } else if (options.transport == Transport::udpm) {
+    throw std::runtime_error("--transport udpm: " + entry.reason + "; use auto or memq");
+  } else {
+    result.transport_reason = entry.reason;
+  }
+}
+
+/// Both ends in one process, each driven by the messages of the other.
+void run_in_memory(HapticDevice& device, LoopThread& loop, SessionResult& result) {
+  Channel channel(Channel::memory);
+  DeviceEnd device_end(device, [&](const messages::device_state& state) { channel.send(state); });
+  LoopEnd loop_end(
+      [&](const messages::device_state& state) -> const auto& { return loop.answer(state); },
+      [&](const messages::loop_command& command) {
+        result.loop_digest = command.digest;
+        channel.send(command);
+      });
+  channel.on_state([&](const messages::device_state& state) { loop_end.receive(state); });
+  channel.on_command([&](const messages::loop_command& command) { device_end.receive(command); });
+  device_end.start();
+  while (!device.finished()) {
+    if (!channel.receive(DeviceEnd::patience_ms)) device_end.silence();
+  }
+}
+
+/// The loop's end here, the device in a process of its own.
+void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& result) {
+  Channel channel(Channel::multicast);
+  LoopEnd loop_end(
+      [&](const messages::device_state& state) -> const auto& { return loop.answer(state); },
+      [&](const messages::loop_command& command) {
+        result.loop_digest = command.digest;
+        channel.send(command);
+      });
+  channel.on_state([&](const messages::device_state& state) { loop_end.receive(state); });
+  device.start();
+  while (!device.ended()) {
+    while (channel.receive(20)) {
+    }
+  }
+  result.device = device.summary();
+}
+
+}  // namespace
+
+SessionResult run_session(const SessionOptions& options) {
+  const LoadedModel loaded = load_model(options.model);
+  const Model& model = loaded.model;
+  const Limits limits = limits_of(model);
+  const Requirement need = Elastostatic::required(model, limits);
+  SessionResult result;
+  result.least_work = need.least_work;
+  result.budget = budget_of(options, model, need);
+  const BodySurface surface = body_surface(model.view());
+  HapticDevice device(device_setup(options, surface, *model.view().info));
+  result.cycles_asked = std::llround(options.seconds * options.rate);
+  result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count());
+
+  const LoadedBody body = create_body(model, limits);
+  ControlLoop loop(body.body, surface,
+                   {.probe_radius = probe_size(surface).radius,
+                    .max_contacts = limits.max_contacts,
+                    .budget = result.budget,
+                    .field_every = options.field_every,
+                    .overrun_cycle = options.overrun_cycle});
+  choose_transport(options, result);
+  // the child must be born before there are threads
+  std::optional<DeviceProcess> child;
+  if (result.processes == 2) child.emplace(device);
+  LoopThread thread(loop, result.log);
+  if (child) {
+    run_loop_process(*child, thread, result);
+  } else {
+    run_in_memory(device, thread, result);
+    result.device = device.summary();
+  }
+  result.allocations = thread.allocations();
+  return result;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "sim_hw/control_loop/run_log.hpp"
+#include "sim_hw/device/haptic_device.hpp"
+#include "sim_hw/device/script.hpp"
+
+namespace greenloop {
+
+enum class Transport { automatic, udpm, memq };
+
+struct SessionOptions {
+  std::filesystem::path model;
+  double seconds = 10;  ///< s of virtual time, > 0
+  double rate = 1000;   ///< Hz, 100 or more: the hand's integration needs it
+  Script script = Script::all;
+  std::uint64_t budget = 0;  ///< units per cycle; 0: the model's own, or else the worst case of its finest level
+  double starve = 1;         ///< (0, 1], of the budget
+  Transport transport = Transport::automatic;
+  std::int64_t field_every = 1;
+  InjectedFaults faults;
+  std::int64_t overrun_cycle = -1;
+};
+
+/// A run that came to its end, well or badly.
+struct SessionResult {
+  std::int64_t cycles_asked = 0;
+  Budget budget;
+  std::uint64_t least_work = 0;
+  std::string transport;         ///< "udpm" or "memq"
+  std::string transport_reason;  ///< why not two processes; empty for udpm
+  int processes = 0;
+  DeviceSummary device;
+  std::int64_t loop_digest = 0;  ///< of the last command sent
+  std::uint64_t allocations = 0;
+  RunLog log{0, 0};
+};
+
+/// Runs device and loop against each other in lock step. Throws std::runtime_error if the run cannot start (model,
+/// limits, a budget below Requirement::least_work, no namespace for udpm) or one side vanishes.
+/// With udpm the calling thread changes to a network namespace of its own; no other thread may run then.
+[[nodiscard]] SessionResult run_session(const SessionOptions& options);
+
+}  // namespace greenloop

@@ -1,0 +1,121 @@
+#include "sim_hw/session/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace greenloop {
+namespace {
+
+StepTime step_time(const std::vector<CycleRecord>& records) {
+  std::vector<double> time;
+  for (const CycleRecord& record : records) time.push_back(record.cpu_us);
+  if (time.empty()) return {};
+  std::sort(time.begin(), time.end());
+  const auto quantile = [&](double q) {
+    return time[static_cast<std::size_t>(q * static_cast<double>(time.size() - 1))];
+  };
+  return {time.front(), quantile(0.5), quantile(0.99), time.back()};
+}
+
+std::string digest_text(const SessionResult& result) {
+  return fmt::format("{:016x}", static_cast<std::uint64_t>(result.loop_digest));
+}
+
+std::string levels_text(const Verdict& verdict) {
+  std::string text;
+  for (const auto& [level, cycles] : verdict.levels_used) {
+    text += fmt::format("{}level {} in {} cycles", text.empty() ? "" : ", ", level, cycles);
+  }
+  return text;
+}
+
+}  // namespace
+
+Verdict judge(const SessionResult& result) {
+  Verdict verdict;
+  verdict.cycles = static_cast<std::int64_t>(result.log.records().size());
+  for (const CycleRecord& record : result.log.records()) {
+    if (record.missed(result.budget)) {
+      if (verdict.misses++ == 0) verdict.first_miss = record.cycle;
+    }
+    verdict.worst_work = std::max(verdict.worst_work, record.report.work);
+    verdict.contact_cycles += record.contacts > 0;
+    verdict.contacts_max = std::max(verdict.contacts_max, record.contacts);
+    verdict.force_max = std::max(verdict.force_max, record.total_force());
+    ++verdict.levels_used[record.report.constraint_level];
+  }
+  verdict.step_us = step_time(result.log.records());
+  verdict.complete = verdict.cycles == result.cycles_asked && result.device.cycles == result.cycles_asked &&
+                     result.device.digest == result.loop_digest && !result.device.stopped;
+  verdict.passed = verdict.misses == 0 && result.allocations == 0 &&
+                   result.device.late <= result.device.late_injected && verdict.complete;
+  return verdict;
+}
+
+nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResult& result, const Verdict& verdict) {
+  nlohmann::ordered_json levels = nlohmann::ordered_json::array();
+  for (const auto& [level, cycles] : verdict.levels_used) levels.push_back({{"level", level}, {"cycles", cycles}});
+  nlohmann::ordered_json json{
+      {"passed", verdict.passed},
+      {"script", script_names[static_cast<std::size_t>(options.script)]},
+      {"seconds", options.seconds},
+      {"rate", options.rate},
+      {"cycles", verdict.cycles},
+      {"misses", verdict.misses},
+      {"late", result.device.late},
+      {"late_injected", result.device.late_injected},
+      {"stopped", result.device.stopped},
+      {"budget_work", result.budget.work},
+      {"least_work", result.least_work},
+      {"worst_work", verdict.worst_work},
+      {"levels_used", levels},
+      {"digest", digest_text(result)},
+      {"allocations", result.allocations},
+      {"contact_cycles", verdict.contact_cycles},
+      {"contacts_max", verdict.contacts_max},
+      {"force_max", verdict.force_max},
+      {"step_us",
+       {{"min", verdict.step_us.min},
+        {"median", verdict.step_us.median},
+        {"p99", verdict.step_us.p99},
+        {"max", verdict.step_us.max}}},
+      {"transport", result.transport},
+      {"processes", result.processes},
+      {"retransmits", result.device.retransmits},
+  };
+  if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
+  return json;
+}
+
+std::string to_text(const SessionOptions& options, const SessionResult& result, const Verdict& verdict) {
+  const std::string reason = result.transport_reason.empty() ? "" : " (" + result.transport_reason + ")";
+  std::string text = fmt::format("{}: {} of {} cycles at {} Hz, {} misses, {} late, {} allocations\n",
+                                 verdict.passed ? "HELD" : "FAILED", verdict.cycles, result.cycles_asked, options.rate,
+                                 verdict.misses, result.device.late, result.allocations);
+  text += fmt::format("  model      {}\n", options.model.string());
+  text += fmt::format("  script     {}: {} cycles in contact, at most {} contacts, {:.3g} N\n",
+                      script_names[static_cast<std::size_t>(options.script)], verdict.contact_cycles,
+                      verdict.contacts_max, verdict.force_max);
+  text += fmt::format("  work       at most {} of {} units per cycle ({:.1f} %); the least budget is {}\n",
+                      verdict.worst_work, result.budget.work,
+                      100 * static_cast<double>(verdict.worst_work) / static_cast<double>(result.budget.work),
+                      result.least_work);
+  text += fmt::format("  levels     {}\n", levels_text(verdict));
+  text += fmt::format("  digest     {}\n", digest_text(result));
+  text += fmt::format("  transport  {}, {} process{}{}, {} retransmissions\n", result.transport, result.processes,
+                      result.processes == 1 ? "" : "es", reason, result.device.retransmits);
+  text += fmt::format("  step       {:.1f} us median, {:.1f} p99, {:.1f} worst (thread CPU time, for information)\n",
+                      verdict.step_us.median, verdict.step_us.p99, verdict.step_us.max);
+  if (verdict.first_miss >= 0) text += fmt::format("  first miss in cycle {}\n", verdict.first_miss);
+  if (result.device.stopped) {
+    text += fmt::format("  stopped    {} late commands in a row\n", CommandArrival::most_in_a_row);
+  } else if (!verdict.complete) {
+    text += "  incomplete: device and loop do not agree on what was sent\n";
+  }
+  return text;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <lcm/lcm.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "greenloop/messages/device_state.hpp"
+#include "greenloop/messages/loop_command.hpp"
+
+namespace greenloop {
+
+/// Sends and receives the two messages through LCM. Never for the loop itself: it blocks, allocates and calls the
+/// system. One thread uses a channel.
+class Channel {
+ public:
+  /// Only these two places are ever sent to: multicast with a time to live of 0, which stays on this machine, and the
+  /// memory of this process.
+  static constexpr const char* multicast = "udpm://239.255.76.67:7667?ttl=0";
+  static constexpr const char* memory = "memq://";
+
+  /// Throws std::runtime_error if LCM refuses `url`.
+  explicit Channel(const char* url);
+
+  void on_state(std::function<void(const messages::device_state&)> receive);
+  void on_command(std::function<void(const messages::loop_command&)> receive);
+  void send(const messages::device_state& state);
+  void send(const messages::loop_command& command);
+
+  /// Waits for one message at most `milliseconds` and passes it on. False if none came.
+  bool receive(int milliseconds);
+
+ private:
+  struct Destroy {
+    void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
+  };
+  // filled before the subscription that uses them
+  std::function<void(const messages::device_state&)> receive_state_;
+  std::function<void(const messages::loop_command&)> receive_command_;
+  std::unique_ptr<lcm_t, Destroy> lcm_;
+};
+
+}  // namespace greenloop

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "greenloop/messages/device_state.hpp"
+#include "greenloop/messages/loop_command.hpp"
+#include "sim_hw/device/haptic_device.hpp"
+
+namespace greenloop {
+
+/// The device's half of the lock step: state k goes out, nothing happens until command k is there. A lost packet
+/// costs wall time and a retransmission, but changes nothing in virtual time.
+class DeviceEnd {
+ public:
+  static constexpr int patience_ms = 50;     ///< silence after which a state is sent again
+  static constexpr int most_silences = 200;  ///< 10 s without the answer: the loop is gone
+
+  DeviceEnd(HapticDevice& device, std::function<void(const messages::device_state&)> send);
+
+  void start();
+
+  /// Commands of other cycles, answers to retransmissions, are ignored.
+  void receive(const messages::loop_command& command);
+
+  /// To be called after `patience_ms` without a message. Throws std::runtime_error after `most_silences` in a row.
+  void silence();
+
+ private:
+  HapticDevice* device_;
+  std::function<void(const messages::device_state&)> send_;
+  int silences_ = 0;
+};
+
+/// The loop's half: every state is computed once, in order; one that comes again gets the same answer again.
+class LoopEnd {
+ public:
+  LoopEnd(std::function<const messages::loop_command&(const messages::device_state&)> answer,
+          std::function<void(const messages::loop_command&)> send);
+
+  void receive(const messages::device_state& state);
+
+ private:
+  std::function<const messages::loop_command&(const messages::device_state&)> answer_;
+  std::function<void(const messages::loop_command&)> send_;
+  std::int64_t next_ = 0;
+  messages::loop_command last_{};
+};
+
+}  // namespace greenloop
