@@ -1,0 +1,65 @@
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <vector>
+
+#include "offline/solve/elasticity.hpp"
+#include "offline/solve/factorization.hpp"
+#include "rt_tests/bench/exact_columns.hpp"
+
+#ifdef GREENLOOP_HAS_CHOLMOD
+#include <Eigen/CholmodSupport>
+#endif
+
+namespace greenloop::bench {
+namespace {
+
+constexpr int repetitions = 9;
+
+template <class Solve>
+double median_seconds(Solve solve) {
+  std::vector<double> seconds;
+  for (int i = 0; i < repetitions; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    solve();
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + repetitions / 2, seconds.end());
+  return seconds[repetitions / 2];
+}
+
+}  // namespace
+
+BackSubstitution time_back_substitution(const GreenStore& store) {
+  const auto& contents = store.contents();
+  if (contents.volume.tetrahedra.empty()) {
+    throw std::runtime_error(store.path().string() +
+                             ": holds no volume, so there is no stiffness matrix to solve with");
+  }
+  const auto stiffness = offline::assemble_stiffness(contents.volume, {contents.young, contents.poisson},
+                                                     offline::FreeVertices(contents.volume_fixed));
+  const Eigen::VectorXd force = Eigen::VectorXd::Ones(stiffness.rows());
+  BackSubstitution result;
+  double checksum = 0;
+#ifdef GREENLOOP_HAS_CHOLMOD
+  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor(stiffness);
+  result.solver = "CHOLMOD";
+  result.seconds = median_seconds([&] { checksum += Eigen::VectorXd(factor.solve(force))[0]; });
+#else
+  offline::Factorization factor(stiffness, 3);
+  const Eigen::SparseMatrix<double> right_hand_side = Eigen::MatrixXd(force).sparseView();
+  Eigen::MatrixXd solution(stiffness.rows(), 1);
+  result.solver = "MUMPS";
+  result.seconds = median_seconds([&] {
+    factor.solve(right_hand_side, solution);
+    checksum += solution(0, 0);
+  });
+#endif
+  if (!(checksum != 0)) {
+    throw std::runtime_error("back-substitution gave no displacement");
+  }
+  return result;
+}
+
+}  // namespace greenloop::bench

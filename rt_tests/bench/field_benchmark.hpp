@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "formats/exchange/green_store.hpp"
+#include "runtime/model.hpp"
+
+namespace greenloop::bench {
+
+/// One rung of the ladder a step descends as its budget shrinks.
+struct Rung {
+  std::uint32_t constraint_level = 0;
+  std::uint32_t field_level = 0;
+  std::uint64_t work = 0;  ///< units, median over the sets, factor cached
+  double step_us = 0;      ///< median
+  double rms_error = 0;    ///< of the field, against the exact solution at the finest level
+  double force_error = 0;  ///< worst of the total force
+};
+
+/// A contact count measured: a whole step (cached factor, forces, field of every node) beside its yardsticks.
+struct FieldFigures {
+  std::size_t contacts = 0;
+  std::size_t sets = 0;             ///< contact sets that take turns
+  double dense_us = 0;              ///< summing the dense columns, single precision, OpenBLAS
+  double step_us = 0;               ///< median over rounds
+  double fresh_step_us = 0;         ///< with a factor of its own
+  double dense_ratio = 0;           ///< median over rounds of dense / step, contacts moving from set to set
+  double same_set_dense_ratio = 0;  ///< the same with one set over and over, all of it in the cache
+  double backsolve_ratio = 0;       ///< one sparse back-substitution / step
+  double rms_error = 0;             ///< ||u^ - u||_F / ||u||_F over all sets, exact forces and columns
+  double force_error = 0;           ///< worst relative error of a set's total force
+  std::uint64_t work = 0;           ///< units of a step, median over the sets
+  std::vector<Rung> rungs;          ///< finest first
+};
+
+/// Measures one contact count. Wall clock of single calls, medians of `rounds`; ratios are taken round by round.
+[[nodiscard]] FieldFigures measure_field(const Model& model, const GreenStore& store, std::size_t contacts,
+                                         std::size_t rounds, double back_substitution_seconds);
+
+}  // namespace greenloop::bench
