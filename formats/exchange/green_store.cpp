@@ -72,8 +72,7 @@ GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
   Hdf5Shape shape;
   auto done = hdf5.read<unsigned char>(kDone, shape);
   if (shape != Hdf5Shape{contents.column_node.size()}) hdf5.fail(kDone, "needs one entry per column");
-  return GreenStore(
-      std::unique_ptr<File>(new File{std::move(hdf5), std::move(contents), std::move(done), writable}));
+  return GreenStore(std::unique_ptr<File>(new File{std::move(hdf5), std::move(contents), std::move(done), writable}));
 }
 
 const std::filesystem::path& GreenStore::path() const { return file_->hdf5.path(); }
@@ -119,7 +118,9 @@ void GreenStore::write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd
   hdf5.flush();
 }
 
-Eigen::MatrixXd GreenStore::read_columns(int first, int count) const { return read_block(0, row_count(), first, count); }
+Eigen::MatrixXd GreenStore::read_columns(int first, int count) const {
+  return read_block(0, row_count(), first, count);
+}
 
 Eigen::MatrixXd GreenStore::read_block(int first_row, int rows, int first_column, int columns) const {
   const auto& hdf5 = file_->hdf5;
@@ -128,8 +129,8 @@ Eigen::MatrixXd GreenStore::read_block(int first_row, int rows, int first_column
     if (!is_done(c)) hdf5.fail(kDone, "column " + std::to_string(c) + " is not solved yet; resume the build");
   }
   if (first_row < 0 || rows <= 0 || first_row > row_count() - rows) {
-    hdf5.fail(kDisplacement, "rows from " + std::to_string(first_row) + " are outside 0 .. " +
-                                 std::to_string(row_count() - 1));
+    hdf5.fail(kDisplacement,
+              "rows from " + std::to_string(first_row) + " are outside 0 .. " + std::to_string(row_count() - 1));
   }
   Eigen::MatrixXd block(3 * rows, 3 * columns);
   hdf5.read_part(kDisplacement, {static_cast<hsize_t>(first_column), 0, static_cast<hsize_t>(first_row), 0},

@@ -23,15 +23,15 @@ enum SurfaceFlag : std::uint8_t {
 
 /// Everything in a store but the Green's functions themselves. n surface vertices, v volume vertices.
 struct GreenStoreContents {
-  SemiRegularMesh surface;           ///< m
-  Eigen::VectorXd area;              ///< n lumped areas, m^2, > 0
-  std::vector<std::uint8_t> flags;   ///< n combinations of SurfaceFlag
-  std::vector<int> row_node;         ///< surface vertices whose displacement is stored, strictly increasing
-  std::vector<int> column_node;      ///< surface vertices that carry unit forces, strictly increasing
+  SemiRegularMesh surface;          ///< m
+  Eigen::VectorXd area;             ///< n lumped areas, m^2, > 0
+  std::vector<std::uint8_t> flags;  ///< n combinations of SurfaceFlag
+  std::vector<int> row_node;        ///< surface vertices whose displacement is stored, strictly increasing
+  std::vector<int> column_node;     ///< surface vertices that carry unit forces, strictly increasing
 
-  TetrahedralMesh volume;                                     ///< m; empty when the columns come from elsewhere
-  std::vector<std::uint8_t> volume_fixed;                     ///< v, nonzero = fixed
-  Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation; ///< n x v weights: surface from volume displacement
+  TetrahedralMesh volume;                                      ///< m; empty when the columns come from elsewhere
+  std::vector<std::uint8_t> volume_fixed;                      ///< v, nonzero = fixed
+  Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;  ///< n x v weights: surface from volume displacement
 
   double young = 0.0;       ///< Pa
   double poisson = 0.0;     ///< dimensionless
@@ -67,7 +67,8 @@ class GreenStore {
   [[nodiscard]] std::vector<int> missing_columns() const;
 
   /// Writes columns first .. first + k - 1 and marks them done. `displacement` is 3R x 3k, m/N: row 3r + i is axis i at
-  /// row node r, column 3c + j the unit force along axis j at column node first + c. Refuses values that are not finite.
+  /// row node r, column 3c + j the unit force along axis j at column node first + c. Refuses values that are not
+  /// finite.
   void write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement);
 
   /// Columns first .. first + count - 1 as 3R x 3 count, laid out as in write_columns; all must be done.

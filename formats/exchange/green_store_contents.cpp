@@ -174,8 +174,8 @@ Interpolation read_interpolation(const Hdf5File& file, std::size_t rows, std::si
   const auto weight = read_list<double>(file, group + "/weight");
   if (start.size() != rows + 1 || start.front() != 0 || !std::is_sorted(start.begin(), start.end()) ||
       static_cast<std::size_t>(start.back()) != column.size() || column.size() != weight.size()) {
-    file.fail(group, "row_start, column and weight are not a compressed sparse matrix of " + std::to_string(rows) +
-                         " rows");
+    file.fail(group,
+              "row_start, column and weight are not a compressed sparse matrix of " + std::to_string(rows) + " rows");
   }
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t r = 0; r < rows; ++r) {

@@ -35,7 +35,8 @@ void Hdf5File::fail(std::string_view object, std::string_view what) const {
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   const Hdf5Silence silence;
   Hdf5Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-  if (!handle) throw std::runtime_error(path.string() + ": cannot be created; does its folder exist and is it writable?");
+  if (!handle)
+    throw std::runtime_error(path.string() + ": cannot be created; does its folder exist and is it writable?");
   return {std::move(handle), path};
 }
 
@@ -44,7 +45,8 @@ Hdf5File Hdf5File::open(const std::filesystem::path& path, bool writable) {
   if (!std::filesystem::exists(path)) throw std::runtime_error(path.string() + ": there is no such file");
   Hdf5Handle handle(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle) {
-    throw std::runtime_error(path.string() + ": cannot be opened; either it is no HDF5 file, or another process is "
+    throw std::runtime_error(path.string() +
+                             ": cannot be opened; either it is no HDF5 file, or another process is "
                              "writing it, or permission is missing");
   }
   return {std::move(handle), path};
@@ -108,8 +110,8 @@ std::string Hdf5File::read_text(const std::string& object_name, const std::strin
 void Hdf5File::write_number(const std::string& object_name, const std::string& name, double value) {
   const auto owner = object(object_name);
   const Hdf5Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Hdf5Handle id(
-      H5Acreate2(owner.get(), name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle id(H5Acreate2(owner.get(), name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                      H5Aclose);
   if (!id || H5Awrite(id.get(), H5T_NATIVE_DOUBLE, &value) < 0) {
     fail(object_name, "the attribute '" + name + "' cannot be written");
   }
@@ -206,10 +208,10 @@ void Hdf5File::flush() {
   if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0) fail("file", "cannot be flushed; is the disk full?");
 }
 
-#define GREENLOOP_INSTANTIATE(Number)                                                                             \
-  template void Hdf5File::reserve<Number>(const std::string&, const Hdf5Shape&);                                  \
-  template void Hdf5File::write<Number>(const std::string&, const Hdf5Shape&, const std::vector<Number>&);        \
-  template std::vector<Number> Hdf5File::read<Number>(const std::string&, Hdf5Shape&) const;                      \
+#define GREENLOOP_INSTANTIATE(Number)                                                                                \
+  template void Hdf5File::reserve<Number>(const std::string&, const Hdf5Shape&);                                     \
+  template void Hdf5File::write<Number>(const std::string&, const Hdf5Shape&, const std::vector<Number>&);           \
+  template std::vector<Number> Hdf5File::read<Number>(const std::string&, Hdf5Shape&) const;                         \
   template void Hdf5File::write_part<Number>(const std::string&, const Hdf5Shape&, const Hdf5Shape&, const Number*); \
   template void Hdf5File::read_part<Number>(const std::string&, const Hdf5Shape&, const Hdf5Shape&, Number*) const;
 GREENLOOP_INSTANTIATE(double)

@@ -29,8 +29,8 @@ std::string explain(int code, int detail) {
     case -5:
     case -7:
     case -13:
-      return "out of memory (MUMPS asked for " + std::to_string(detail) +
-             (detail < 0 ? " million" : "") + " entries); use fewer levels or coarser interior elements";
+      return "out of memory (MUMPS asked for " + std::to_string(detail) + (detail < 0 ? " million" : "") +
+             " entries); use fewer levels or coarser interior elements";
     case -8:
     case -9:
     case -11:
@@ -161,6 +161,8 @@ struct Factorization::Solver {
     constexpr int kMostExtraMemory = 800;  // per cent
     while (lacks_workspace(attempt(kFactorize)) && icntl(14) < kMostExtraMemory) icntl(14) = 2 * icntl(14) + 20;
     if (mumps.infog[0] < 0) run(kFactorize);
+    constexpr int kNegativePivots = 11;
+    if (mumps.infog[kNegativePivots] > 0) throw std::runtime_error("factorisation: " + explain(-40, 0));
     // the matrix itself is no longer needed
     for (auto* list : {&rows, &columns, &pivots}) std::vector<MUMPS_INT>().swap(*list);
     std::vector<double>().swap(values);

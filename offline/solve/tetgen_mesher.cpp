@@ -131,9 +131,8 @@ TetrahedralMesh mesh_with_tetgen(const TriangleMesh& surface) {
   write_smesh(surface, stem.string() + ".smesh");
   const int status = run_tetgen(stem.string() + ".smesh");
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error(
-        "the program tetgen failed (wait status " + std::to_string(status) +
-        "); this happens when surface triangles intersect each other");
+    throw std::runtime_error("the program tetgen failed (wait status " + std::to_string(status) +
+                             "); this happens when surface triangles intersect each other");
   }
   return read_result(surface, stem);
 }

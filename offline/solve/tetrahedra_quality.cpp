@@ -121,7 +121,8 @@ std::vector<std::array<int, 3>> boundary_triangles(const TetrahedralMesh& mesh) 
     throw std::runtime_error("tetrahedral mesh: two tetrahedra lie on the same side of face " + name_of(*twice) +
                              "; the mesh overlaps itself or an element is inverted");
   }
-  std::erase_if(faces, [&](const Triangle& f) { return std::binary_search(sorted.begin(), sorted.end(), reversed(f)); });
+  std::erase_if(faces,
+                [&](const Triangle& f) { return std::binary_search(sorted.begin(), sorted.end(), reversed(f)); });
   return faces;
 }
 

@@ -11,11 +11,11 @@ namespace greenloop::offline {
 inline constexpr double kSliverQuality = 0.1;
 
 struct TetrahedraQuality {
-  double volume = 0.0;              ///< sum over the tetrahedra, unit of length cubed
-  double min_quality = 1.0;         ///< smallest mean ratio 12 (3V)^(2/3) / sum of squared edges; 1 = regular, <= 0 = inverted
-  std::size_t slivers = 0;          ///< tetrahedra below kSliverQuality
-  std::size_t inverted = 0;         ///< tetrahedra without positive volume
-  std::size_t interior_nodes = 0;   ///< vertices that lie on no boundary triangle
+  double volume = 0.0;       ///< sum over the tetrahedra, unit of length cubed
+  double min_quality = 1.0;  ///< smallest mean ratio 12 (3V)^(2/3) / sum of squared edges; 1 = regular, <= 0 = inverted
+  std::size_t slivers = 0;   ///< tetrahedra below kSliverQuality
+  std::size_t inverted = 0;  ///< tetrahedra without positive volume
+  std::size_t interior_nodes = 0;  ///< vertices that lie on no boundary triangle
 };
 
 /// Volume and shape of every tetrahedron. Linear work. Throws std::invalid_argument on a vertex index out of range.
