@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/exchange/material.hpp"
 #include "offline/scene/region.hpp"
 
 namespace greenloop::offline {
@@ -41,11 +42,6 @@ struct MeshSource {
 struct Remesh {
   int base_vertices = 42;  ///< wanted size of the base mesh, 4..10000
   int levels = 3;          ///< midpoint splits, 0..7
-};
-
-struct Material {
-  double young = 0;    ///< Young's modulus [Pa], > 0
-  double poisson = 0;  ///< Poisson's ratio, -1 < v < 0.5
 };
 
 struct AccuracyGoal {
