@@ -125,7 +125,7 @@ TEST_CASE_FIXTURE(Fixture, "refused: touched and read regions that hold no node 
 TEST_CASE("the example scene holds about a sixth of the teddy bear") {
   const char* data = std::getenv("GREENLOOP_DATA");
   REQUIRE_MESSAGE(data != nullptr, "GREENLOOP_DATA is not set; run the tests through ctest");
-  const auto scene = read_scene(GREENLOOP_EXAMPLES "/bear.toml");
+  const auto scene = read_scene(GREENLOOP_SOURCE "/offline/scene/examples/bear.toml");
   auto mesh = greenloop::read_surface(std::string(data) + "/meshes/" + scene.mesh.name);
   Eigen::AlignedBox3d box;
   for (const auto& vertex : mesh.vertices) {

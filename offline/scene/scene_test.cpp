@@ -2,8 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
+#include <fstream>
 #include <initializer_list>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -427,6 +428,19 @@ TEST_CASE("refused: a store without file") {
 TEST_CASE("refused: a scene file that is not there") {
   CHECK_THROWS_WITH_AS(static_cast<void>(read_scene("no/such/scene.toml")), "no/such/scene.toml: cannot be read",
                        SceneError);
+}
+
+TEST_CASE("the examples are accepted: the file, and the one in the documentation") {
+  CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/bear.toml").mesh.name == "bear_bis.off");
+  std::ifstream stream(GREENLOOP_SOURCE "/docs/scene.md");
+  const std::string page(std::istreambuf_iterator<char>(stream), {});
+  const auto begin = page.find("```toml\n");
+  REQUIRE(begin != std::string::npos);
+  const auto end = page.find("```\n", begin + 8);
+  REQUIRE(end != std::string::npos);
+  const auto scene = parse_scene(page.substr(begin + 8, end - begin - 8), "docs/scene.md");
+  CHECK(scene.touched.size() == 2);
+  CHECK(scene.store == "docs/bear.h5");
 }
 
 TEST_CASE("a mesh is scaled by its unit or to its size") {
