@@ -88,7 +88,7 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
 
   // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 x (Columns, 3 Representatives, 3 Blocks)
   REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 * 7);
-  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 832}, {"bytes", 256}});
+  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 896}, {"bytes", 256}});
   CHECK(found["sections"].back()["kind"] == "Blocks(2, 1)");
 }
 
