@@ -126,8 +126,9 @@ TEST_CASE("verify refuses: bytes between the arrays that are not zero") {
     ModelMutant mutant = valid();
     return header_of(mutant);
   }();
-  const std::uint64_t ends[] = {blocks.begin_offset + 4 * (blocks.columns + 1),
-                                blocks.scale_offset + 4 * blocks.columns, blocks.index_offset + 2 * blocks.block_count};
+  const std::uint64_t ends[] = {blocks.begin_offset + std::uint64_t{4} * (blocks.columns + 1),
+                                blocks.scale_offset + std::uint64_t{4} * blocks.columns,
+                                blocks.index_offset + 2 * blocks.block_count};
   const std::uint64_t starts[] = {blocks.scale_offset, blocks.index_offset, blocks.value_offset};
   for (int i = 0; i < 3; ++i) {
     REQUIRE(ends[i] < starts[i]);

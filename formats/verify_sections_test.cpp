@@ -207,11 +207,8 @@ TEST_CASE("verify refuses: a cut file that claims fewer blocks than it holds, or
 
   ModelMutant small(cut);
   Level& rows = *small.records<Level>(SectionKind::level, 0);
-  rows.dense_blocks = 5 * rows.column_count;
-  rows.kept_blocks = 5 * rows.column_count;
-  const VerifyResult result = small.verdict();
-  CHECK(result.rule == VerifyRule::inconsistent);
-  CHECK(result.kind == SectionKind::level);
+  rows.kept_blocks = rows.dense_blocks = std::uint64_t{12} * rows.column_count;
+  check_refused(small, VerifyRule::inconsistent, SectionKind::level, 0, 0, "dense_blocks", 0);
 }
 
 TEST_CASE("verify refuses: measured errors that are negative or not finite") {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "formats/c_array.hpp"
+#include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
 
 namespace greenloop {
@@ -15,6 +16,7 @@ namespace {
 void write_all(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   write_c_array(folder / "small_sphere.h", encode(synthetic_model({.levels = 2})));
+  write_file(folder / "smallest.gloop", encode(smallest_model()));
   for (std::uint32_t levels = 1; levels <= 3; ++levels) {
     for (const std::uint32_t value_bytes : {1u, 2u}) {
       for (const bool dense : {false, true}) {

@@ -13,6 +13,7 @@
 
 #include "formats/c_array.hpp"
 #include "formats/exchange/surface_io.hpp"
+#include "formats/exchange/volume_io.hpp"
 #include "formats/model_file.hpp"
 #include "formats/model_surface.hpp"
 #include "formats/writer.hpp"
@@ -25,6 +26,10 @@ bool is_c_source(const std::string& extension) { return extension == ".h" || ext
 bool is_surface(const std::string& extension) {
   constexpr std::array surfaces{".off", ".obj", ".stl", ".ply"};
   return std::find(surfaces.begin(), surfaces.end(), extension) != surfaces.end();
+}
+bool is_volume(const std::string& extension) {
+  constexpr std::array volumes{".msh", ".mesh", ".vtk", ".vtu", ".node", ".ele", ".veg"};
+  return std::find(volumes.begin(), volumes.end(), extension) != volumes.end();
 }
 
 [[noreturn]] void refuse(const ConvertArguments& arguments, const std::string& why) {
@@ -64,6 +69,12 @@ void convert_surface(const ConvertArguments& arguments, const std::string& to) {
   write_surface(arguments.output, read_surface(arguments.input));
 }
 
+void convert_volume(const ConvertArguments& arguments, const std::string& to) {
+  if (!is_volume(to)) refuse(arguments, "a volume becomes .msh, .mesh or .vtk");
+  if (arguments.levels) refuse(arguments, "--levels is for models; leave it out");
+  write_volume(arguments.output, read_volume(arguments.input));
+}
+
 }  // namespace
 
 int run_convert(const ConvertArguments& arguments, std::ostream& out) {
@@ -72,8 +83,12 @@ int run_convert(const ConvertArguments& arguments, std::ostream& out) {
     convert_model(arguments, to);
   } else if (is_surface(from)) {
     convert_surface(arguments, to);
+  } else if (is_volume(from)) {
+    convert_volume(arguments, to);
   } else {
-    refuse(arguments, fmt::format("do not know \"{}\"; expected .gloop, .off, .obj, .stl or .ply", from));
+    refuse(arguments, fmt::format("do not know \"{}\"; expected a model (.gloop), a surface (.off .obj .stl .ply) or a "
+                                  "volume (.msh .mesh .vtk .vtu .node .ele .veg)",
+                                  from));
   }
   fmt::print(out, "wrote {}\n", arguments.output.string());
   return 0;
@@ -81,9 +96,12 @@ int run_convert(const ConvertArguments& arguments, std::ostream& out) {
 
 void add_convert(CLI::App& parent, int& exit_code) {
   CLI::App* command =
-      parent.add_subcommand("convert", "Model to C source, coarser model or surface; surface to another format");
+      parent.add_subcommand("convert", "Model to C source, coarser model or surface; meshes to other formats");
   const auto arguments = std::make_shared<ConvertArguments>();
-  command->add_option("input", arguments->input, "Model (.gloop) or surface (.off .obj .stl .ply)")->required();
+  command
+      ->add_option("input", arguments->input,
+                   "Model (.gloop), surface (.off .obj .stl .ply) or volume (.msh .mesh .vtk .vtu .node .ele .veg)")
+      ->required();
   command->add_option("-o,--output", arguments->output, "File to write; its extension says what")->required();
   command->add_option("--levels", arguments->levels, "Keep this many mesh levels of the model, coarsest first");
   command->callback([arguments, &exit_code] { exit_code = run_convert(*arguments, std::cout); });

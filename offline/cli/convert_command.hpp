@@ -18,7 +18,8 @@ struct ConvertArguments {
 };
 
 /// Converts by the files' extensions: a model (.gloop) to C source (.h or .c: both are written), to its undeformed
-/// surface, or, with `levels`, to a coarser model; a surface (.off .obj .stl .ply) to another surface format.
+/// surface, or, with `levels`, to a coarser model; a surface (.off .obj .stl .ply) to another surface format; a
+/// volume of tetrahedra (.msh .mesh .vtk .vtu .node .ele .veg) to .msh, .mesh or .vtk.
 /// Says on `out` what was written and returns the exit code. Throws std::runtime_error or std::invalid_argument naming
 /// the file and the reason.
 int run_convert(const ConvertArguments& arguments, std::ostream& out);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "formats/exchange/surface_io.hpp"
+#include "formats/exchange/volume_io.hpp"
 #include "formats/model_file.hpp"
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/synthetic_model.hpp"
@@ -88,7 +89,7 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
 
   // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 x (Columns, 3 Representatives, 3 Blocks)
   REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 * 7);
-  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 832}, {"bytes", 256}});
+  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 896}, {"bytes", 256}});
   CHECK(found["sections"].back()["kind"] == "Blocks(2, 1)");
 }
 
@@ -182,6 +183,18 @@ TEST_CASE("convert: a model becomes its surface, at any level, and that another 
   CHECK(fine.triangles.size() == 128);
   CHECK(read_surface(folder / "base.off").triangles.size() == 8);
   CHECK(read_surface(folder / "fine.obj").vertices == fine.vertices);
+}
+
+TEST_CASE("convert: a volume becomes another format") {
+  const Folder folder("convert_volume");
+  const TetrahedralMesh one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
+  write_volume(folder / "one.msh", one);
+  std::ostringstream out;
+  CHECK(run_convert({folder / "one.msh", folder / "one.mesh", {}}, out) == 0);
+  const TetrahedralMesh back = read_volume(folder / "one.mesh");
+  CHECK(back.vertices == one.vertices);
+  CHECK(back.tetrahedra == one.tetrahedra);
+  CHECK(convert_refusal({folder / "one.msh", folder / "one.obj", {}}).find("a volume becomes") != std::string::npos);
 }
 
 TEST_CASE("convert: refuses what makes no sense, and says what would") {

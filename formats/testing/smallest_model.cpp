@@ -1,0 +1,36 @@
+#include "formats/testing/smallest_model.hpp"
+
+namespace greenloop {
+
+ModelData smallest_model() {
+  constexpr float third_of_triangle = 0.5F / 3;  // m^2
+  constexpr float quantum = 1.0F / 1024;         // m/N
+  ModelData model;
+  model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
+  model.info.wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
+  model.info.components = 3;
+  model.info.young = 1e5;
+  model.info.poisson = 0.25;
+  model.info.rate = 1000;
+  model.info.max_contacts = 1;
+  model.info.step_work = 1000;
+  model.provenance = "{}";
+  model.base_triangles = {0, 1, 2};
+
+  LevelData level;
+  level.nodes = {{{0, 0, 0}, third_of_triangle, layout::node_domain | layout::node_touchable | layout::node_read},
+                 {{1, 0, 0}, third_of_triangle, layout::node_fixed},
+                 {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
+  level.columns = {{0, third_of_triangle}};
+  level.representatives = {{0, layout::none, layout::none}};
+  BlocksData blocks;
+  blocks.begin = {0, 1};
+  blocks.scale = {quantum};
+  blocks.index = {0};
+  blocks.value = {64, 0, 0, 0, 64, 0, 0, 0, 64};
+  level.blocks = {blocks};
+  model.levels = {level};
+  return model;
+}
+
+}  // namespace greenloop
