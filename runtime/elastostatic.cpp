@@ -34,14 +34,13 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
 }
 
 // resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
-// many details as fit; `levels` has a bit for each level that can resolve them
-Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint32_t levels, std::uint64_t budget,
-               bool wants_field) {
+// many details as fit
+Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field) {
   const ModelView& view = *body.view;
   Plan plan;
   std::uint64_t forces = 0;
   for (std::uint32_t c = view.levels; c-- > 0;) {
-    if ((levels >> c & 1U) == 0) {
+    if (view.level[c].counts->column_count == 0) {
       continue;
     }
     resolve_contacts(contacts, view, body.facts, c, body.set);
@@ -206,15 +205,14 @@ StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, 
   }
   StepReport report;
   report.work = check_contacts_work(contacts.size());
-  const ContactCheck check = check_contacts(contacts, body.view->node_count, body.facts);
-  if (check.status != Status::ok) {
-    return held(check.status, report.work);
+  const Status checked = check_contacts(contacts, body.view->node_count, body.facts);
+  if (checked != Status::ok) {
+    return held(checked, report.work);
   }
   if (contacts.empty()) {
     release(body, response, report);
   } else {
-    const Plan plan =
-        make_plan(body, contacts, check.constraint_levels, budget.work - report.work, !response.displacement.empty());
+    const Plan plan = make_plan(body, contacts, budget.work - report.work, !response.displacement.empty());
     report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, response)
                        : held(Status::held_over_budget, report.work + plan.work);
   }

@@ -289,22 +289,6 @@ TEST_CASE("a singular capacitance matrix is refused, not answered with garbage")
   held.refuses(std::vector<Contact>{{node, {1e-3F, 0, 0}}}, Status::held_singular);
 }
 
-TEST_CASE("a level without a column for a contact is not offered for that set") {
-  ModelData data = synthetic_model({.levels = 3});
-  const std::uint32_t node = data.levels[2].columns.back().node;
-  const auto begin = static_cast<std::uint32_t>(data.levels[0].nodes.size() + data.levels[1].nodes.size());
-  REQUIRE(node >= begin);
-  for (std::uint32_t c = 0; c < 2; ++c) {
-    data.levels[c].representatives[2][node - begin] = layout::none;
-  }
-  const TestModel model(encode(data));
-  TestBody body(model, {.max_contacts = 2, .cached_factors = 1});
-  const std::uint64_t least = body.requirement().least_work;
-  CHECK(body.step(std::vector<Contact>{{node, {1e-3F, 0, 0}}}, least).constraint_level == 2);
-  CHECK(body.step(std::vector<Contact>{{model.touchable()[0], {1e-3F, 0, 0}}, {node, {}}}, least).status <=
-        Status::coarser);
-}
-
 TEST_CASE("create: what is short or wrong is said in numbers") {
   const TestModel model({.levels = 2});
   const Limits limits{.max_contacts = 5, .cached_factors = 2};
