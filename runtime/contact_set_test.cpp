@@ -52,9 +52,9 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
       REQUIRE(set.columns <= contacts.size());
       CHECK(std::adjacent_find(set.column, set.column + set.columns, std::greater_equal<>()) ==
             set.column + set.columns);
-      std::vector<float> mean(3 * set.columns), total(3 * set.columns), shared(3 * contacts.size());
+      const std::size_t components = std::size_t{3} * set.columns;
+      std::vector<float> mean(components), total(components), force(components), shared(3 * contacts.size());
       average_displacements(contacts, set, mean.data());
-      std::vector<float> force(3 * set.columns);
       for (std::size_t k = 0; k < force.size(); ++k) {
         force[k] = static_cast<float>(k + 1);
       }
@@ -67,10 +67,10 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
         sum[set.place[i]] += contacts[i].displacement[0];
         ++count[set.place[i]];
         for (std::size_t r = 0; r < 3; ++r) {
-          total[3 * set.place[i] + r] += shared[3 * i + r];
+          total[std::size_t{3} * set.place[i] + r] += shared[3 * i + r];
         }
       }
-      for (std::uint32_t k = 0; k < set.columns; ++k) {
+      for (std::size_t k = 0; k < set.columns; ++k) {
         CHECK(count[k] == set.members[k]);
         CHECK(mean[3 * k] == sum[k] / static_cast<float>(count[k]));
         CHECK(mean[3 * k + 2] == -2.0F);

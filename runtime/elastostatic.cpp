@@ -93,7 +93,8 @@ void compute_field(const Body& body, std::uint32_t field_level, std::span<float>
   const auto* force = reinterpret_cast<const float*>(body.force);
   std::memset(displacement.data(), 0, displacement.size_bytes());
   for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-    const float of_column[3] = {force[3 * k], force[3 * k + 1], force[3 * k + 2]};
+    const float* at = force + std::size_t{3} * k;
+    const float of_column[3] = {at[0], at[1], at[2]};
     add_column(*body.view, body.set.level, body.set.column[k], of_column, field_level, x);
   }
   inverse_transform(*body.view, body.lifting, field_level, x);
