@@ -41,7 +41,7 @@ void assemble_capacitance(const ModelView& view, const Lifting& lifting, const C
   }
   for (std::uint32_t j = 0; j < set.columns; ++j) {
     scatter_column(view, set.level, set.column[j], scratch.blocks);
-    float* column = reinterpret_cast<float*>(a) + 3 * j * stride;
+    float* column = reinterpret_cast<float*>(a) + std::size_t{3} * j * stride;
     for (std::uint32_t i = 0; i < set.columns; ++i) {
       const PointCoefficient* begin = scratch.coefficients + scratch.begin[i];
       const PointCoefficient* end = scratch.coefficients + scratch.begin[i + 1];

@@ -16,13 +16,13 @@ Status check_contact(const Contact& contact, std::uint32_t node_count, const Nod
   if (contact.node >= node_count) {
     return Status::held_out_of_range;
   }
-  if (facts[contact.node].constraint_levels == 0) {
+  if (!facts[contact.node].touchable) {
     return Status::held_not_touchable;
   }
   if (!finite(contact)) {
     return Status::held_not_finite;
   }
-  return facts[contact.node].marked != 0 ? Status::held_duplicate : Status::ok;
+  return facts[contact.node].marked ? Status::held_duplicate : Status::ok;
 }
 
 // one pass of a merge sort: runs of `width` in `from` become runs of twice that in `to`
@@ -59,39 +59,26 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      NodeFacts& node = facts[level.node_begin + i];
-      node = NodeFacts{0, static_cast<std::uint8_t>(q), 0};
-      if ((level.nodes[i].flags & layout::node_touchable) == 0) {
-        continue;
-      }
-      for (std::uint32_t c = 0; c < view.levels; ++c) {
-        if (view.level[c].counts->column_count > 0 && view.representatives[c][q][i] != layout::none) {
-          node.constraint_levels = static_cast<std::uint16_t>(node.constraint_levels | (1U << c));
-        }
-      }
+      const bool touchable = (level.nodes[i].flags & layout::node_touchable) != 0;
+      facts[level.node_begin + i] = NodeFacts{static_cast<std::uint8_t>(q), touchable, false};
     }
   }
 }
 
-ContactCheck check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept {
-  ContactCheck check{Status::ok, 0xffff};
+Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept {
+  Status status = Status::ok;
   std::size_t checked = 0;
   for (; checked < contacts.size(); ++checked) {
-    const Contact& contact = contacts[checked];
-    check.status = check_contact(contact, node_count, facts);
-    if (check.status != Status::ok) {
+    status = check_contact(contacts[checked], node_count, facts);
+    if (status != Status::ok) {
       break;
     }
-    facts[contact.node].marked = 1;
-    check.constraint_levels &= facts[contact.node].constraint_levels;
+    facts[contacts[checked].node].marked = true;
   }
   for (std::size_t i = 0; i < checked; ++i) {
-    facts[contacts[i].node].marked = 0;
+    facts[contacts[i].node].marked = false;
   }
-  if (check.status == Status::ok && check.constraint_levels == 0) {
-    check.status = Status::held_not_touchable;
-  }
-  return check;
+  return status;
 }
 
 void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,

@@ -10,26 +10,19 @@ namespace greenloop {
 
 /// What the loop looks up about a node.
 struct NodeFacts {
-  std::uint16_t constraint_levels = 0;  ///< bit c: a column of level c stands for it; 0 if it may not be touched
   std::uint8_t mesh_level = 0;
-  std::uint8_t marked = 0;  ///< by check_contacts, while it looks for duplicates
+  bool touchable = false;  ///< a column of every constraint level stands for it
+  bool marked = false;     ///< by check_contacts, while it looks for duplicates
 };
-static_assert(layout::max_levels <= 16, "a bit for each level");
 
-/// Facts of every node; facts: [node_count]. Start-up; linear in nodes times levels.
+/// Facts of every node; facts: [node_count]. Start-up; linear in nodes.
 void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept;
-
-/// Verdict over the contacts of a step.
-struct ContactCheck {
-  Status status = Status::ok;           ///< or why they are refused; the first contact at fault decides
-  std::uint32_t constraint_levels = 0;  ///< bit c: level c has columns for all of them
-};
 
 /// Work units of check_contacts.
 constexpr std::uint64_t check_contacts_work(std::uint64_t contacts) { return 4 * contacts; }
 
-/// Refuses what is out of range, not touchable, not finite, named twice, or what no one level can resolve together.
-ContactCheck check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept;
+/// Refuses contacts that are out of range, not touchable, not finite or named twice; the first at fault decides.
+Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept;
 
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;
@@ -54,7 +47,7 @@ constexpr std::uint64_t resolve_contacts_work(std::uint64_t contacts) {
   return (4 + passes) * contacts;
 }
 
-/// Resolves checked contacts at `level`, which must be in ContactCheck::constraint_levels.
+/// Resolves checked contacts at `level`, which must have columns.
 void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
                       std::uint32_t level, ContactSet& set) noexcept;
 

@@ -34,14 +34,13 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
 }
 
 // resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
-// many details as fit; `levels` has a bit for each level that can resolve them
-Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint32_t levels, std::uint64_t budget,
-               bool wants_field) {
+// many details as fit
+Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field) {
   const ModelView& view = *body.view;
   Plan plan;
   std::uint64_t forces = 0;
   for (std::uint32_t c = view.levels; c-- > 0;) {
-    if ((levels >> c & 1U) == 0) {
+    if (view.level[c].counts->column_count == 0) {
       continue;
     }
     resolve_contacts(contacts, view, body.facts, c, body.set);
@@ -94,7 +93,8 @@ void compute_field(const Body& body, std::uint32_t field_level, std::span<float>
   const auto* force = reinterpret_cast<const float*>(body.force);
   std::memset(displacement.data(), 0, displacement.size_bytes());
   for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-    const float of_column[3] = {force[3 * k], force[3 * k + 1], force[3 * k + 2]};
+    const float* at = force + std::size_t{3} * k;
+    const float of_column[3] = {at[0], at[1], at[2]};
     add_column(*body.view, body.set.level, body.set.column[k], of_column, field_level, x);
   }
   inverse_transform(*body.view, body.lifting, field_level, x);
@@ -206,15 +206,14 @@ StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, 
   }
   StepReport report;
   report.work = check_contacts_work(contacts.size());
-  const ContactCheck check = check_contacts(contacts, body.view->node_count, body.facts);
-  if (check.status != Status::ok) {
-    return held(check.status, report.work);
+  const Status checked = check_contacts(contacts, body.view->node_count, body.facts);
+  if (checked != Status::ok) {
+    return held(checked, report.work);
   }
   if (contacts.empty()) {
     release(body, response, report);
   } else {
-    const Plan plan =
-        make_plan(body, contacts, check.constraint_levels, budget.work - report.work, !response.displacement.empty());
+    const Plan plan = make_plan(body, contacts, budget.work - report.work, !response.displacement.empty());
     report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, response)
                        : held(Status::held_over_budget, report.work + plan.work);
   }

@@ -32,7 +32,7 @@ enum class Status : std::uint8_t {
   coarser,             ///< answered within the budget at a coarser level
   held_not_finite,     ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
   held_out_of_range,   ///< a contact names no node of the model, or more contacts than Limits allow
-  held_not_touchable,  ///< a contact names a node without a column, or no level has columns for all contacts
+  held_not_touchable,  ///< a contact names a node that has no columns
   held_duplicate,      ///< two contacts name the same node
   held_response_size,  ///< a response buffer has the wrong size or alignment
   held_over_budget,    ///< the budget is below Requirement::least_work: refused

@@ -110,10 +110,10 @@ TEST_CASE("dense 16-bit columns reproduce the exact compliance to quantisation e
     const double quantum = 0.5 / 32767;
     const double tolerance = condition * (4 * view.levels * quantum + 60 * 0x1p-24);
     CHECK(relative_error(body.force(), 3, force) <= tolerance);
-    Eigen::VectorXd displacement = Eigen::VectorXd::Zero(3 * view.node_count);
+    Eigen::VectorXd displacement = Eigen::VectorXd::Zero(Eigen::Index{3} * view.node_count);
     for (std::uint32_t node = 0; node < view.node_count; ++node) {
       for (Eigen::Index j = 0; in_domain(view, node) && j < n; ++j) {
-        displacement.segment<3>(3 * node) += compliance(node, contacts[j].node) * force.segment<3>(3 * j);
+        displacement.segment<3>(Eigen::Index{3} * node) += compliance(node, contacts[j].node) * force.segment<3>(3 * j);
       }
     }
     CHECK(relative_error(body.field(), 4, displacement) <= tolerance);
@@ -167,8 +167,8 @@ TEST_CASE("a field cut off at a level keeps the coarse part and interpolates the
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
       const std::uint32_t* parent = level.refinement[i].parent;
       for (std::size_t r = 0; r < 4; ++r) {
-        CHECK(body.field()[4 * (level.node_begin + i) + r] ==
-              0.5F * (body.field()[4 * parent[0] + r] + body.field()[4 * parent[1] + r]));
+        const auto value = [&body, r](std::uint32_t node) { return body.field()[std::size_t{4} * node + r]; };
+        CHECK(value(level.node_begin + i) == 0.5F * (value(parent[0]) + value(parent[1])));
       }
     }
   }
@@ -287,22 +287,6 @@ TEST_CASE("a singular capacitance matrix is refused, not answered with garbage")
   const TestModel model(encode(data));
   Held held(model);
   held.refuses(std::vector<Contact>{{node, {1e-3F, 0, 0}}}, Status::held_singular);
-}
-
-TEST_CASE("a level without a column for a contact is not offered for that set") {
-  ModelData data = synthetic_model({.levels = 3});
-  const std::uint32_t node = data.levels[2].columns.back().node;
-  const auto begin = static_cast<std::uint32_t>(data.levels[0].nodes.size() + data.levels[1].nodes.size());
-  REQUIRE(node >= begin);
-  for (std::uint32_t c = 0; c < 2; ++c) {
-    data.levels[c].representatives[2][node - begin] = layout::none;
-  }
-  const TestModel model(encode(data));
-  TestBody body(model, {.max_contacts = 2, .cached_factors = 1});
-  const std::uint64_t least = body.requirement().least_work;
-  CHECK(body.step(std::vector<Contact>{{node, {1e-3F, 0, 0}}}, least).constraint_level == 2);
-  CHECK(body.step(std::vector<Contact>{{model.touchable()[0], {1e-3F, 0, 0}}, {node, {}}}, least).status <=
-        Status::coarser);
 }
 
 TEST_CASE("create: what is short or wrong is said in numbers") {

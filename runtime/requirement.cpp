@@ -25,33 +25,6 @@ std::uint32_t bound_functionals(const ModelView& view, std::uint32_t constraint_
   return longest;
 }
 
-// whether a column of constraint level c stands for every touchable node
-bool represents_all(const ModelView& view, std::uint32_t c) {
-  if (view.level[c].counts->column_count == 0) {
-    return false;
-  }
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      const bool touchable = (level.nodes[i].flags & layout::node_touchable) != 0;
-      if (touchable && view.representatives[c][q][i] == layout::none) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-// the coarsest level that can resolve every set of contacts; the finest if none can
-std::uint32_t coarsest_for_all(const ModelView& view) {
-  for (std::uint32_t c = 0; c < view.levels; ++c) {
-    if (represents_all(view, c)) {
-      return c;
-    }
-  }
-  return view.levels - 1;
-}
-
 }  // namespace
 
 bool in_range(const Limits& limits) noexcept {
@@ -97,9 +70,7 @@ BodySizes measure_body(const ModelView& view, const Limits& limits) noexcept {
 
 Requirement bound_work(const ModelView& view, const BodySizes& sizes) noexcept {
   Requirement requirement;
-  const std::uint32_t last_rung = coarsest_for_all(view);
   std::uint64_t plans = check_contacts_work(sizes.counts.max_contacts);
-  std::uint64_t least_after_plans = 0;
   for (std::uint32_t c = view.levels; c-- > 0;) {
     if (view.level[c].counts->column_count == 0) {
       continue;
@@ -108,12 +79,9 @@ Requirement bound_work(const ModelView& view, const BodySizes& sizes) noexcept {
     plans += plan_work(sizes.counts, most.contacts, most.columns);
     const std::uint64_t forces = factor_work(sizes.counts, most) + force_work(most);
     requirement.worst_work[c] = plans + forces + field_work(sizes.counts, most, view.levels - 1);
-    if (c <= last_rung) {
-      const std::uint64_t rung = forces + field_work(sizes.counts, most, 0);
-      least_after_plans = rung > least_after_plans ? rung : least_after_plans;
-    }
+    // the coarsest level comes last
+    requirement.least_work = plans + forces + field_work(sizes.counts, most, 0);
   }
-  requirement.least_work = plans + least_after_plans;
   return requirement;
 }
 

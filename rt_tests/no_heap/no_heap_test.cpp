@@ -77,7 +77,8 @@ TEST_CASE("the allocation guard trips on malloc, new and free") {
   };
   CHECK(trips([&] { memory = std::malloc(10); }) == 1);
   CHECK(trips([&] { std::free(memory); }) == 1);
-  CHECK(trips([] { std::vector<int>(100)[3] = 1; }) == 2);
+  CHECK(trips([&] { memory = new int(1); }) == 1);
+  CHECK(trips([&] { delete static_cast<int*>(memory); }) == 1);
   CHECK(trips([&] { memory = std::aligned_alloc(64, 128); }) == 1);
   CHECK(trips([] {}) == 0);
   std::free(memory);
