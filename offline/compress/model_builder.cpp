@@ -88,16 +88,20 @@ std::vector<CoarseColumns> gather(const CompressionInput& input, const std::vect
 }
 
 std::vector<CurvePoint> speed_against_error(ColumnCoder& coder, const std::vector<TransformedColumn>& sample,
-                                            Encoding encoding) {
+                                            std::size_t columns, Encoding encoding) {
   std::vector<CurvePoint> curve;
+  const double scale = static_cast<double>(columns) / static_cast<double>(sample.size());
   for (const double epsilon : curve_epsilons) {
     encoding.epsilon = epsilon;
     const Tally tally = coder.measure(sample, encoding);
-    const auto columns = static_cast<double>(tally.columns);
-    const double dense = 36.0 * columns * static_cast<double>(coder.wavelet().rows());
-    const double blocks = static_cast<double>(tally.blocks) / columns;
-    curve.push_back({epsilon, blocks, dense / static_cast<double>(tally.bytes), tally.rms(), tally.worst_column,
-                     static_cast<double>(LiftedLinear::components) * blocks});
+    const double blocks = scale * static_cast<double>(tally.blocks);
+    curve.push_back(
+        {.epsilon = epsilon,
+         .kept_blocks = blocks,
+         .bytes = scale * static_cast<double>(tally.bytes),
+         .rms_error = tally.rms(),
+         .worst_column_error = tally.worst_column,
+         .sum_work = static_cast<double>(LiftedLinear::components) * blocks / static_cast<double>(columns)});
   }
   return curve;
 }
@@ -163,7 +167,7 @@ BuiltModel build_model(const CompressionInput& input, const Progress& progress) 
     auto compressed = compress_level(coder, levels[i], source, sample, input.accuracy, within);
     const double force_error = patches.worst_force_error(wavelet, levels[i], compressed);
     if (finest) {
-      built.report.curve = speed_against_error(coder, sample, compressed.encoding);
+      built.report.curve = speed_against_error(coder, sample, levels[i].columns.size(), compressed.encoding);
       built.report.curve_columns = sample.size();
       built.model.info.epsilon = compressed.encoding.epsilon;
     }

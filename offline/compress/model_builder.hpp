@@ -36,13 +36,12 @@ struct ConstraintLevelReport {
 };
 
 /// One point of the curve speed against error, finest constraint level, measured on sampled columns without lowering
-/// any column's threshold.
+/// any column's threshold; blocks and bytes are scaled up to all columns.
 struct CurvePoint {
   double epsilon = 0;
-  double blocks = 0;       ///< mean kept blocks per column
-  double compression = 0;  ///< dense float32 bytes over stored bytes
+  double kept_blocks = 0, bytes = 0;
   double rms_error = 0, worst_column_error = 0;
-  double sum_work = 0;  ///< multiply-adds to sum one column, 9 per block
+  double sum_work = 0;  ///< multiply-adds to sum one column of mean length, 9 per block
 };
 
 struct CompressionReport {

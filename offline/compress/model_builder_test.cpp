@@ -115,9 +115,16 @@ TEST_CASE("the report counts what is in the model") {
   REQUIRE(report.curve.size() == 8);
   for (std::size_t i = 1; i < report.curve.size(); ++i) {
     CHECK(report.curve[i].epsilon > report.curve[i - 1].epsilon);
-    CHECK(report.curve[i].blocks < report.curve[i - 1].blocks);
+    CHECK(report.curve[i].kept_blocks < report.curve[i - 1].kept_blocks);
+    CHECK(report.curve[i].bytes < report.curve[i - 1].bytes);
     CHECK(report.curve[i].rms_error > report.curve[i - 1].rms_error);
   }
+  // the chosen epsilon lies on the curve, but for the columns that were coded more finely
+  const auto& chosen = report.levels.back();
+  const auto above = std::find_if(report.curve.begin(), report.curve.end(),
+                                  [&](const auto& point) { return point.epsilon > chosen.epsilon; });
+  REQUIRE(above != report.curve.end());
+  CHECK(static_cast<double>(chosen.kept_blocks) > 0.98 * above->kept_blocks);
 }
 
 TEST_CASE("the model becomes a file that verifies, whole and cut off, and is what the report says in size") {

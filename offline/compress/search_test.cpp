@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "offline/compress/test_body.hpp"
 
@@ -91,6 +93,49 @@ TEST_CASE("the search meets its targets and leaves nothing on the table") {
     if (rms < 0.004) CHECK(found->value_bytes[0] == 2);  // one part in 127 is not enough for the base level
     if (rms > 0.04) CHECK(found->value_bytes == std::vector<std::uint32_t>{1, 1, 1, 1});
   }
+}
+
+/// Bytes per column at an RMS error of 3 % when a column's threshold is epsilon times
+/// largest^(1 - balance) * (typical weight / area)^balance, and the worst column's error there.
+struct RuleResult {
+  double bytes = 0, blocks = 0, worst_column = 0;
+};
+RuleResult bytes_at_three_percent(const Fixture& f, double balance) {
+  ColumnCoder coder(f.wavelet);
+  const double weight = typical_weight(f.sample);
+  double low = 1e-4, high = 4.0;
+  Tally met;
+  for (int i = 0; i < 24; ++i) {
+    const double epsilon = std::sqrt(low * high);
+    Tally tally;
+    EncodedColumn encoded;
+    for (const auto& column : f.sample) {
+      // the coder's own rule is the one with balance one half: choose its epsilon to get the threshold wanted
+      Encoding encoding{1.0, weight, {1, 1, 1, 1}};
+      const double wanted = epsilon * std::pow(column.largest, 1.0 - balance) * std::pow(weight / column.area, balance);
+      encoding.epsilon = wanted / column_threshold(encoding, column);
+      coder.code(column, encoding, 1e9, encoded, tally);
+    }
+    const bool fits = tally.rms() <= 0.03;
+    (fits ? low : high) = epsilon;
+    if (fits) met = tally;
+  }
+  const auto columns = static_cast<double>(f.sample.size());
+  return {static_cast<double>(met.bytes) / columns, static_cast<double>(met.blocks) / columns, met.worst_column};
+}
+
+TEST_CASE("the threshold between column and whole needs fewer bytes than the column's own largest block") {
+  const auto& f = fixture();
+  const auto column_rule = bytes_at_three_percent(f, 0.0);
+  const auto between = bytes_at_three_percent(f, 0.5);
+  const auto whole_rule = bytes_at_three_percent(f, 1.0);
+  using Named = std::pair<std::string, RuleResult>;
+  for (const auto& [name, result] : {Named{"column", column_rule}, {"between", between}, {"whole", whole_rule}}) {
+    MESSAGE(name << ": " << result.blocks << " blocks, " << result.bytes << " bytes per column, worst column "
+                 << result.worst_column);
+  }
+  CHECK(between.bytes < column_rule.bytes);
+  CHECK(between.worst_column < whole_rule.worst_column);
 }
 
 TEST_CASE("single columns are coded more finely until each holds the worst-column error") {
