@@ -101,8 +101,8 @@ TEST_CASE("the command writes the complete report and every figure, the same as 
   const std::string text = without_pictures(report.html);
   CHECK(text.size() < report.html.size() - 100'000);
   CHECK(has(text, "ball &amp; &lt;co&gt;"));
-  for (const std::string forbidden :
-       {"<script", "<link", "src=", "href=\"http", "url(http", "@import", "nan", "not a number", "inf\""}) {
+  for (const std::string forbidden : {"<script", "<link", "src=", "href=\"http", "url(http", "@import", ">nan", "nan\"",
+                                      "nan ", "lnan", "not a number", "inf\""}) {
     CAPTURE(forbidden);
     CHECK_FALSE(has(text, forbidden));
   }
