@@ -17,8 +17,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr const char* fixed_paint = "#2f6fa3";
+constexpr const char* fixed_paint = "#1261ad";
 constexpr const char* touchable_paint = "#a9d1ea";
+constexpr const char* push_paint = "#1c2329";  // over the picture, whose colours are those of a light page
+constexpr const char* hidden_push_paint = "#5a656e";
+constexpr const char* rim_paint = "#ffffff";
 constexpr const char* rest_paint = "#858c94";
 
 double diagonal(const std::vector<Vector3d>& positions) {
@@ -70,29 +73,33 @@ std::size_t nearest_node(const VisibleSurface& surface, const DrawnDisplacement&
   return nearest;
 }
 
-/// An arrow that pushes against the body where the probe touches it; the outward direction is the force on the probe.
-void draw_push(SvgCanvas& canvas, Point tip, Point outward, const std::string& label) {
+/// An arrow that pushes against the body where a probe touches it, from `outward`; dashed and grey if from behind.
+void draw_push(SvgCanvas& canvas, Point tip, Point outward, bool behind, const std::string& label) {
   constexpr double length = 58, head = 11, half_width = 5;
   const double norm = std::max(std::hypot(outward.x, outward.y), 1e-12);
   const double ux = outward.x / norm, uy = outward.y / norm;
   const Point tail{tip.x + length * ux, tip.y + length * uy}, neck{tip.x + head * ux, tip.y + head * uy};
-  canvas.line(tail, neck, {paint::page, 5});
-  canvas.line(tail, neck, {paint::ink, 2.4});
+  const char* colour = behind ? hidden_push_paint : push_paint;
+  canvas.line(tail, neck, {rim_paint, 5});
+  canvas.line(tail, neck, {colour, 2.4, behind ? "4 3" : ""});
   canvas.polygon(
       {tip, {neck.x - half_width * uy, neck.y + half_width * ux}, {neck.x + half_width * uy, neck.y - half_width * ux}},
-      paint::ink);
+      colour);
   const Anchor anchor = ux > 0.3 ? Anchor::start : ux < -0.3 ? Anchor::end : Anchor::middle;
-  canvas.text({tail.x + 6 * ux, tail.y + (uy < 0 ? -5 : 14)}, label, {.anchor = anchor, .bold = true});
+  canvas.text({tail.x + 6 * ux, tail.y + (uy < 0 ? -5 : 14)}, label,
+              {.paint = colour, .anchor = anchor, .bold = true, .halo = rim_paint});
 }
 
 void draw_pushes(SvgCanvas& canvas, const PlacedPicture& picture, const VisibleSurface& surface,
                  const DrawnDisplacement& drawn, const TraceCycle& cycle) {
+  constexpr double behind = -0.3;  // cosine between the outward direction and the view
+  const ViewFrame& frame = picture.camera.frame;
   for (const ProbeState& probe : cycle.probes) {
     if (probe.force.norm() < 0.01 * cycle.force || probe.force.isZero()) continue;
     const std::size_t node = nearest_node(surface, drawn, probe.centre);
-    const Point tip = picture.at(surface.positions[node] + drawn.magnified[node]);
-    const Vector3d out = probe.force.normalized();
-    draw_push(canvas, tip, {out.dot(picture.camera.frame.right), -out.dot(picture.camera.frame.up)},
+    const Vector3d out = probe.force.normalized();  // the body pushes the probe outwards
+    draw_push(canvas, picture.at(surface.positions[node] + drawn.magnified[node]),
+              {out.dot(frame.right), -out.dot(frame.up)}, out.dot(frame.towards) < behind,
               readable(probe.force.norm(), 3) + "\u202fN");
   }
 }
@@ -146,7 +153,7 @@ Figure body_figure(const VisibleSurface& surface, const DrawnDisplacement& drawn
   canvas.text({x, 370}, factor_text(drawn.factor), {.bold = true});
   draw_key(canvas, {x, 400}, rest_paint, false, "outline at rest");
   draw_key(canvas, {x, 424}, fixed_paint, true, "held in place");
-  if (cycle != nullptr) draw_key(canvas, {x, 448}, paint::ink, false, "force on the body");
+  if (cycle != nullptr) draw_key(canvas, {x, 448}, paint::ink, false, "force; dashed: behind");
   return {"body", "The deformed body", caption, canvas.str()};
 }
 

@@ -17,11 +17,11 @@ h1{font-size:29px;line-height:1.2;margin:0;letter-spacing:-.01em;overflow-wrap:a
 header p{margin:6px 0 0;color:var(--muted)}
 h2{font-size:20px;margin:44px 0 12px;line-height:1.3}
 p{max-width:46em}
-.keys{display:grid;grid-template-columns:repeat(auto-fit,minmax(148px,1fr));gap:12px;margin:0 0 8px;padding:0}
+.keys{display:grid;grid-template-columns:repeat(auto-fit,minmax(128px,1fr));gap:12px;margin:0 0 8px;padding:0}
 .key{background:var(--panel);border-radius:6px;padding:13px 15px 11px;border-left:4px solid var(--rule)}
 .key.good{border-left-color:var(--green)}
 .key.bad{border-left-color:var(--vermilion)}
-.key b{display:block;font-size:23px;line-height:1.25;font-weight:600;font-variant-numeric:tabular-nums}
+.key b{display:block;font-size:22px;line-height:1.25;font-weight:600;font-variant-numeric:tabular-nums}
 .key span{font-size:13.5px;color:var(--muted);line-height:1.35;display:block}
 figure{margin:14px 0 34px}
 figure svg{display:block;width:100%;height:auto}

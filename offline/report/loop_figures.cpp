@@ -14,7 +14,7 @@ namespace greenloop::offline {
 namespace {
 
 constexpr double left = 74, top = 40, plot_height = 210, figure_height = top + plot_height + 48;
-constexpr std::array<const char*, 4> series_paints{paint::vermilion, paint::green, paint::orange, paint::purple};
+constexpr std::array<const char*, 4> series_paints{paint::blue, paint::vermilion, paint::green, paint::purple};
 
 template <class Value>
 std::vector<Point> over_time(const std::vector<TraceCycle>& trace, Value&& value) {
@@ -25,8 +25,9 @@ std::vector<Point> over_time(const std::vector<TraceCycle>& trace, Value&& value
 }
 
 PlotAxis time_axis(const std::vector<TraceCycle>& trace) {
-  const double begin = trace.front().time, end = trace.back().time;
-  return {.label = "time [s]", .min = begin, .max = end > begin ? end : begin + 1};
+  const double begin = trace.front().time, last = trace.back().time;
+  const double period = trace.size() > 1 ? (last - begin) / static_cast<double>(trace.size() - 1) : 1;
+  return {.label = "time [s]", .min = begin, .max = last + period};
 }
 
 Rectangle full_area() { return {left, top, figure_width - left - 20, plot_height}; }
@@ -93,13 +94,14 @@ Figure force_figure(const std::vector<TraceCycle>& trace) {
                   readable(strongest.force, 3) + "\u202fN", seconds(strongest.time), strongest.contacts);
   SvgCanvas canvas(figure_width, figure_height, "Force over time", caption);
   SvgPlot plot(canvas, full_area(), time_axis(trace), force_axis(total, parts));
-  std::vector<LegendEntry> legend{{components ? "magnitude" : "total", {paint::blue, 2}}};
+  const Stroke total_stroke{paint::muted, 4, "", 0.5};
+  plot.curve(total, total_stroke);
+  std::vector<LegendEntry> legend{{components ? "magnitude" : "total", total_stroke}};
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Stroke stroke{series_paints[i % series_paints.size()], 1.2};
     plot.curve(parts[i].data, stroke);
     legend.push_back({parts[i].name, stroke});
   }
-  plot.curve(total, {paint::blue, 1.8});
   plot.legend(legend);
   return {"force", "Force over time", caption, canvas.str()};
 }
@@ -149,9 +151,9 @@ Figure levels_figure(const std::vector<TraceCycle>& trace, std::size_t levels) {
   const Rectangle area{left, top, figure_width - left - histogram_width - 50, plot_height};
   const PlotAxis y{.label = "level", .min = -0.5, .max = static_cast<double>(shown) - 0.5, .whole = true};
   SvgPlot plot(canvas, area, time_axis(trace), y);
-  const Stroke constraint{paint::blue, 1.6}, field{paint::orange, 1.4, "5 3"};
-  plot.steps(over_time(trace, [](const TraceCycle& cycle) { return cycle.level; }), constraint);
+  const Stroke constraint{paint::blue, 1.5}, field{paint::orange, 3.6};
   plot.steps(over_time(trace, [](const TraceCycle& cycle) { return cycle.field_level; }), field);
+  plot.steps(over_time(trace, [](const TraceCycle& cycle) { return cycle.level; }), constraint);
   plot.legend({{"constraint level", constraint}, {"field level", field}});
 
   // the histogram stands beside the curve, on the same rows

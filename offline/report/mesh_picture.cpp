@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "offline/report/colour_map.hpp"
 #include "offline/report/depth_buffer.hpp"
@@ -17,7 +18,7 @@ using Eigen::Vector3f;
 constexpr int supersampling = 3;
 constexpr int margin = 8;  // pixels
 
-const Colour fixed_colour(0.0F, 0.24F, 0.44F);
+const Colour fixed_colour(0.07F, 0.38F, 0.68F);
 const Colour rest_outline_colour(0.52F, 0.55F, 0.58F);
 const Colour edge_colour(0.20F, 0.25F, 0.30F);
 const Colour plain_colour(0.90F, 0.90F, 0.89F);
@@ -32,6 +33,17 @@ struct Projection {
 
 Vector3f to_camera(const ViewFrame& frame, const Vector3d& direction) {
   return Vector3d(direction.dot(frame.right), direction.dot(frame.up), direction.dot(frame.towards)).cast<float>();
+}
+
+std::vector<Vector3f> triangle_normals(const std::vector<Vector3d>& positions,
+                                       const std::vector<std::array<int, 3>>& triangles, const ViewFrame& frame) {
+  std::vector<Vector3f> normals;
+  normals.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) {
+    const Vector3d doubled_area = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+    normals.push_back(to_camera(frame, doubled_area.normalized()));
+  }
+  return normals;
 }
 
 std::vector<Vector3f> vertex_normals(const std::vector<Vector3d>& positions,
@@ -89,26 +101,49 @@ Colour lit(const Colour& colour, Vector3f normal) {
   static const Vector3f fill = Vector3f(0.75F, 0.05F, 0.5F).normalized();
   static const Vector3f half = (key + Vector3f::UnitZ()).normalized();
   if (normal.z() < 0) normal = -normal;
-  const float diffuse = 0.42F + 0.52F * std::max(normal.dot(key), 0.0F) + 0.20F * std::max(normal.dot(fill), 0.0F);
+  const float diffuse =
+      0.55F + 0.05F * normal.y() + 0.38F * std::max(normal.dot(key), 0.0F) + 0.15F * std::max(normal.dot(fill), 0.0F);
   const float highlight = 0.10F * std::pow(std::max(normal.dot(half), 0.0F), 28.0F);
   return (colour * diffuse + Colour::Constant(highlight)).cwiseMin(1.0F);
 }
 
-/// How much a sample sees of the sky above it: 1 in the open, less in creases; from the depths around it.
+/// How much of the sky above it a sample sees: 1 in the open, less in creases; from the depths around it.
 float openness(const DepthBuffer& buffer, int x, int y, float radius) {
   constexpr int directions = 12;
   float hidden = 0;
   for (int ring = 1; ring <= 2; ++ring) {
     for (int k = 0; k < directions; ++k) {
-      const float angle = static_cast<float>(2 * k + ring) * static_cast<float>(EIGEN_PI) / directions;
+      const float angle = static_cast<float>(2 * k + ring) * std::numbers::pi_v<float> / directions;
       const float reach = radius * static_cast<float>(ring) / 2;
-      const float rise =
-          buffer.depth(x + static_cast<int>(reach * std::cos(angle)), y + static_cast<int>(reach * std::sin(angle))) -
-          buffer.depth(x, y);
+      const int there_x = x + static_cast<int>(reach * std::cos(angle));
+      const int there_y = y + static_cast<int>(reach * std::sin(angle));
+      const float rise = buffer.depth(there_x, there_y) - buffer.depth(x, y);
       if (rise > 0.4F * reach && rise < 6 * radius) hidden += std::min(rise / reach - 0.4F, 1.0F);
     }
   }
   return 1 - 0.55F * hidden / (2 * directions);
+}
+
+/// The openness of each pixel, at its first sample that shows anything.
+std::vector<float> openness_of_pixels(const DepthBuffer& buffer) {
+  const int width = buffer.width() / supersampling, height = buffer.height() / supersampling;
+  const float radius = 0.03F * static_cast<float>(std::max(buffer.width(), buffer.height()));
+  std::vector<float> open(static_cast<std::size_t>(width) * height, 1);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int k = 0; k < supersampling * supersampling; ++k) {
+        const int sample_x = x * supersampling + k % supersampling, sample_y = y * supersampling + k / supersampling;
+        if (buffer.triangle(sample_x, sample_y) == DepthBuffer::nothing) continue;
+        open[static_cast<std::size_t>(y) * width + x] = openness(buffer, sample_x, sample_y, radius);
+        break;
+      }
+    }
+  }
+  return open;
+}
+
+float at_sample(const std::vector<float>& pixels, const DepthBuffer& buffer, int x, int y) {
+  return pixels[static_cast<std::size_t>(y / supersampling) * (buffer.width() / supersampling) + x / supersampling];
 }
 
 /// Marks the samples of discs around the vertices that are chosen and seen.
@@ -214,16 +249,16 @@ Picture deformed_picture(const VisibleSurface& surface, const std::vector<Vector
   const Camera camera = fit_camera(frame, both, longest, margin);
   const Projection body = project(camera, positions, surface.triangles);
   const Projection rest = project(camera, surface.positions, surface.triangles);
-  const auto dots = visible_discs(body, surface.fixed, 2.2F * supersampling);
-  const float crease = 0.03F * static_cast<float>(longest * supersampling);
+  const auto dots = visible_discs(body, surface.fixed, 2.8F * supersampling);
+  const auto open = openness_of_pixels(body.buffer);
 
   const auto sample = [&](int x, int y) -> Sample {
     if (on_rim(rest.buffer, x, y, supersampling * 3 / 2)) return {rest_outline_colour, 1};
     if (body.buffer.triangle(x, y) == DepthBuffer::nothing) return {};
     const SurfacePoint point = surface_point(body, surface.triangles, x, y);
     const bool dotted = dots[static_cast<std::size_t>(y) * body.buffer.width() + x] != 0;
-    const Colour colour = dotted ? fixed_colour : displacement_colour(point.interpolate(value));
-    return {lit(colour, point.normal) * openness(body.buffer, x, y, crease), 1};
+    if (dotted) return {fixed_colour, 1};
+    return {lit(displacement_colour(point.interpolate(value)), point.normal) * at_sample(open, body.buffer, x, y), 1};
   };
   return {average_samples(camera.width, camera.height, sample), camera};
 }
@@ -232,19 +267,21 @@ Picture wire_picture(const VisibleSurface& surface, const std::vector<char>& tou
                      const std::vector<Vector3d>& framed_points, const ViewFrame& frame, int longest) {
   const Camera camera = fit_camera(frame, framed_points, longest, margin);
   const Projection body = project(camera, surface.positions, surface.triangles);
+  const auto face_normals = triangle_normals(surface.positions, surface.triangles, frame);
   const double edge_pixels = mean_edge(body, surface.triangles) / supersampling;
   const float edge_opacity = static_cast<float>(std::clamp(edge_pixels / 14, 0.25, 0.9));
-  const float half_width = (edge_pixels > 12 ? 0.65F : 0.45F) * supersampling;
+  const float half_width = (edge_pixels > 30 ? 1.1F : edge_pixels > 12 ? 0.75F : 0.5F) * supersampling;
   const auto dots =
       visible_discs(body, surface.fixed, static_cast<float>(std::clamp(edge_pixels / 5, 1.6, 4.0)) * supersampling);
-  const float crease = 0.03F * static_cast<float>(longest * supersampling);
+  const auto open = openness_of_pixels(body.buffer);
 
   const auto sample = [&](int x, int y) -> Sample {
     if (body.buffer.triangle(x, y) == DepthBuffer::nothing) return {};
     const SurfacePoint point = surface_point(body, surface.triangles, x, y);
     const float touch = point.interpolate(touchable);
+    const Vector3f& flat_normal = face_normals[body.buffer.triangle(x, y)];
     Colour colour =
-        lit((1 - touch) * plain_colour + touch * touchable_colour, point.normal) * openness(body.buffer, x, y, crease);
+        lit((1 - touch) * plain_colour + touch * touchable_colour, flat_normal) * at_sample(open, body.buffer, x, y);
     if (edge_distance(body, point) < half_width) colour = (1 - edge_opacity) * colour + edge_opacity * edge_colour;
     if (dots[static_cast<std::size_t>(y) * body.buffer.width() + x] != 0) colour = fixed_colour;
     return {colour, 1};

@@ -41,10 +41,9 @@ Material read_material(const ModelView& model, const ReportInputs& inputs) {
 
 std::vector<KeyFigure> loop_keys(const TraceSummary& summary) {
   const auto mood = summary.misses == 0 ? KeyFigure::Mood::good : KeyFigure::Mood::bad;
-  return {
-      {fmt::format("{} of {}", readable_count(summary.misses), readable_count(summary.cycles)), "cycles missed", mood},
-      {readable_percent(summary.worst_share), "of its budget used by the dearest cycle",
-       summary.worst_share <= 1 ? KeyFigure::Mood::good : KeyFigure::Mood::bad}};
+  return {{readable_count(summary.misses), fmt::format("misses in {} cycles", readable_count(summary.cycles)), mood},
+          {readable_percent(summary.worst_share), "of the budget, at most",
+           summary.worst_share <= 1 ? KeyFigure::Mood::good : KeyFigure::Mood::bad}};
 }
 
 std::vector<KeyFigure> key_figures(const Material& material) {
@@ -53,11 +52,10 @@ std::vector<KeyFigure> key_figures(const Material& material) {
   const auto file = static_cast<double>(material.model.header->file_bytes);
   keys.push_back({readable_count(material.model.node_count), "surface nodes"});
   keys.push_back({readable_bytes(file), "model file"});
-  keys.push_back(
-      {readable(static_cast<double>(dense_bytes(material.model)) / file, 3) + "×", "smaller than dense float32"});
+  keys.push_back({readable(static_cast<double>(dense_bytes(material.model)) / file, 3) + "×", "smaller than dense"});
   std::uint32_t finest = material.model.levels - 1;
   while (finest > 0 && material.model.level[finest].counts->column_count == 0) --finest;
-  keys.push_back({readable_percent(material.model.level[finest].counts->rms_error), "RMS error of the compression"});
+  keys.push_back({readable_percent(material.model.level[finest].counts->rms_error), "RMS error"});
   return keys;
 }
 

@@ -122,9 +122,15 @@ void SvgCanvas::circle(Point centre, double radius, const std::string& fill, con
 void SvgCanvas::text(Point at, std::string_view content, const TextStyle& style) {
   const std::string turn =
       style.turn == 0 ? "" : fmt::format(" transform=\"rotate({} {} {})\"", style.turn, pixels(at.x), pixels(at.y));
-  body_ += fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\" font-size=\"{}\" text-anchor=\"{}\"{}{}>{}</text>\n",
-                       pixels(at.x), pixels(at.y), style.paint, style.size, anchor_name(style.anchor),
-                       style.bold ? " font-weight=\"600\"" : "", turn, escape_markup(content));
+  const char* weight = style.bold ? " font-weight=\"600\"" : "";
+  const std::string halo =
+      style.halo.empty()
+          ? ""
+          : fmt::format(" stroke=\"{}\" stroke-width=\"4\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                        style.halo);
+  body_ += fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\" font-size=\"{}\" text-anchor=\"{}\"{}{}{}>{}</text>\n",
+                       pixels(at.x), pixels(at.y), style.paint, style.size, anchor_name(style.anchor), weight, halo,
+                       turn, escape_markup(content));
 }
 
 void SvgCanvas::image(const Rectangle& area, std::string_view data_uri) {

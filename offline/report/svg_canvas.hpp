@@ -38,7 +38,8 @@ struct TextStyle {
   double size = 12;
   Anchor anchor = Anchor::start;
   bool bold = false;
-  double turn = 0;  ///< degrees clockwise about the anchor
+  double turn = 0;        ///< degrees clockwise about the anchor
+  std::string halo = {};  ///< paint of a rim that keeps the text legible over a picture; empty: none
 };
 
 /// Width of a line of text in the report's sans-serif face, pixels; an estimate from above for Latin text.

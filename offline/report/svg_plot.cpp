@@ -15,11 +15,27 @@ std::string label_with_unit(const std::string& quantity, const std::string& unit
   return unit.empty() ? quantity : quantity + " [" + unit + "]";
 }
 
+/// A unit with its prefix; words take a power of ten instead.
+std::string prefixed(const SiPrefix& prefix, const std::string& unit) {
+  if (unit.size() <= 2) return prefix.symbol + unit;
+  const std::string power = prefix.symbol == "k"   ? "10³ "
+                            : prefix.symbol == "M" ? "10⁶ "
+                            : prefix.symbol == "G" ? "10⁹ "
+                                                   : "";
+  return power + unit;
+}
+
+/// The prefix to show `largest` with; words are never divided.
+SiPrefix prefix_for(const std::string& unit, double largest) {
+  const SiPrefix prefix = si_prefix(largest);
+  return unit.size() > 2 && prefix.factor < 1 ? SiPrefix{} : prefix;
+}
+
 }  // namespace
 
 PlotAxis axis_from_zero(const std::string& quantity, const std::string& unit, double largest) {
-  const SiPrefix prefix = si_prefix(largest);
-  return {.label = label_with_unit(quantity, prefix.symbol + unit),
+  const SiPrefix prefix = prefix_for(unit, largest);
+  return {.label = label_with_unit(quantity, prefixed(prefix, unit)),
           .min = 0,
           .max = largest > 0 ? 1.06 * largest : 1,
           .unit = prefix.factor};
@@ -28,8 +44,8 @@ PlotAxis axis_from_zero(const std::string& quantity, const std::string& unit, do
 PlotAxis logarithmic_axis(const std::string& quantity, const std::string& unit, const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const double air = std::max(std::pow(*high / *low, 0.08), 1.15);
-  const SiPrefix prefix = unit == "%" ? SiPrefix{0.01, ""} : si_prefix(*high);
-  return {.label = label_with_unit(quantity, prefix.symbol + unit),
+  const SiPrefix prefix = unit == "%" ? SiPrefix{0.01, ""} : prefix_for(unit, *high);
+  return {.label = label_with_unit(quantity, prefixed(prefix, unit)),
           .min = *low / air,
           .max = *high * air,
           .logarithmic = true,

@@ -17,7 +17,8 @@ struct PlotAxis {
   bool whole = false;  ///< ticks at whole numbers only
 };
 
-/// From zero to a little above `largest` with an SI prefix before `unit`: "force [mN]".
+/// From zero to a little above `largest` with an SI prefix before `unit`: "force [mN]"; before a unit that is a word a
+/// power of ten: "work [10⁶ units]".
 [[nodiscard]] PlotAxis axis_from_zero(const std::string& quantity, const std::string& unit, double largest);
 
 /// Spans `values` (at least one, all > 0) on a logarithmic axis with air at both ends and an SI prefix before `unit`;

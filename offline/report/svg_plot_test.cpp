@@ -21,6 +21,9 @@ TEST_CASE("an axis from zero takes the prefix of its largest value") {
   CHECK(axis.unit == 1e-3);
   CHECK(axis.max > 0.0042);
   CHECK(axis_from_zero("force", "N", 0).max > 0);
+  CHECK(axis_from_zero("work", "units", 2.5e6).label == "work [10⁶ units]");
+  CHECK(logarithmic_axis("RMS error", "%", {0.01, 0.1}).unit == 0.01);
+  CHECK(logarithmic_axis("size", "B", {2e5, 3e6}).label == "size [MB]");
 }
 
 TEST_CASE("data lands where the axes say") {

@@ -1,0 +1,208 @@
+#include "offline/report/report.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "formats/model_file.hpp"
+#include "formats/testing/synthetic_model.hpp"
+#include "offline/report/body_figures.hpp"
+#include "offline/report/loop_figures.hpp"
+#include "offline/report/model_facts.hpp"
+#include "offline/report/report_command.hpp"
+#include "offline/report/temporary_file.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+bool has(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A page without the base64 of its pictures.
+std::string without_pictures(std::string page) {
+  const std::string begin = "base64,";
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at + begin.size())) {
+    page.erase(at + begin.size(), page.find('"', at) - at - begin.size());
+  }
+  return page;
+}
+
+/// The synthetic sphere as a file, with a trace and a snapshot of a press on its top and a build record.
+struct Sample {
+  TemporaryFolder folder{"report_test"};
+  std::filesystem::path model = folder.path() / "ball.gloop";
+  ModelFile file;
+
+  Sample() {
+    write_file(model, encode(synthetic_model({.levels = 3, .coarsest_constraint_level = 1})));
+    file = open_model_file(model);
+  }
+  [[nodiscard]] std::filesystem::path trace(int cycles, std::uint64_t work) const {
+    std::string text = "time,x0,y0,z0,force_x0,force_y0,force_z0,force,contacts,level,field_level,work,budget,status\n";
+    for (int i = 0; i < cycles; ++i) {
+      const double force = 3.0 * i / cycles;
+      text += fmt::format("{},0,0,0.1,0,0,{},{},4,{},2,{},1000,ok\n", i * 1e-3, force, force, 1 + i % 2, work);
+    }
+    return folder.write("trace.csv", text);
+  }
+  [[nodiscard]] std::filesystem::path snapshot() const {
+    std::string text = "node,x,y,z\n";
+    for (std::uint32_t node = 0; node < file.view.node_count; ++node) {
+      text += fmt::format("{},0,0,{}\n", node, node == 4 ? -0.01 : -0.0001);
+    }
+    return folder.write("snapshot.csv", text);
+  }
+  [[nodiscard]] std::filesystem::path build() const {
+    return folder.write("build.json", R"({"scene": "ball & <co>", "stages": [{"name": "solve", "seconds": 2}],
+      "compression": {"epsilon": 0.02, "curve": [{"epsilon": 0.01, "rms_error": 0.01, "bytes": 2000, "sum_work": 900},
+      {"epsilon": 0.02, "rms_error": 0.02, "bytes": 1000, "sum_work": 500}]}})");
+  }
+  [[nodiscard]] Report report(bool complete) const {
+    ReportInputs inputs{.model = model, .trace = {}, .snapshot = {}, .build = {}};
+    if (complete) inputs = {.model = model, .trace = trace(3000, 900), .snapshot = snapshot(), .build = build()};
+    return make_report(file.view, inputs);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the command writes the complete report and every figure, the same as the library") {
+  const Sample sample;
+  int exit_code = 1;
+  CLI::App app("test", "greenloop");
+  add_report(app, exit_code);
+  const auto figures = sample.folder.path() / "figures";
+  app.parse(fmt::format("report {} --trace {} --snapshot {} --build {} --figures {} --json", sample.model.string(),
+                        sample.trace(3000, 900).string(), sample.snapshot().string(), sample.build().string(),
+                        figures.string()));
+  CHECK(exit_code == 0);
+  const Report report = sample.report(true);
+  CHECK(content_of(sample.folder.path() / "ball.html") == report.html);
+  std::vector<std::string> names;
+  for (const Figure& figure : report.figures) {
+    CAPTURE(figure.name);
+    names.push_back(figure.name);
+    const std::string svg = content_of(figures / (figure.name + ".svg"));
+    CHECK(svg.starts_with("<?xml"));
+    CHECK_FALSE(has(svg, "var("));
+  }
+  CHECK(names == std::vector<std::string>{"body", "force", "work", "levels", "meshes", "error", "bytes", "stages"});
+  CHECK(report.missing.empty());
+  CHECK(report.html.size() < 2'000'000);
+  const std::string text = without_pictures(report.html);
+  CHECK(text.size() < report.html.size() - 100'000);
+  CHECK(has(text, "ball &amp; &lt;co&gt;"));
+  for (const std::string forbidden : {"<script", "<link", "src=", "href=\"http", "url(http", "@import", ">nan", "nan\"",
+                                      "nan ", "lnan", "not a number", "inf\""}) {
+    CAPTURE(forbidden);
+    CHECK_FALSE(has(text, forbidden));
+  }
+}
+
+TEST_CASE("what is missing is named with the command that makes it, and nothing stands in for it") {
+  const Sample sample;
+  const Report report = sample.report(false);
+  REQUIRE(report.missing.size() == 3);
+  CHECK(has(report.missing[0].command, "greenloop-loop " + sample.model.string() + " --trace trace.csv --snapshot"));
+  CHECK(has(report.missing[2].command, "greenloop build"));
+  CHECK(has(report.missing[2].command, "ball.build.json"));
+  CHECK(has(report.html, "Not in this report"));
+  for (const char* name :
+       {"id=\"body\"", "id=\"force\"", "id=\"work\"", "id=\"levels\"", "id=\"error\"", "misses in"}) {
+    CAPTURE(name);
+    CHECK_FALSE(has(report.html, name));
+  }
+  CHECK(has(report.html, "id=\"meshes\""));
+}
+
+TEST_CASE("a build record without a curve is missing its curve only") {
+  const Sample sample;
+  const auto build = sample.folder.write("build.json", "{}");
+  const auto report =
+      make_report(sample.file.view, {.model = sample.model, .trace = {}, .snapshot = {}, .build = build});
+  REQUIRE(report.missing.size() == 3);
+  CHECK(has(report.missing[2].what, "no curve"));
+}
+
+TEST_CASE("misses are said and crossed") {
+  const Sample sample;
+  const auto late = load_trace(sample.trace(100, 1001));
+  CHECK(has(work_figure(late).caption, "100 of 100 cycles missed"));
+  CHECK(has(work_figure(late).svg, "missed (100)"));
+  const auto punctual = load_trace(sample.trace(100, 1000));
+  CHECK(has(work_figure(punctual).caption, "No miss in 100 cycles"));
+  CHECK_FALSE(has(work_figure(punctual).svg, "missed"));
+}
+
+TEST_CASE("figures of a long trace stay small, and one cycle is enough") {
+  const Sample sample;
+  const auto long_trace = load_trace(sample.trace(60'000, 900));
+  CHECK(force_figure(long_trace).svg.size() < 150'000);
+  CHECK(work_figure(long_trace).svg.size() < 150'000);
+  CHECK(levels_figure(long_trace, 3).svg.size() < 150'000);
+  const auto one = load_trace(sample.trace(1, 900));
+  for (const Figure& figure : {force_figure(one), work_figure(one), levels_figure(one, 3)}) {
+    CAPTURE(figure.name);
+    CHECK_FALSE(has(figure.svg, "nan"));
+    CHECK_FALSE(has(figure.svg, "inf"));
+  }
+}
+
+TEST_CASE("the displacement is drawn with its factor, the largest node named") {
+  const Sample sample;
+  const ModelSurface surface = model_surface(sample.file.view);
+  const auto drawn =
+      drawn_displacement(surface.mesh.positions, load_snapshot(sample.snapshot(), sample.file.view.node_count));
+  CHECK(drawn.largest_node == 4);
+  CHECK(drawn.largest == doctest::Approx(0.01));
+  CHECK(drawn.factor == 2);
+  CHECK(drawn.magnified[4].z() == doctest::Approx(-0.02));
+}
+
+TEST_CASE("a model's surface is its nodes and levels") {
+  const Sample sample;
+  const ModelSurface surface = model_surface(sample.file.view);
+  CHECK(surface.mesh.vertex_end == std::vector<std::size_t>{6, 18, 66});
+  CHECK(surface.level(2).triangles.size() == 128);
+  CHECK(surface.count(layout::node_fixed) + surface.count(layout::node_domain) <= 66);
+  const auto fixed = surface.level(2).fixed;
+  CHECK(std::count(fixed.begin(), fixed.end(), 1) == static_cast<int>(surface.count(layout::node_fixed)));
+}
+
+TEST_CASE("bytes by kind add up to the file") {
+  const Sample sample;
+  std::uint64_t sum = 0;
+  const auto kinds = bytes_by_kind(sample.file.view);
+  for (const KindBytes& kind : kinds) sum += kind.bytes;
+  CHECK(sum == std::filesystem::file_size(sample.model));
+  CHECK(kinds.back().name == "header, table, padding");
+  CHECK(kinds.back().bytes >= sizeof(layout::Header));
+}
+
+TEST_CASE("one row per constraint level with columns") {
+  const Sample sample;
+  const Table plain = level_table(sample.file.view, {});
+  REQUIRE(plain.rows.size() == 2);
+  CHECK(plain.rows[0][0] == "1");
+  CHECK(plain.rows[1].size() == plain.head.size());
+  const Table used = level_table(sample.file.view, summarise(load_trace(sample.trace(100, 1))));
+  CHECK(used.rows[1].size() == used.head.size());
+  CHECK(used.rows[1].back() == "50\u202f%");
+}
+
+TEST_CASE("an output that cannot be written is an error that names it") {
+  const TemporaryFolder folder("report_test");
+  CHECK(has(message_of([&] { write_text_file(folder.path() / "no" / "such.html", "x"); }),
+            "such.html: cannot be written"));
+}
+
+}  // namespace greenloop::offline
