@@ -149,8 +149,8 @@ json compression_record(const CompressionReport& report) {
   json curve = json::array();
   for (const auto& point : report.curve) {
     curve.push_back({{"epsilon", point.epsilon},
-                     {"kept_blocks", point.blocks},
-                     {"bytes", static_cast<double>(report.dense_bytes) / point.compression},
+                     {"kept_blocks", point.kept_blocks},
+                     {"bytes", point.bytes},
                      {"rms_error", point.rms_error},
                      {"worst_column_error", point.worst_column_error},
                      {"sum_work", point.sum_work}});
