@@ -186,7 +186,8 @@ FieldFigures measure_field(const Model& model, const GreenStore& store, std::siz
   std::vector<double> work;
   for (const auto& set : sets) {
     if (cached.step(set).status > Status::coarser) {
-      throw std::runtime_error("a contact set was refused; is the store the model's own?");
+      throw std::runtime_error("a set of " + std::to_string(set.size()) + " contacts was refused with status " +
+                               std::to_string(static_cast<int>(cached.step(set).status)));
     }
     work.push_back(static_cast<double>(cached.step(set).work));
     bench.truth.push_back(columns.solve(set));
