@@ -1,11 +1,17 @@
 #include "sim_hw/control_loop/control_loop.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "sim_hw/device/encoder.hpp"
 
 namespace greenloop {
+namespace {
+
+constexpr double largest_place = 1e12;  // m, and m per count: farther than any body, and its squares are finite
+
+}  // namespace
 
 ControlLoop::ControlLoop(const Elastostatic& body, const BodySurface& surface, const LoopSetup& setup)
     : body_(body),
@@ -15,7 +21,12 @@ ControlLoop::ControlLoop(const Elastostatic& body, const BodySurface& surface, c
       field_(surface.position.size()) {}
 
 void ControlLoop::cycle(const messages::device_state& state) noexcept {
-  read(state);
+  if (!read(state)) {
+    field_is_new_ = false;
+    report_.status = Status::held_not_finite;
+    report_.work = 0;
+    return;
+  }
   contacts_ = probe_contacts_.find(probes(), field());
   step(state.cycle);
   if (held(report_.status)) return;  // the hands feel the last good force
@@ -23,8 +34,11 @@ void ControlLoop::cycle(const messages::device_state& state) noexcept {
   sum_hand_force();
 }
 
-void ControlLoop::read(const messages::device_state& state) noexcept {
+/// False, with the probes as they were, if a place is not finite.
+bool ControlLoop::read(const messages::device_state& state) noexcept {
   cycle_ = state.cycle;
+  const double scale = norm({state.origin[0], state.origin[1], state.origin[2]}) + std::abs(state.resolution);
+  if (!(scale < largest_place)) return false;
   probe_count_ = static_cast<std::size_t>(std::clamp<std::int32_t>(state.probe_count, 0, state.max_probes));
   const Vec3 origin{state.origin[0], state.origin[1], state.origin[2]};
   for (std::size_t p = 0; p < probe_count_; ++p) {
@@ -32,6 +46,7 @@ void ControlLoop::read(const messages::device_state& state) noexcept {
     const std::int16_t(&axis)[3] = state.axis[p];
     probe_[p].axis = unit({static_cast<double>(axis[0]), static_cast<double>(axis[1]), static_cast<double>(axis[2])});
   }
+  return true;
 }
 
 void ControlLoop::step(std::int64_t cycle) noexcept {

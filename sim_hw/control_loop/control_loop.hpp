@@ -28,7 +28,8 @@ class ControlLoop {
   /// `surface` must outlive the loop. `body` was created with LoopSetup::max_contacts.
   ControlLoop(const Elastostatic& body, const BodySurface& surface, const LoopSetup& setup);
 
-  /// Finds the contacts, steps the body, sums the force on every probe.
+  /// Finds the contacts, steps the body, sums the force on every probe. A state that is not finite is refused like a
+  /// contact that is not: held_not_finite, and the last good force stays.
   void cycle(const messages::device_state& state) noexcept;
 
   /// Writes the answer to the last cycle and adds its response to the digest.
@@ -52,7 +53,7 @@ class ControlLoop {
     return static_cast<const float*>(static_cast<const void*>(field_.data()));
   }
   [[nodiscard]] float* field_data() noexcept { return static_cast<float*>(static_cast<void*>(field_.data())); }
-  void read(const messages::device_state& state) noexcept;
+  [[nodiscard]] bool read(const messages::device_state& state) noexcept;
   void step(std::int64_t cycle) noexcept;
   void overrun(const Response& response) noexcept;
   void sum_hand_force() noexcept;

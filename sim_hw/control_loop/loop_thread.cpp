@@ -40,10 +40,12 @@ void LoopThread::run() {
 
 void LoopThread::run_cycle() {
   if (!states_.take(state_)) return;
-  allocation_guard::arm();
   const std::int64_t begin = thread_cpu_ns();
+  allocation_guard::arm();
   loop_->cycle(state_);
+  allocation_guard::disarm();
   const std::int64_t end = thread_cpu_ns();
+  allocation_guard::arm();
   loop_->answer(command_);
   commands_.put(command_);
   allocation_guard::disarm();

@@ -43,7 +43,8 @@ class NodeGrid {
     return static_cast<int>(std::clamp(place, 0.0, static_cast<double>(count_[axis] - 1)));
   }
   [[nodiscard]] std::size_t number_of(const std::array<int, 3>& cell) const noexcept {
-    return static_cast<std::size_t>((cell[2] * count_[1] + cell[1]) * count_[0] + cell[0]);
+    const int number = (cell[2] * count_[1] + cell[1]) * count_[0] + cell[0];  // below most_in_a_row cubed
+    return static_cast<std::size_t>(number);
   }
 
   Vec3 low_;

@@ -110,7 +110,7 @@ TEST_CASE("a contact that had to be pulled is released in the next cycle, a push
   std::vector<float> force(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
     force[3 * i + 2] = i == 0 ? 1.0F : -1.0F;  // up pulls, down pushes
-    for (std::size_t c = 0; c < 3; ++c) bench.field[4 * found[i].node + c] = found[i].displacement[c];
+    for (std::size_t c = 0; c < 3; ++c) bench.field[std::size_t{4} * found[i].node + c] = found[i].displacement[c];
   }
   bench.settle(probes, force);
   const auto next = bench.find(probes);

@@ -11,6 +11,7 @@ namespace {
 
 StepTime step_time(const std::vector<CycleRecord>& records) {
   std::vector<double> time;
+  time.reserve(records.size());
   for (const CycleRecord& record : records) time.push_back(record.cpu_us);
   if (time.empty()) return {};
   std::sort(time.begin(), time.end());

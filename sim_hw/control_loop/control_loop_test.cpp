@@ -1,0 +1,239 @@
+#include "sim_hw/control_loop/control_loop.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "formats/aligned_bytes.hpp"
+#include "formats/testing/synthetic_model.hpp"
+#include "runtime/model.hpp"
+#include "sim_hw/control_loop/loop_thread.hpp"
+#include "sim_hw/device/encoder.hpp"
+#include "sim_hw/guard/allocation_guard.hpp"
+#include "sim_hw/guard/mutex_guard.hpp"
+#include "sim_hw/guard/system_call_guard.hpp"
+#include "sim_hw/handover/newest.hpp"
+#include "sim_hw/session/loaded_model.hpp"
+
+namespace greenloop {
+namespace {
+
+constexpr double probe_radius = 0.03, sphere_radius = 0.1;
+constexpr std::uint32_t max_contacts = 16;
+
+const std::vector<std::byte>& synthetic_file() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 5, .touchable_above = -0.2}));
+  return file;
+}
+
+/// The synthetic sphere with a loop on it.
+struct Bench {
+  explicit Bench(LoopSetup setup = {}) : bytes(synthetic_file()) {
+    const auto opened = Model::open(bytes.span());
+    REQUIRE(opened);
+    model = opened.model;
+    surface = body_surface(model.view());
+    body = std::make_unique<LoadedBody>(create_body(model, {.max_contacts = max_contacts}));
+    setup.probe_radius = probe_radius;
+    setup.max_contacts = max_contacts;
+    if (setup.budget.work == 0) setup.budget.work = 1000000;
+    loop = std::make_unique<ControlLoop>(body->body, surface, setup);
+  }
+
+  AlignedBytes bytes;
+  Model model;
+  BodySurface surface;
+  std::unique_ptr<LoadedBody> body;
+  std::unique_ptr<ControlLoop> loop;
+};
+
+/// A probe from above, `depth` m into the top of the sphere.
+messages::device_state pressed(std::int64_t cycle, double depth) {
+  messages::device_state state{};
+  state.cycle = cycle;
+  state.resolution = 1e-6;
+  state.probe_count = 1;
+  state.position[0][2] = encoder_counts(sphere_radius + probe_radius - depth, state.resolution);
+  state.axis[0][2] = -messages::device_state::axis_unit;
+  return state;
+}
+
+TEST_CASE("without touching there is no force, and the answer belongs to its cycle") {
+  Bench bench;
+  messages::loop_command command{};
+  bench.loop->cycle(pressed(41, -0.01));
+  bench.loop->answer(command);
+  CHECK(command.cycle == 41);
+  CHECK(command.contact_count == 0);
+  CHECK(command.hand_force[0][2] == 0);
+  CHECK(command.budget == 1000000);
+}
+
+TEST_CASE("the hand is pushed back out with what holds the contacts") {
+  Bench bench;
+  messages::loop_command command{};
+  for (std::int64_t k = 0; k < 10; ++k) {
+    bench.loop->cycle(pressed(k, 0.005));
+    bench.loop->answer(command);
+  }
+  REQUIRE(command.contact_count > 0);
+  CHECK(command.hand_force[0][2] > 0);
+  double sum = 0;
+  for (std::int32_t i = 0; i < command.contact_count; ++i) {
+    CHECK(command.contact_force[i][2] <= 0);  // none is pulled once the set has settled
+    sum += static_cast<double>(command.contact_force[i][2]);
+  }
+  CHECK(command.hand_force[0][2] == doctest::Approx(-sum));
+}
+
+TEST_CASE("the contacts lie on the probe in the deformed field, and no touchable node lies inside it") {
+  Bench bench;
+  for (std::int64_t k = 0; k < 20; ++k) bench.loop->cycle(pressed(k, 0.005));
+  const Vec3 centre = bench.loop->probes()[0].centre;
+  const auto distance = [&](std::uint32_t node) {
+    const float* moved = &bench.loop->field()[std::size_t{4} * node];
+    return norm(bench.surface.position[node] + Vec3{moved[0], moved[1], moved[2]} - centre);
+  };
+  REQUIRE_FALSE(bench.loop->contacts().empty());
+  for (const Contact& contact : bench.loop->contacts()) {
+    CHECK(distance(contact.node) == doctest::Approx(probe_radius).epsilon(0.01));
+  }
+  for (std::uint32_t node = 0; node < bench.surface.position.size(); ++node) {
+    if (bench.surface.touchable[node]) CHECK(distance(node) > 0.99 * probe_radius);
+  }
+}
+
+TEST_CASE("a state that is not finite is refused, and the hands keep the last good force") {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Bench bench;
+  messages::loop_command good{}, refused{};
+  bench.loop->cycle(pressed(0, 0.005));
+  bench.loop->answer(good);
+  REQUIRE(good.hand_force[0][2] > 0);
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, 1e300}) {
+    messages::device_state state = pressed(1, 0.005);
+    state.resolution = bad;
+    bench.loop->cycle(state);
+    bench.loop->answer(refused);
+    CHECK(static_cast<Status>(refused.status) == Status::held_not_finite);
+    CHECK(refused.hand_force[0][2] == good.hand_force[0][2]);
+    state = pressed(1, 0.005);
+    state.origin[1] = bad;
+    bench.loop->cycle(state);
+    CHECK(bench.loop->report().status == Status::held_not_finite);
+  }
+  bench.loop->cycle(pressed(2, 0.005));
+  CHECK(bench.loop->report().status == Status::ok);
+}
+
+TEST_CASE("a step that is refused counts as held") {
+  Bench bench({.budget = {.work = 1}});
+  bench.loop->cycle(pressed(0, 0.005));
+  CHECK(bench.loop->report().status == Status::held_over_budget);
+  CHECK(held(bench.loop->report().status));
+  CHECK(bench.loop->hand_force()[0] == Vec3{});
+}
+
+TEST_CASE("the overrun of the negative control spends more than the budget, in its cycle only") {
+  Bench bench({.budget = {.work = 100000}, .overrun_cycle = 3});
+  for (std::int64_t k = 0; k < 6; ++k) {
+    bench.loop->cycle(pressed(k, 0.005));
+    CHECK((bench.loop->report().work > 100000) == (k == 3));
+  }
+}
+
+/// Heap, locks and armed sections with a system call of the calling thread so far.
+struct Counts {
+  std::uint64_t allocations = allocation_guard::count(), locks = mutex_guard::count(),
+                system_calls = system_call_guard::count();
+};
+
+template <typename Section>
+Counts counted(Section section) {
+  const Counts before;
+  allocation_guard::arm();
+  mutex_guard::arm();
+  system_call_guard::arm();
+  section();
+  system_call_guard::disarm();
+  mutex_guard::disarm();
+  allocation_guard::disarm();
+  const Counts after;
+  return {after.allocations - before.allocations, after.locks - before.locks, after.system_calls - before.system_calls};
+}
+
+TEST_CASE("contacts, step, answer and hand-over use no heap, no lock and no system call") {
+  const bool watched = system_call_guard::install();
+  if (!watched) MESSAGE("the kernel offers no Syscall User Dispatch: system calls are not counted");
+  Bench bench;
+  Newest<messages::device_state> states;
+  Newest<messages::loop_command> commands;
+  messages::device_state state{};
+  messages::loop_command command{};
+  Counts total{0, 0, 0};
+  for (std::int64_t k = 0; k < 200; ++k) {
+    const Counts cycle = counted([&] {
+      states.put(pressed(k, 0.00005 * static_cast<double>(k) - 0.002));
+      if (!states.take(state)) return;
+      bench.loop->cycle(state);
+      bench.loop->answer(command);
+      commands.put(command);
+    });
+    total.allocations += cycle.allocations;
+    total.locks += cycle.locks;
+    total.system_calls += cycle.system_calls;
+  }
+  CHECK(command.contact_count > 0);
+  CHECK(total.allocations == 0);
+  CHECK(total.locks == 0);
+  CHECK(total.system_calls == 0);
+}
+
+TEST_CASE("the counters do count in a section that does all three") {
+  const bool watched = system_call_guard::install();
+  std::mutex mutex;
+  std::vector<int> grown;
+  const Counts seen = counted([&] {
+    const std::lock_guard lock(mutex);
+    grown.resize(1000);
+    (void)syscall(SYS_getppid);
+  });
+  CHECK(seen.allocations > 0);
+  CHECK(seen.locks > 0);
+  if (watched) CHECK(seen.system_calls > 0);
+}
+
+TEST_CASE("the loop's thread answers every state in order and logs it") {
+  Bench bench;
+  RunLog log(100, bench.surface.position.size());
+  {
+    LoopThread thread(*bench.loop, log);
+    for (std::int64_t k = 0; k < 100; ++k) {
+      const auto& command = thread.answer(pressed(k, 0.0001 * static_cast<double>(k) - 0.002));
+      CHECK(command.cycle == k);
+    }
+    CHECK(thread.allocations() == 0);
+  }
+  REQUIRE(log.records().size() == 100);
+  for (std::size_t k = 0; k < 100; ++k) CHECK(log.records()[k].cycle == static_cast<std::int64_t>(k));
+  CHECK(log.records().back().contacts > 0);
+}
+
+TEST_CASE("the digest is FNV-1a") {
+  Fnv1a hash;
+  CHECK(hash.value() == 0xcbf29ce484222325);
+  constexpr std::string_view text = "foobar";
+  hash.add(std::as_bytes(std::span(text.data(), text.size())));
+  CHECK(hash.value() == 0x85944171f73967e8);
+}
+
+}  // namespace
+}  // namespace greenloop
