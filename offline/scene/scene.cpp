@@ -68,13 +68,14 @@ NodeSets select_nodes(const Scene& scene, std::span<const Eigen::Vector3d> posit
   if (fixed_count == positions.size()) {
     throw SceneError({"fixed: the regions hold all " + total + " nodes, so nothing can move" + where});
   }
+  const auto none = ": the regions hold none of the " + std::to_string(positions.size() - fixed_count) +
+                    " nodes that can move (" + std::to_string(fixed_count) + " of " + total + " are fixed)" + where;
   std::vector<std::string> problems;
-  for (const auto& [role, flags] : {std::pair{"touched", &sets.touched}, std::pair{"read", &sets.read}}) {
-    if (count(*flags) == 0) {
-      problems.push_back(std::string(role) + ": the regions hold none of the " +
-                         std::to_string(positions.size() - fixed_count) + " nodes that can move (" +
-                         std::to_string(fixed_count) + " of " + total + " are fixed)" + where);
-    }
+  if (count(sets.touched) == 0) {
+    problems.push_back("touched" + none);
+  }
+  if (count(sets.read) == 0) {
+    problems.push_back("read" + none);
   }
   if (!problems.empty()) {
     throw SceneError(std::move(problems));

@@ -146,7 +146,7 @@ class Table {
     if (node == nullptr) {
       return std::nullopt;
     }
-    const auto value = node->is_string() ? node->value<std::string>() : std::nullopt;
+    auto value = node->is_string() ? node->value<std::string>() : std::nullopt;
     if (!value) {
       refuse(key, "is " + std::string(kind_of(*node)) + "; expected a string");
     } else if (value->empty()) {
