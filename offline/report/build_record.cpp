@@ -92,9 +92,8 @@ class Reader {
     return value != nullptr ? value->get<std::string>() : std::string();
   }
   void check_object(const json& value, const std::string& key) const {
-    if (!value.is_object())
-      throw std::runtime_error(file_ + ": an element of '" + key + "' is " + value.type_name() +
-                               ", expected an object");
+    if (value.is_object()) return;
+    throw std::runtime_error(file_ + ": an element of '" + key + "' is " + value.type_name() + ", expected an object");
   }
 
  private:

@@ -26,10 +26,17 @@ void DepthBuffer::draw_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f&
   const int x1 = std::min(static_cast<int>(std::ceil(high.x())), width_);
   const int y0 = std::max(static_cast<int>(std::floor(low.y())), 0);
   const int y1 = std::min(static_cast<int>(std::ceil(high.y())), height_);
+  // the weights are linear over the picture
+  const float first_x = static_cast<float>(x0) + 0.5F, first_y = static_cast<float>(y0) + 0.5F;
+  const Eigen::Vector3f first = barycentric(a, b, c, first_x, first_y);
+  const Eigen::Vector3f per_x = barycentric(a, b, c, first_x + 1, first_y) - first;
+  const Eigen::Vector3f per_y = barycentric(a, b, c, first_x, first_y + 1) - first;
+  constexpr float rounding = 1e-5F;  // a sample on an edge belongs to both neighbours rather than to none
   for (int y = y0; y < y1; ++y) {
+    const Eigen::Vector3f row = first + static_cast<float>(y - y0) * per_y;
     for (int x = x0; x < x1; ++x) {
-      const Eigen::Vector3f weight = barycentric(a, b, c, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-      if (!(weight.minCoeff() >= 0)) continue;
+      const Eigen::Vector3f weight = row + static_cast<float>(x - x0) * per_x;
+      if (!(weight.minCoeff() >= -rounding)) continue;
       const float depth = weight.x() * a.z() + weight.y() * b.z() + weight.z() * c.z();
       const std::size_t at = static_cast<std::size_t>(y) * width_ + x;
       if (depth <= depth_[at]) continue;

@@ -39,7 +39,7 @@ thead th{color:var(--muted);font-size:13px;line-height:1.3;vertical-align:bottom
 .missing p{margin:10px 0 2px}
 pre{margin:2px 0 10px;font:13.5px/1.5 ui-monospace,SFMono-Regular,Menlo,Consolas,"DejaVu Sans Mono",monospace;white-space:pre-wrap;
 overflow-wrap:anywhere}
-@media print{@page{margin:16mm}body{font-size:10.5pt}main{max-width:none;padding:0}
+@media print{@page{margin:16mm}.keys{grid-template-columns:repeat(3,1fr)}body{font-size:10.5pt}main{max-width:none;padding:0}
 figure,.missing,.keys,.groups>div,tr{break-inside:avoid}h2,h3{break-after:avoid}
 .key,.missing{border:1px solid var(--rule);border-left-width:4px;-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )";
