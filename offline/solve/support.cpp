@@ -33,8 +33,8 @@ std::vector<int> pieces(const TetrahedralMesh& mesh) {
   std::iota(parent.begin(), parent.end(), 0);
   for (std::size_t f = 1; f < faces.size(); ++f) {
     if (faces[f].first != faces[f - 1].first) continue;
-    const auto [low, high] = std::minmax(root_of(parent, faces[f].second), root_of(parent, faces[f - 1].second));
-    parent[high] = low;
+    const int a = root_of(parent, faces[f].second), b = root_of(parent, faces[f - 1].second);
+    parent[std::max(a, b)] = std::min(a, b);
   }
   for (std::size_t t = 0; t < parent.size(); ++t) parent[t] = root_of(parent, static_cast<int>(t));
   return parent;
