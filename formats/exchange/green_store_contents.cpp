@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace greenloop {
 namespace {
@@ -172,10 +173,12 @@ Interpolation read_interpolation(const Hdf5File& file, std::size_t rows, std::si
   const auto start = read_list<int>(file, group + "/row_start");
   const auto column = read_list<int>(file, group + "/column");
   const auto weight = read_list<double>(file, group + "/weight");
-  if (start.size() != rows + 1 || start.front() != 0 || !std::is_sorted(start.begin(), start.end()) ||
-      static_cast<std::size_t>(start.back()) != column.size() || column.size() != weight.size()) {
-    file.fail(group,
-              "row_start, column and weight are not a compressed sparse matrix of " + std::to_string(rows) + " rows");
+  if (start.size() != rows + 1 || start.front() != 0 || !std::is_sorted(start.begin(), start.end())) {
+    file.fail(group + "/row_start", "must rise from 0 and have " + std::to_string(rows + 1) + " entries");
+  }
+  for (const auto& [name, size] : {std::pair("/column", column.size()), std::pair("/weight", weight.size())}) {
+    if (size == static_cast<std::size_t>(start.back())) continue;
+    file.fail(group + name, "needs " + std::to_string(start.back()) + " entries, as many as row_start ends with");
   }
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t r = 0; r < rows; ++r) {

@@ -66,8 +66,8 @@ GreenStoreContents small_contents(int columns) {
 /// Recognisable values for column `column`.
 MatrixXd column_values(int column, int rows) {
   MatrixXd values(3 * rows, 3);
-  for (Eigen::Index c = 0; c < 3; ++c) {
-    for (Eigen::Index r = 0; r < values.rows(); ++r) values(r, c) = column + 0.1 * static_cast<double>(c) + 1e-4 * r;
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3 * rows; ++r) values(r, c) = column + 0.1 * c + 1e-4 * r;
   }
   return values;
 }
@@ -207,7 +207,7 @@ TEST_CASE("a store made elsewhere is checked: missing datasets, wrong shapes, un
   refuse("/green/displacement", {3, 3, 18, 3}, 0, "m/N", "shape must be [3, 3, 17, 3]");
   refuse("/green/displacement", {3, 3, 17, 3}, 0, "m", "convert it to 'm/N'");
   refuse("/green/done", {}, 0, "", "missing");
-  refuse("/volume/interpolation/weight", {17}, 1, "", "/volume/interpolation");
+  refuse("/volume/interpolation/weight", {17}, 1, "", "needs 18 entries");
 }
 
 TEST_CASE("columns that are not finite are refused when read") {

@@ -10,7 +10,7 @@
 namespace greenloop::offline {
 
 struct TetrahedralizeOptions {
-  double interior_growth = 3.0;  ///< element size in the middle over the mean surface edge, 1..16
+  double interior_growth = 2.0;  ///< element size in the middle over the mean surface edge, 1..16
   double grading = 0.3;          ///< growth of the element size per distance from the surface, 0.1..0.8
   int optimization_steps = 3;    ///< smoothing and swapping rounds, 0..10
 };

@@ -1,5 +1,6 @@
 #include "offline/solve/testing/shapes.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
