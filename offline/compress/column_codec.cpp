@@ -17,7 +17,7 @@ double squared_norm(const float* block) {
 }  // namespace
 
 TransformedColumn transform_column(const LiftedLinear& wavelet, const Eigen::MatrixXd& block, std::size_t j,
-                                   double area) {
+                                   double area, const std::vector<std::size_t>& near_nodes) {
   const std::size_t rows = wavelet.rows();
   std::vector<double> x((rows + 1) * width, 0.0);
   for (std::size_t c = 0; c < 3; ++c) {
@@ -41,6 +41,11 @@ TransformedColumn transform_column(const LiftedLinear& wavelet, const Eigen::Mat
   for (std::size_t i = 0; i < rows; ++i) {
     column.norms[i] = static_cast<float>(std::sqrt(squared_norm(column.coefficients.data() + width * i)));
   }
+  const auto& nodes = wavelet.nodes();
+  for (const std::size_t node : near_nodes) {
+    const auto row = std::lower_bound(nodes.begin(), nodes.end(), node);
+    if (row != nodes.end() && *row == node) column.near.push_back(static_cast<std::size_t>(row - nodes.begin()));
+  }
   return column;
 }
 
@@ -53,6 +58,7 @@ std::size_t EncodedColumn::blocks() const {
 void encode_column(const LiftedLinear& wavelet, const TransformedColumn& column, double threshold,
                    const std::vector<std::uint32_t>& value_bytes, EncodedColumn& encoded) {
   encoded.levels.resize(wavelet.levels());
+  auto near = column.near.begin();
   for (std::size_t l = 0; l < wavelet.levels(); ++l) {
     auto& level = encoded.levels[l];
     level.rows.clear();
@@ -62,7 +68,9 @@ void encode_column(const LiftedLinear& wavelet, const TransformedColumn& column,
         l == 0 ? 0.0 : std::ldexp(threshold, static_cast<int>(l) - static_cast<int>(wavelet.levels() - 1));
     float largest = 0;
     for (std::size_t i = begin; i < end; ++i) {
-      if (static_cast<double>(column.norms[i]) < least) continue;
+      while (near != column.near.end() && *near < i) ++near;
+      const bool is_near = near != column.near.end() && *near == i;
+      if (!is_near && static_cast<double>(column.norms[i]) < least) continue;
       level.rows.push_back(static_cast<std::uint32_t>(i - begin));
       const float* block = column.coefficients.data() + width * i;
       for (std::size_t k = 0; k < width; ++k) largest = std::max(largest, std::abs(block[k]));

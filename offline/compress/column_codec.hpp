@@ -21,11 +21,14 @@ struct TransformedColumn {
   double energy = 0;                ///< sum of squares of the values
   double largest = 0;               ///< largest Frobenius norm of a block of the values
   double area = 0;                  ///< m^2, turns force form into traction form
+  std::vector<std::size_t> near;    ///< rows that are kept whatever their norm, increasing
 };
 
-/// Column `j` of `block` (3 rows() x 3 per column), transformed in double precision. Work: linear in the rows.
+/// Column `j` of `block` (3 rows() x 3 per column), transformed in double precision; `near_nodes` (increasing) become
+/// the rows that are always kept. Work: linear in the rows.
 [[nodiscard]] TransformedColumn transform_column(const LiftedLinear& wavelet, const Eigen::MatrixXd& block,
-                                                 std::size_t j, double area);
+                                                 std::size_t j, double area,
+                                                 const std::vector<std::size_t>& near_nodes = {});
 
 /// One column as the model file stores it.
 struct EncodedColumn {
@@ -39,7 +42,9 @@ struct EncodedColumn {
   [[nodiscard]] std::size_t blocks() const;
 };
 
-/// Keeps the blocks of level l > 0 whose norm is at least 2^(l - L) * `threshold` (m/N) and the whole base level, and
+/// Keeps the blocks of level l > 0 whose norm is at least 2^(l - L) * `threshold` (m/N), those of near rows (without
+/// them a node's own details vanish where the body is stiffer than elsewhere, and a small contact patch becomes
+/// singular), and the whole base level, and
 /// rounds them to value_bytes[l] (1: +-127, 2: +-32767) at one scale per level (James & Pai 2003, section 4.5).
 /// Work: linear in the rows. Offline only.
 void encode_column(const LiftedLinear& wavelet, const TransformedColumn& column, double threshold,

@@ -59,6 +59,31 @@ std::uint32_t nearest_column(const SemiRegularMesh& mesh, const std::vector<layo
   return nearest;
 }
 
+/// The vertices of K(level) one edge away from each.
+std::vector<std::vector<std::size_t>> neighbours(const SemiRegularMesh& mesh, std::uint32_t level) {
+  std::vector<std::vector<std::size_t>> ring(mesh.vertex_end[level]);
+  for (const auto& triangle : triangles_of_level(mesh, static_cast<int>(level))) {
+    for (int corner = 0; corner < 3; ++corner) {
+      // the surface is closed: the other direction of the edge belongs to the next triangle
+      ring[static_cast<std::size_t>(triangle[corner])].push_back(static_cast<std::size_t>(triangle[(corner + 1) % 3]));
+    }
+  }
+  return ring;
+}
+
+/// `nodes` and all their ancestors, increasing.
+std::vector<std::size_t> with_ancestors(const SemiRegularMesh& mesh, std::vector<std::size_t> nodes) {
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (const int parent : mesh.parents[nodes[i]]) {
+      if (parent >= 0 && std::find(nodes.begin(), nodes.end(), static_cast<std::size_t>(parent)) == nodes.end()) {
+        nodes.push_back(static_cast<std::size_t>(parent));
+      }
+    }
+  }
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
 std::uint32_t representative(const SemiRegularMesh& mesh, const ConstraintLevel& level,
                              const std::vector<HatWeight>& shares, std::size_t node) {
   const HatWeight* best = nullptr;
@@ -80,6 +105,13 @@ ConstraintLevel constraint_level(const SemiRegularMesh& mesh, const std::vector<
     if (node >= mesh.vertex_end[level]) break;
     column_of[node] = static_cast<std::uint32_t>(result.columns.size());
     result.columns.push_back({static_cast<std::uint32_t>(node), 0.0F});
+  }
+
+  const auto ring = neighbours(mesh, level);
+  for (const auto& column : result.columns) {
+    auto near = ring[column.node];
+    near.push_back(column.node);
+    result.near.push_back(with_ancestors(mesh, std::move(near)));
   }
 
   const Hats hats = hats_at_nodes(mesh, level);

@@ -24,6 +24,8 @@ struct ConstraintLevel {
   std::vector<layout::ColumnRecord> columns;  ///< one per vertex of K(c) with an exact column, by node
   std::vector<std::vector<HatWeight>> share;  ///< [exact column] its force in `columns` (vertex = column), sums to
                                               ///< one per column over all exact columns
+  /// [column] its centre, the vertices of K(c) one edge away and all their ancestors, increasing.
+  std::vector<std::vector<std::size_t>> near;
   std::vector<std::uint32_t>
       representatives;  ///< [node] column that stands for it; layout::none if it has no exact one
 };

@@ -38,7 +38,7 @@ CompressedLevel code_all(ColumnCoder& coder, const ConstraintLevel& level, const
     const Eigen::MatrixXd block = source(first, count);
     for (std::size_t j = 0; j < count; ++j) {
       const double area = static_cast<double>(level.columns[first + j].area);
-      const auto column = transform_column(coder.wavelet(), block, j, area);
+      const auto column = transform_column(coder.wavelet(), block, j, area, level.near[first + j]);
       if (coder.code(column, encoding, accuracy.worst_column, encoded, result.tally)) ++result.tightened;
       append(encoded, result.blocks);
     }
@@ -63,7 +63,8 @@ std::vector<TransformedColumn> sample_columns(const LiftedLinear& wavelet, const
   std::vector<TransformedColumn> sample;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t j = i * total / count;
-    sample.push_back(transform_column(wavelet, source(j, 1), 0, static_cast<double>(level.columns[j].area)));
+    sample.push_back(
+        transform_column(wavelet, source(j, 1), 0, static_cast<double>(level.columns[j].area), level.near[j]));
   }
   return sample;
 }
