@@ -16,7 +16,7 @@ namespace greenloop {
 
 /// A folder for one test executable, emptied at its start.
 inline std::filesystem::path scratch_folder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("greenloop_" + name);
+  auto folder = std::filesystem::temp_directory_path() / ("greenloop_" + name);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

@@ -75,6 +75,7 @@ void count_components(const TriangleMesh& mesh, const SurfaceEdges& edges, Surfa
     ++found[pieces.find(f)].size;
   }
   std::vector<Piece> sorted;
+  sorted.reserve(found.size());
   for (const auto& [first_face, piece] : found) {
     sorted.push_back({piece.size, first_face});
   }
