@@ -15,7 +15,7 @@
 namespace greenloop::offline {
 namespace {
 
-constexpr std::size_t sample_size = 192;    // columns the search works on
+constexpr std::size_t sample_size = 128;    // columns the search works on
 constexpr std::size_t stream_columns = 64;  // columns read at a time
 constexpr std::array curve_epsilons = {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 

@@ -7,7 +7,9 @@ namespace greenloop::offline {
 namespace {
 
 constexpr double log2_epsilon_least = -20, log2_epsilon_most = 2;
-constexpr int bisections = 12;  // to 0.4 % of epsilon
+constexpr int bisections = 12;         // to 0.4 % of epsilon
+constexpr int refined_bisections = 6;  // of one octave: to 1 %
+constexpr int refined_sweeps = 2;
 
 bool meets(const Tally& tally, const Accuracy& accuracy) {
   return tally.rms() <= accuracy.rms && tally.worst_column <= accuracy.worst_column;
@@ -44,6 +46,21 @@ std::optional<Candidate> bisect_epsilon(ColumnCoder& coder, const std::vector<Tr
   return Candidate{encoding, bytes};
 }
 
+/// Spends what better rounding gains on a larger epsilon: up to twice the one that plain rounding needs.
+Encoding refine_epsilon(ColumnCoder& coder, const std::vector<TransformedColumn>& sample, const Accuracy& accuracy,
+                        Encoding encoding) {
+  encoding.sweeps = refined_sweeps;
+  double low = std::log2(encoding.epsilon);
+  double high = low + 1.0;
+  for (int i = 0; i < refined_bisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    encoding.epsilon = std::exp2(middle);
+    (meets(coder.measure(sample, encoding, accuracy.worst_column), accuracy) ? low : high) = middle;
+  }
+  encoding.epsilon = std::exp2(low);
+  return encoding;
+}
+
 }  // namespace
 
 double column_threshold(const Encoding& encoding, const TransformedColumn& column) {
@@ -61,6 +78,10 @@ bool ColumnCoder::code(const TransformedColumn& column, const Encoding& encoding
   while (true) {
     encode_column(*wavelet_, column, threshold, encoding.value_bytes, encoded);
     decode_column(*wavelet_, encoded, values_);
+    if (encoding.sweeps > 0) {
+      refine_quanta(*wavelet_, shapes_, column, encoding.value_bytes, values_, encoding.sweeps, encoded);
+      decode_column(*wavelet_, encoded, values_);
+    }
     error = column_error(column, values_);
     if (error.largest <= worst_column || threshold <= least) break;
     threshold *= std::clamp(worst_column / error.largest, 0.5, 0.95);
@@ -110,7 +131,8 @@ std::optional<Encoding> search_encoding(ColumnCoder& coder, const std::vector<Tr
     if (best && candidate->bytes >= best->bytes) break;  // more bits only cost from here on
     best = candidate;
   }
-  return best ? std::optional(best->encoding) : std::nullopt;
+  if (!best) return std::nullopt;
+  return refine_epsilon(coder, sample, accuracy, best->encoding);
 }
 
 }  // namespace greenloop::offline

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "offline/compress/column_codec.hpp"
+#include "offline/compress/rounding.hpp"
 
 namespace greenloop::offline {
 
@@ -21,6 +22,7 @@ struct Encoding {
   double epsilon = 0;         ///< threshold at the finest level relative to a typical column's largest block
   double typical_weight = 0;  ///< m^3/N: mean over columns of area times largest block
   std::vector<std::uint32_t> value_bytes;  ///< per row level, 1 or 2
+  int sweeps = 0;                          ///< rounds of refine_quanta, 0: plain rounding
 };
 
 /// Threshold of one column [m/N]: epsilon times the geometric mean of the column's largest block (which bounds each
@@ -39,7 +41,7 @@ struct Tally {
 /// Codes columns one by one and measures each by reconstructing it as the runtime does.
 class ColumnCoder {
  public:
-  explicit ColumnCoder(const LiftedLinear& wavelet) : wavelet_(&wavelet) {}
+  explicit ColumnCoder(const LiftedLinear& wavelet) : wavelet_(&wavelet), shapes_(wavelet) {}
 
   /// Codes `column` into `encoded` and adds it to `tally`. A column whose own error exceeds `worst_column` is coded
   /// again with a lower threshold until it holds or nothing more can be kept; returns whether it was.
@@ -57,6 +59,7 @@ class ColumnCoder {
 
  private:
   const LiftedLinear* wavelet_;
+  WaveletShapes shapes_;
   std::vector<float> values_;
   EncodedColumn scratch_;
 };
@@ -65,7 +68,8 @@ class ColumnCoder {
 [[nodiscard]] double typical_weight(const std::vector<TransformedColumn>& sample);
 
 /// The encoding of fewest bytes that meets `accuracy` on `sample`: the largest epsilon by bisection for every number
-/// of leading levels stored in 16 bits, at least `wide_levels` of them. Nothing if even 16 bits and no threshold fail.
+/// of leading levels stored in 16 bits, at least `wide_levels` of them; then larger yet for what refine_quanta gains.
+/// Nothing if even 16 bits and no threshold fail.
 [[nodiscard]] std::optional<Encoding> search_encoding(ColumnCoder& coder, const std::vector<TransformedColumn>& sample,
                                                       const Accuracy& accuracy, std::size_t wide_levels);
 
