@@ -8,10 +8,10 @@
 namespace greenloop::offline {
 
 struct BuildRequest {
-  std::filesystem::path scene;  ///< scene.toml
-  std::filesystem::path model;  ///< .gloop to write; its record goes beside it as .build.json
-  std::filesystem::path store;  ///< exact Green's functions, HDF5; resumed if it is the scene's. Empty: as the scene
-                                ///< says, else beside the model
+  std::filesystem::path scene;   ///< scene.toml
+  std::filesystem::path model;   ///< .gloop to write; its record goes beside it as .build.json
+  std::filesystem::path store;   ///< exact Green's functions, HDF5; resumed if it is the scene's. Empty: as the scene
+                                 ///< says, else beside the model
   bool overwrite_store = false;  ///< replace a store that belongs to another scene
   bool force = false;            ///< build even if the model is up to date
 };
