@@ -40,7 +40,10 @@ std::string scalar_text(const json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number_unsigned()) return readable_count(value.get<unsigned long long>());
   if (value.is_number()) return readable(value.get<double>());
-  return value.dump();
+  if (!value.is_array()) return value.dump();
+  std::string list;
+  for (const json& element : value) list += (list.empty() ? "" : ", ") + scalar_text(element);
+  return list.empty() ? "none" : list;
 }
 
 Fact fact(const std::string& prefix, const std::string& key, const json& value) {
@@ -60,6 +63,20 @@ void append_facts(const json& object, const std::string& prefix, std::vector<Fac
       facts.push_back(fact(prefix, key, value));
     }
   }
+}
+
+std::vector<FactGroup> fact_groups(const json& object, const std::string& title) {
+  std::vector<FactGroup> groups{{title, {}}};
+  for (const auto& [key, value] : object.items()) {
+    if (!value.is_object()) {
+      groups.front().facts.push_back(fact("", key, value));
+      continue;
+    }
+    groups.push_back({words(key), {}});
+    append_facts(value, "", groups.back().facts);
+  }
+  std::erase_if(groups, [](const FactGroup& group) { return group.facts.empty(); });
+  return groups;
 }
 
 /// Reads parts of the record and names the key that is wrong.
@@ -110,23 +127,48 @@ void read_stages(const Reader& reader, const json& root, BuildRecord& record) {
   }
 }
 
+std::optional<ErrorPoint> error_point(const Reader& reader, const json& point) {
+  const auto epsilon = reader.number(point, "epsilon"), rms = reader.number(point, "rms_error");
+  if (!epsilon || !rms || !(*rms > 0) || !std::isfinite(*rms)) return std::nullopt;
+  return ErrorPoint{.epsilon = *epsilon,
+                    .rms_error = *rms,
+                    .worst_column_error = reader.number(point, "worst_column_error"),
+                    .kept_blocks = reader.number(point, "kept_blocks"),
+                    .bytes = reader.number(point, "bytes"),
+                    .sum_work = reader.number(point, "sum_work")};
+}
+
+/// The constraint level that was compressed with the chosen threshold is a point of the curve as well.
+void append_chosen(const Reader& reader, const json& compression, BuildRecord& record) {
+  const json* levels = reader.array(compression, "constraint_levels");
+  const auto same = [&](double epsilon) { return record.epsilon && std::abs(epsilon - *record.epsilon) < 1e-9; };
+  const bool present = std::any_of(record.curve.begin(), record.curve.end(),
+                                   [&](const ErrorPoint& point) { return same(point.epsilon); });
+  if (levels == nullptr || present) return;
+  for (const json& level : *levels) {
+    reader.check_object(level, "constraint_levels");
+    auto point = error_point(reader, level);
+    if (!point || !same(point->epsilon)) continue;
+    const auto columns = reader.number(level, "columns");
+    if (point->kept_blocks && columns && *columns > 0) point->sum_work = 9 * *point->kept_blocks / *columns;
+    record.curve.push_back(*point);
+    return;
+  }
+}
+
 void read_compression(const Reader& reader, const json& root, BuildRecord& record) {
   const json* compression = reader.object(root, "compression");
   if (compression == nullptr) return;
   record.epsilon = reader.number(*compression, "epsilon");
-  const json* curve = reader.array(*compression, "curve");
-  if (curve == nullptr) return;
-  for (const json& point : *curve) {
-    reader.check_object(point, "curve");
-    const auto epsilon = reader.number(point, "epsilon"), rms = reader.number(point, "rms_error");
-    if (!epsilon || !rms || !(*rms > 0) || !std::isfinite(*rms)) continue;
-    record.curve.push_back({.epsilon = *epsilon,
-                            .rms_error = *rms,
-                            .worst_column_error = reader.number(point, "worst_column_error"),
-                            .kept_blocks = reader.number(point, "kept_blocks"),
-                            .bytes = reader.number(point, "bytes"),
-                            .sum_work = reader.number(point, "sum_work")});
+  const auto columns = reader.number(*compression, "curve_columns");
+  if (columns && *columns >= 0) record.curve_columns = static_cast<unsigned long long>(*columns);
+  if (const json* curve = reader.array(*compression, "curve")) {
+    for (const json& point : *curve) {
+      reader.check_object(point, "curve");
+      if (const auto read = error_point(reader, point)) record.curve.push_back(*read);
+    }
   }
+  append_chosen(reader, *compression, record);
   std::stable_sort(record.curve.begin(), record.curve.end(),
                    [](const ErrorPoint& a, const ErrorPoint& b) { return a.epsilon < b.epsilon; });
 }
@@ -147,17 +189,32 @@ BuildRecord load_build_record(const std::filesystem::path& path) {
   BuildRecord record;
   record.scene = reader.text(root, "scene");
   read_stages(reader, root, record);
-  if (const json* remesh = reader.object(root, "remesh")) append_facts(*remesh, "", record.remesh);
-  if (const json* solve = reader.object(root, "solve")) append_facts(*solve, "", record.solve);
+  for (const char* part : {"surface", "remesh", "volume", "solve"}) {
+    if (const json* object = reader.object(root, part)) merge_facts(record.groups, fact_groups({{part, *object}}, ""));
+  }
   read_compression(reader, root, record);
   return record;
 }
 
-std::vector<Fact> facts_of_json(const std::string& text) {
+std::vector<FactGroup> facts_of_json(const std::string& text, const std::string& title) {
   const json root = json::parse(text, nullptr, false);
-  std::vector<Fact> facts;
-  if (root.is_object()) append_facts(root, "", facts);
-  return facts;
+  return root.is_object() ? fact_groups(root, title) : std::vector<FactGroup>{};
+}
+
+void merge_facts(std::vector<FactGroup>& groups, const std::vector<FactGroup>& more) {
+  for (const FactGroup& group : more) {
+    const auto at =
+        std::find_if(groups.begin(), groups.end(), [&](const FactGroup& g) { return g.title == group.title; });
+    if (at == groups.end()) {
+      groups.push_back(group);
+      continue;
+    }
+    for (const Fact& fact : group.facts) {
+      const bool known =
+          std::any_of(at->facts.begin(), at->facts.end(), [&](const Fact& f) { return f.name == fact.name; });
+      if (!known) at->facts.push_back(fact);
+    }
+  }
 }
 
 }  // namespace greenloop::offline

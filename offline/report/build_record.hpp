@@ -18,6 +18,12 @@ struct Fact {
   std::string value;
 };
 
+/// Facts under one heading.
+struct FactGroup {
+  std::string title;
+  std::vector<Fact> facts;
+};
+
 /// One compression of the same Green's functions; what the record does not say is empty.
 struct ErrorPoint {
   double epsilon = 0;
@@ -32,17 +38,21 @@ struct ErrorPoint {
 struct BuildRecord {
   std::string scene;
   std::vector<StageTime> stages;
-  std::vector<Fact> remesh;
-  std::vector<Fact> solve;
-  std::optional<double> epsilon;  ///< the chosen one
-  std::vector<ErrorPoint> curve;  ///< by increasing epsilon
+  std::vector<FactGroup> groups;                    ///< of every other object in the record: "remesh", "solve", ...
+  std::optional<double> epsilon;                    ///< the chosen one
+  std::optional<unsigned long long> curve_columns;  ///< the curve is measured on so many columns
+  std::vector<ErrorPoint> curve;                    ///< by increasing epsilon, with the chosen one where it is recorded
 };
 
 /// Reads the JSON file. Throws std::runtime_error naming file and key if it is no JSON or a present part has the wrong
 /// type; points without epsilon or with an RMS error that is not positive are left out of the curve.
 [[nodiscard]] BuildRecord load_build_record(const std::filesystem::path& path);
 
-/// Every scalar of a JSON text as a fact, nested keys joined by " / "; empty if the text is no JSON object.
-[[nodiscard]] std::vector<Fact> facts_of_json(const std::string& text);
+/// The facts of a JSON text: its scalars under `title`, then one group per object in it, with the object's key as
+/// title. Empty if the text is no JSON object.
+[[nodiscard]] std::vector<FactGroup> facts_of_json(const std::string& text, const std::string& title);
+
+/// Adds to `groups` what `more` has under titles or names that are not there yet.
+void merge_facts(std::vector<FactGroup>& groups, const std::vector<FactGroup>& more);
 
 }  // namespace greenloop::offline

@@ -23,12 +23,14 @@ TEST_CASE("a complete build record") {
   CHECK(record.scene == "bear.toml");
   REQUIRE(record.stages.size() == 1);
   CHECK(record.stages[0].seconds == 2.5);
-  REQUIRE(record.remesh.size() == 3);
-  CHECK(record.remesh[1].name == "hausdorff");
-  CHECK(record.remesh[1].value == "0.4\u202f%");
-  CHECK(record.remesh[2].value == "21.5\u202f°");
-  REQUIRE(record.solve.size() == 3);
-  CHECK(record.solve[2].name == "seconds");
+  REQUIRE(record.groups.size() == 2);
+  const auto& remesh = record.groups[0].facts;
+  REQUIRE(remesh.size() == 3);
+  CHECK(remesh[1].name == "hausdorff");
+  CHECK(remesh[1].value == "0.4\u202f%");
+  CHECK(remesh[2].value == "21.5\u202f°");
+  REQUIRE(record.groups[1].facts.size() == 3);
+  CHECK(record.groups[1].facts[2].name == "seconds");
   CHECK(record.epsilon == 0.02);
   REQUIRE(record.curve.size() == 2);
   CHECK(record.curve[0].epsilon == 0.02);
@@ -66,13 +68,35 @@ TEST_CASE("a wrong build record is refused with file and key") {
   CHECK(mentions(refusal(R"({"compression": {"epsilon": "x"}})"), "'epsilon' is string, expected a number"));
 }
 
-TEST_CASE("provenance becomes facts; what is no object becomes none") {
-  const auto facts = facts_of_json(R"({"mesh": {"file": "bear.off", "vertices": 10096}, "ok": true})");
-  REQUIRE(facts.size() == 3);
-  CHECK(facts[0].name == "mesh / file");
-  CHECK(facts[1].value == "10\u202f096");
-  CHECK(facts[2].value == "yes");
-  CHECK(facts_of_json("plain text").empty());
+TEST_CASE("the chosen threshold joins the curve from its constraint level") {
+  const TemporaryFolder folder("build_record_test");
+  const auto record = load_build_record(folder.write("b.json", R"({"compression": {"epsilon": 0.3, "curve_columns": 192,
+    "curve": [{"epsilon": 0.4, "rms_error": 0.05, "bytes": 100}, {"epsilon": 0.2, "rms_error": 0.02, "bytes": 200}],
+    "constraint_levels": [{"level": 0, "epsilon": 0.35, "rms_error": 0.03, "columns": 2, "kept_blocks": 4},
+    {"level": 1, "epsilon": 0.3, "rms_error": 0.03, "columns": 10, "kept_blocks": 50, "bytes": 150}]}})"));
+  REQUIRE(record.curve.size() == 3);
+  CHECK(record.curve[1].epsilon == 0.3);
+  CHECK(record.curve[1].bytes == 150);
+  CHECK(record.curve[1].sum_work == 45);
+  CHECK(record.curve_columns == 192);
+}
+
+TEST_CASE("provenance becomes groups of facts; what is no object becomes none") {
+  auto groups = facts_of_json(
+      R"({"mesh": {"file": "bear.off", "vertices": 10096, "repairs": [], "box": [1, 2]}, "ok": true})", "Provenance");
+  REQUIRE(groups.size() == 2);
+  CHECK(groups[0].title == "Provenance");
+  CHECK(groups[0].facts[0].value == "yes");
+  CHECK(groups[1].title == "mesh");
+  CHECK(groups[1].facts[0].value == "1, 2");
+  CHECK(groups[1].facts[2].value == "none");
+  CHECK(groups[1].facts[3].value == "10\u202f096");
+  CHECK(facts_of_json("plain text", "").empty());
+  merge_facts(groups, {{"mesh", {{"file", "other.off"}, {"genus", "0"}}}, {"solve", {{"columns", "3"}}}});
+  REQUIRE(groups.size() == 3);
+  REQUIRE(groups[1].facts.size() == 5);
+  CHECK(groups[1].facts[1].value == "bear.off");
+  CHECK(groups[1].facts[4].name == "genus");
 }
 
 }  // namespace greenloop::offline

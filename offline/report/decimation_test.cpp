@@ -13,6 +13,7 @@ TEST_CASE("decimation keeps every extreme of every column, and the order") {
   std::mt19937_64 random(3);
   INFO("seed 3");
   std::vector<Point> curve;
+  curve.reserve(20'000);
   for (int i = 0; i < 20'000; ++i) curve.push_back({i * 1e-3, std::ldexp(static_cast<double>(random()), -64)});
   curve[12'345].y = 50;   // a spike one cycle long must survive
   curve[17'000].y = -20;  // so must a dip

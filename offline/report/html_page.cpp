@@ -26,12 +26,14 @@ p{max-width:46em}
 figure{margin:14px 0 34px}
 figure svg{display:block;width:100%;height:auto}
 figcaption{color:var(--muted);font-size:14.5px;margin-top:10px;max-width:56em}
-.groups{display:grid;grid-template-columns:repeat(auto-fit,minmax(330px,1fr));gap:4px 44px}
-.groups h3{font-size:13px;margin:18px 0 4px;text-transform:uppercase;letter-spacing:.06em;color:var(--muted)}
+.groups{columns:330px 2;column-gap:44px}
+.groups>div{break-inside:avoid;padding-top:1px}
+.groups h3,.text h3{font-size:13px;margin:18px 0 4px;text-transform:uppercase;letter-spacing:.06em;color:var(--muted)}
 table{border-collapse:collapse;width:100%;font-size:14.5px;font-variant-numeric:tabular-nums}
 td,th{padding:5px 0 5px 14px;border-bottom:1px solid var(--grid);text-align:right;vertical-align:top;font-weight:400}
 td:first-child,th:first-child{text-align:left;padding-left:0}
 thead th{color:var(--muted);font-size:13px;line-height:1.3;vertical-align:bottom;border-bottom:1.5px solid var(--rule)}
+.text pre{background:var(--panel);border-radius:6px;padding:12px 16px}
 .groups th{color:var(--muted)}
 .groups td{overflow-wrap:anywhere}
 .wide{overflow-x:auto}
@@ -40,7 +42,7 @@ thead th{color:var(--muted);font-size:13px;line-height:1.3;vertical-align:bottom
 pre{margin:2px 0 10px;font:13.5px/1.5 ui-monospace,SFMono-Regular,Menlo,Consolas,"DejaVu Sans Mono",monospace;white-space:pre-wrap;
 overflow-wrap:anywhere}
 @media print{@page{margin:16mm}.keys{grid-template-columns:repeat(3,1fr)}body{font-size:10.5pt}main{max-width:none;padding:0}
-figure,.missing,.keys,.groups>div,tr{break-inside:avoid}h2,h3{break-after:avoid}
+figure,.missing,.keys,tr{break-inside:avoid}h2,h3{break-after:avoid}
 .key,.missing{border:1px solid var(--rule);border-left-width:4px;-webkit-print-color-adjust:exact;print-color-adjust:exact}}
 )";
 
@@ -82,16 +84,21 @@ void HtmlPage::figure(const Figure& figure) {
 }
 
 void HtmlPage::facts(const std::vector<FactGroup>& groups) {
+  std::string texts;
   body_ += "<div class=\"groups\">\n";
   for (const FactGroup& group : groups) {
     body_ += fmt::format("<div><h3>{}</h3><table>\n", escape_markup(group.title));
     for (const Fact& fact : group.facts) {
-      body_ += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escape_markup(fact.name),
-                           escape_markup(fact.value));
+      const std::string name = escape_markup(fact.name), value = escape_markup(fact.value);
+      if (fact.value.find('\n') != std::string::npos) {
+        texts += fmt::format("<div class=\"text\"><h3>{}</h3><pre>{}</pre></div>\n", name, value);
+      } else {
+        body_ += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", name, value);
+      }
     }
     body_ += "</table></div>\n";
   }
-  body_ += "</div>\n";
+  body_ += "</div>\n" + texts;
 }
 
 void HtmlPage::table(const Table& table, std::string_view caption) {

@@ -33,7 +33,7 @@ class HtmlPage {
   void heading(std::string_view text);
   void paragraph(std::string_view text);
   void figure(const Figure& figure);
-  /// Groups of facts side by side.
+  /// Groups of facts side by side; values of several lines stand below them.
   void facts(const std::vector<FactGroup>& groups);
   void table(const Table& table, std::string_view caption);
   void missing(const std::vector<MissingInput>& inputs);

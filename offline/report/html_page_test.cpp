@@ -19,7 +19,7 @@ TEST_CASE("no text of any section reaches the page unescaped") {
   page.heading(evil);
   page.paragraph(evil);
   page.figure({"name", evil, evil, "<svg></svg>"});
-  page.facts({{evil, {{evil, evil}}}});
+  page.facts({{evil, {{evil, evil}, {evil, "two\nlines " + evil}}}});
   page.table({{evil}, {{evil}}}, evil);
   page.missing({{evil, evil}});
   const std::string text = page.str();
@@ -27,7 +27,7 @@ TEST_CASE("no text of any section reaches the page unescaped") {
   std::size_t count = 0;
   for (std::size_t at = text.find("&lt;script&gt;"); at != std::string::npos; at = text.find("&lt;script&gt;", at + 1))
     ++count;
-  CHECK(count == 17);
+  CHECK(count == 19);
 }
 
 TEST_CASE("a page is one complete document in light and dark") {

@@ -125,10 +125,7 @@ std::vector<KindBytes> bytes_by_kind(const ModelView& model) {
 std::uint64_t dense_bytes(const ModelView& model) { return finest_constraint(model).dense_blocks * 9 * sizeof(float); }
 
 std::vector<FactGroup> model_facts(const ModelView& model, const ModelSurface& surface) {
-  std::vector<FactGroup> groups{body_facts(model, surface), compression_facts(model), loop_facts(model)};
-  auto provenance = facts_of_json({model.provenance.data(), model.provenance.size()});
-  if (!provenance.empty()) groups.push_back({"Provenance", std::move(provenance)});
-  return groups;
+  return {body_facts(model, surface), compression_facts(model), loop_facts(model)};
 }
 
 Table level_table(const ModelView& model, const std::optional<TraceSummary>& trace) {

@@ -11,11 +11,6 @@
 
 namespace greenloop::offline {
 
-struct FactGroup {
-  std::string title;
-  std::vector<Fact> facts;
-};
-
 /// A table of text; the first column is the rows' heading.
 struct Table {
   std::vector<std::string> head;
@@ -34,7 +29,7 @@ struct KindBytes {
 /// Bytes of the finest constraint level's columns as dense 3 x 3 blocks of float32.
 [[nodiscard]] std::uint64_t dense_bytes(const ModelView& model);
 
-/// Body, material, compression and what the scene asked of the loop; provenance if it is JSON.
+/// Body, material, compression and what the scene asked of the loop.
 [[nodiscard]] std::vector<FactGroup> model_facts(const ModelView& model, const ModelSurface& surface);
 
 /// One row per constraint level that has columns: errors, costs, and its share of the answered cycles if there is a

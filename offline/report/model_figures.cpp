@@ -109,6 +109,8 @@ Figure error_figure(const BuildRecord& record) {
       "What the threshold ε buys: each point is the same set of Green's functions, compressed with another ε and "
       "measured "
       "against the exact columns. Down is cheaper, left is more exact.";
+  if (record.curve_columns)
+    caption += fmt::format(" Curve: {} sampled columns.", readable_count(*record.curve_columns));
   if (record.epsilon) caption += fmt::format(" This model: ε = {}.", readable(*record.epsilon, 3));
   SvgCanvas canvas(figure_width, top + height + 48, "Speed and size against error", caption);
   double x = left;

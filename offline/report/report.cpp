@@ -112,12 +112,13 @@ void add_model(const Material& material, HtmlPage& page, std::vector<Figure>& fi
   add_figure(bytes_figure(bytes_by_kind(material.model)), page, figures);
 }
 
+/// Provenance in the model, completed by the record of the build.
 void add_build(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
-  if (!material.build) return;
-  if (!material.build->stages.empty()) add_figure(stages_figure(material.build->stages), page, figures);
-  std::vector<FactGroup> groups;
-  if (!material.build->remesh.empty()) groups.push_back({"Remeshing", material.build->remesh});
-  if (!material.build->solve.empty()) groups.push_back({"Solving", material.build->solve});
+  if (material.build && !material.build->stages.empty()) {
+    add_figure(stages_figure(material.build->stages), page, figures);
+  }
+  auto groups = facts_of_json({material.model.provenance.data(), material.model.provenance.size()}, "provenance");
+  if (material.build) merge_facts(groups, material.build->groups);
   if (groups.empty()) return;
   page.heading("How it was built");
   page.facts(groups);
