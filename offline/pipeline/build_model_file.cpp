@@ -42,7 +42,6 @@ std::string column_fingerprint(Scene scene, const std::string& mesh) {
   scene.coarsest_constraints = 0;
   scene.accuracy = {};
   scene.budget = {};
-  scene.compression = {};
   scene.store.reset();
   scene.store_name.clear();
   return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();

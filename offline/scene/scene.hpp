@@ -45,19 +45,14 @@ struct Remesh {
 };
 
 struct AccuracyGoal {
-  double rms = 0.03;           ///< ||error||_F / ||exact||_F over all columns, 0..1
-  double worst_column = 0.25;  ///< largest block-wise relative error of any column, 0..1
+  double rms = 0.02;          ///< ||error||_F / ||exact||_F over all columns, 0..1
+  double worst_column = 0.1;  ///< largest block-wise relative error of any column, 0..1
 };
 
 struct StepBudget {
   double rate = 1000;                ///< steps per second [Hz]
   std::optional<std::int64_t> work;  ///< work units per step; the build chooses if not set
   int contacts = 16;                 ///< most contacts at once, 1..4096
-};
-
-struct CompressionChoice {
-  std::optional<double> epsilon;  ///< block threshold, 0 <= epsilon < 1; searched if not set
-  std::optional<int> bits;        ///< 8 or 16; searched if not set
 };
 
 /// What scene.toml asks for, in SI units. docs/scene.md has the grammar.
@@ -71,7 +66,6 @@ struct Scene {
   int coarsest_constraints = 0;  ///< coarsest level offered for contacts, 0..remesh.levels
   AccuracyGoal accuracy;
   StepBudget budget;
-  CompressionChoice compression;
   std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory
   std::string store_name;                      ///< as the scene says
 };

@@ -63,13 +63,11 @@ TEST_CASE("the smallest scene gets the documented defaults") {
   CHECK(scene.touched.empty());
   CHECK(scene.read.empty());
   CHECK(scene.coarsest_constraints == 0);
-  CHECK(scene.accuracy.rms == 0.03);
-  CHECK(scene.accuracy.worst_column == 0.25);
+  CHECK(scene.accuracy.rms == 0.02);
+  CHECK(scene.accuracy.worst_column == 0.1);
   CHECK(scene.budget.rate == 1000);
   CHECK_FALSE(scene.budget.work);
   CHECK(scene.budget.contacts == 16);
-  CHECK_FALSE(scene.compression.epsilon);
-  CHECK_FALSE(scene.compression.bits);
   CHECK_FALSE(scene.store);
 }
 
@@ -104,9 +102,6 @@ TEST_CASE("every key is read") {
     rate = "500 Hz"
     work = 123456
     contacts = 64
-    [compression]
-    epsilon = 0.05
-    bits = 16
     [store]
     file = "../liver.h5"
   )",
@@ -132,8 +127,6 @@ TEST_CASE("every key is read") {
   CHECK(scene.budget.rate == 500);
   CHECK(scene.budget.work == 123456);
   CHECK(scene.budget.contacts == 64);
-  CHECK(scene.compression.epsilon == 0.05);
-  CHECK(scene.compression.bits == 16);
   CHECK(scene.store == "models/liver.h5");
 }
 
@@ -141,8 +134,7 @@ TEST_CASE("the canonical text parses to itself") {
   const auto text =
       smallest +
       "[[touched]]\nsphere = { center = [0.1, 0.2, 0.3], radius = \"1 in\" }\n[[read]]\nnear = [1, 1, 0]\n"
-      "[[read]]\nbox = [[0, 0, 0], [1e-20, 1, 1]]\n[budget]\nwork = 77\n[compression]\nepsilon = 0.1\nbits = "
-      "8\n[store]\nfile = \"a \\\"b\\\\c\\u0001.h5\"\n";
+      "[[read]]\nbox = [[0, 0, 0], [1e-20, 1, 1]]\n[budget]\nwork = 77\n[store]\nfile = \"a \\\"b\\\\c\\u0001.h5\"\n";
   const auto canonical = canonical_text(parse_scene(text, "scene.toml"));
   CHECK(canonical_text(parse_scene(canonical, "scene.toml")) == canonical);
   CHECK(canonical.find("radius = \"0.0254 m\"") != std::string::npos);
@@ -411,14 +403,6 @@ TEST_CASE("refused: no work at all") {
 TEST_CASE("refused: contacts out of range") {
   check_refused(smallest + "[budget]\ncontacts = 0\n", {"budget.contacts: 0 is out of range"});
   check_refused(smallest + "[budget]\ncontacts = 4097\n", {"budget.contacts: 4097 is out of range"});
-}
-
-TEST_CASE("refused: an epsilon of one") {
-  check_refused(smallest + "[compression]\nepsilon = 1.0\n", {"compression.epsilon: 1 is out of range"});
-}
-
-TEST_CASE("refused: bits that are not offered") {
-  check_refused(smallest + "[compression]\nbits = 12\n", {"compression.bits: 12 is not offered; expected 8 or 16"});
 }
 
 TEST_CASE("refused: a store without file") {

@@ -87,14 +87,6 @@ std::string budget_text(const StepBudget& budget) {
          "contacts = " + std::to_string(budget.contacts) + "\n";
 }
 
-std::string compression_text(const CompressionChoice& compression) {
-  if (!compression.epsilon && !compression.bits) {
-    return "";
-  }
-  return "\n[compression]\n" + (compression.epsilon ? "epsilon = " + number(*compression.epsilon) + "\n" : "") +
-         (compression.bits ? "bits = " + std::to_string(*compression.bits) + "\n" : "");
-}
-
 }  // namespace
 
 std::string canonical_text(const Scene& scene) {
@@ -102,7 +94,7 @@ std::string canonical_text(const Scene& scene) {
          regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) +
          regions_text("read", scene.read) +
          "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
-         accuracy_text(scene.accuracy) + budget_text(scene.budget) + compression_text(scene.compression) +
+         accuracy_text(scene.accuracy) + budget_text(scene.budget) +
          (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
 }
 
