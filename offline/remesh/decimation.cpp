@@ -13,20 +13,21 @@
 namespace greenloop::offline {
 namespace {
 
-/// How much shape a collapse may spoil; each next rule is tried only when the one before allows no collapse.
+/// How much a collapse may spoil the shape, and by what its cost is multiplied if it spoils that much.
 struct CollapseRule {
   double least_normal_cosine;  ///< between a triangle's normal before and after
   double least_quality;        ///< 4 sqrt(3) area / sum of squared edges, unless it was worse before
   int least_valence, most_valence;
+  double cost_factor;
 };
-constexpr std::array<CollapseRule, 5> kRules{{{0.3, 0.2, 4, 8},
-                                              {0.0, 0.1, 4, 8},
-                                              {-0.7, 0.02, 4, 9},
-                                              {-2.0, 0.0, 4, 10},
-                                              {-2.0, -1.0, 3, std::numeric_limits<int>::max()}}};
+constexpr std::array<CollapseRule, 5> kRules{{{0.3, 0.25, 4, 7, 1},
+                                              {0.0, 0.15, 4, 8, 2},
+                                              {-0.5, 0.05, 4, 8, 5},
+                                              {-2.0, 0.0, 4, 9, 20},
+                                              {-2.0, -1.0, 3, std::numeric_limits<int>::max(), 1e3}}};
 
 /// Share of the scatter of area against the quadric error: 0 places base vertices by shape alone.
-const double kEvenness = getenv("EV")?atof(getenv("EV")):0.1;
+constexpr double kEvenness = 0.02;
 
 double quality(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
   const double edges = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
@@ -37,10 +38,16 @@ struct Candidate {
   double cost;
   int from, to;
   long stamp;
+  std::size_t rule;                               ///< the first that may allow it
   bool operator<(const Candidate& other) const {  // std::priority_queue serves the greatest first
     return std::tuple(other.cost, other.from, other.to) < std::tuple(cost, from, to);
   }
 };
+
+/// Edges are flipped from this multiple of the wanted size on.
+constexpr double kFlipBelow = 2;
+/// What an edge flip weighs: thin triangles and creases, against 2 for each valence that moves away from even.
+constexpr double kThinWeight = 2, kCreaseWeight = 4;
 
 class Decimation {
  public:
@@ -61,9 +68,10 @@ class Decimation {
   }
 
   void run(int target) {
-    for (const auto& rule : kRules) {
-      collapse_while_allowed(rule, target);
-      if (remaining_ <= target) return;
+    for (const double share : {8.0, 4.0, 2.8, 2.0, 1.4, 1.0}) {
+      const int stage = static_cast<int>(std::lround(share * target));
+      collapse_down_to(stage);
+      if (remaining_ <= kFlipBelow * target) flip_while_better();
     }
   }
 
@@ -82,7 +90,7 @@ class Decimation {
       parameterization.base_triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
       parameterization.base_ids.push_back(static_cast<int>(t));
     }
-    parameterization.collapses = std::move(collapses_);
+    parameterization.changes = std::move(changes_);
     return parameterization;
   }
 
@@ -122,10 +130,10 @@ class Decimation {
     const int from = std::min(v, w), to = std::max(v, w);
     const Quadric of_from = cost_of(from), of_to = cost_of(to), joint = of_from + of_to;
     const double cost = joint.at(joint.minimizer()) - of_from.at(positions_[from]) - of_to.at(positions_[to]);
-    queue_.push({cost, from, to, stamps_[from] + stamps_[to]});
+    queue_.push({std::max(cost, 1e-15), from, to, stamps_[from] + stamps_[to], 0});
   }
 
-  void collapse_while_allowed(const CollapseRule& rule, int target) {
+  void collapse_down_to(int target) {
     queue_ = {};
     for (std::size_t v = 0; v < positions_.size(); ++v) {
       for (const int w : neighbors(static_cast<int>(v))) {
@@ -133,13 +141,19 @@ class Decimation {
       }
     }
     while (remaining_ > target && !queue_.empty()) {
-      const Candidate candidate = queue_.top();
+      Candidate candidate = queue_.top();
       queue_.pop();
       if (around_[candidate.from].empty() || around_[candidate.to].empty() ||
           candidate.stamp != stamps_[candidate.from] + stamps_[candidate.to]) {
         continue;
       }
-      if (!collapse(candidate.from, candidate.to, rule)) continue;
+      if (!collapse(candidate.from, candidate.to, kRules[candidate.rule])) {
+        if (candidate.rule + 1 == kRules.size()) continue;
+        ++candidate.rule;
+        candidate.cost *= kRules[candidate.rule].cost_factor / kRules[candidate.rule - 1].cost_factor;
+        queue_.push(candidate);
+        continue;
+      }
       // whatever was refused near here may be allowed now
       const auto ring = neighbors(candidate.to);
       for (const int v : ring) ++stamps_[v];
@@ -165,7 +179,7 @@ class Decimation {
     if (!allowed(patch, rule)) return false;
     auto flat = flatten(patch);
     if (!flat) return false;
-    collapses_.push_back(std::move(*flat));
+    changes_.push_back(std::move(*flat));
     apply(from, to, patch.vertices.back());
     planes_[to] += planes_[from];
     scatter_[to] += scatter_[from];
@@ -193,7 +207,8 @@ class Decimation {
       }
     }
     for (std::size_t k = 0; k + 1 < rim.size(); ++k) {
-      const auto next = std::find_if(rim.begin() + k + 1, rim.end(), [&](const auto& edge) { return edge[0] == rim[k][1]; });
+      const auto next =
+          std::find_if(rim.begin() + k + 1, rim.end(), [&](const auto& edge) { return edge[0] == rim[k][1]; });
       std::iter_swap(rim.begin() + k + 1, next);
     }
     CollapsePatch patch;
@@ -258,14 +273,100 @@ class Decimation {
     --remaining_;
   }
 
+  void flip_while_better() {
+    constexpr int kPasses = 10;
+    bool flipped = true;
+    for (int pass = 0; pass < kPasses && flipped; ++pass) {
+      flipped = false;
+      for (int v = 0; v < static_cast<int>(positions_.size()); ++v) {
+        for (const int w : neighbors(v)) {
+          if (v < w && flip(v, w)) flipped = true;
+        }
+      }
+    }
+  }
+
+  /// The corner after `v` counter-clockwise in triangle t.
+  [[nodiscard]] int following(int t, int v) const {
+    const auto& corners = corners_[t];
+    return corners[(std::find(corners.begin(), corners.end(), v) - corners.begin() + 1) % 3];
+  }
+
+  /// Exchanges the edge (v, w) for the other diagonal of its two triangles if that serves valence and shape.
+  bool flip(int v, int w) {
+    int left = -1, right = -1;
+    for (const int t : around_[v]) {
+      if (following(t, v) == w) left = t;
+      if (following(t, following(t, v)) == w) right = t;
+    }
+    const int above = following(left, w), below = following(right, v);
+    if (valence(v) < 5 || valence(w) < 5 || common_neighbors(v, w).size() != 2) return false;
+    const auto ring = neighbors(above);
+    if (std::binary_search(ring.begin(), ring.end(), below)) return false;
+    const double now = unevenness(v, w, above) + unevenness(w, v, below) + crease(v, w, above, below);
+    const double then = unevenness(above, v, below) + unevenness(below, w, above) + crease(above, below, w, v);
+    const double valences = 2.0 * (valence(above) + valence(below) - valence(v) - valence(w) + 2);
+    if (!(then + valences < now - 1e-9)) return false;
+
+    const auto flat = flattened_quad(v, w, above, below);
+    const auto& [at_v, at_w, at_above, at_below] = flat;
+    FlatPatch patch;
+    for (const int t : {left, right}) {
+      FlatTriangle triangle{t, {}};
+      for (int c = 0; c < 3; ++c) {
+        const int corner = corners_[t][c];
+        triangle.corners[c] = corner == v ? at_v : corner == w ? at_w : corner == above ? at_above : at_below;
+      }
+      patch.before.push_back(triangle);
+    }
+    patch.after = {{left, {at_above, at_v, at_below}}, {right, {at_below, at_w, at_above}}};
+    changes_.push_back(std::move(patch));
+    corners_[left] = {above, v, below};
+    corners_[right] = {below, w, above};
+    std::erase(around_[v], right);
+    std::erase(around_[w], left);
+    around_[above].push_back(right);
+    around_[below].push_back(left);
+    return true;
+  }
+
+  /// Where the quad v, below, w, above lies in the plane: unfolded if that is convex, a square otherwise.
+  [[nodiscard]] std::array<Eigen::Vector2d, 4> flattened_quad(int v, int w, int above, int below) const {
+    const double length = (positions_[w] - positions_[v]).norm();
+    const Eigen::Vector3d along = (positions_[w] - positions_[v]) / length;
+    const auto unfolded = [&](int apex) {
+      const Eigen::Vector3d u = positions_[apex] - positions_[v];
+      return Eigen::Vector2d(u.dot(along), u.cross(along).norm());
+    };
+    const Eigen::Vector2d up = unfolded(above), down = unfolded(below).cwiseProduct(Eigen::Vector2d(1, -1));
+    const double share = up.y() / (up.y() - down.y());
+    const double crossing = up.x() + share * (down.x() - up.x());
+    if (crossing > 0.05 * length && crossing < 0.95 * length && share > 0.02 && share < 0.98) {
+      return {Eigen::Vector2d(0, 0), Eigen::Vector2d(length, 0), up, down};
+    }
+    return {Eigen::Vector2d(-1, 0), Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(0, -1)};
+  }
+
+  [[nodiscard]] double unevenness(int a, int b, int c) const {
+    return kThinWeight / std::max(quality(positions_[a], positions_[b], positions_[c]), 1e-3);
+  }
+
+  /// How far the triangles on both sides of the edge (a, b) are from one plane.
+  [[nodiscard]] double crease(int a, int b, int left, int right) const {
+    const auto& p = positions_;
+    const Eigen::Vector3d m = (p[b] - p[a]).cross(p[left] - p[a]).stableNormalized();
+    const Eigen::Vector3d n = (p[right] - p[a]).cross(p[b] - p[a]).stableNormalized();
+    return kCreaseWeight * (1 - m.dot(n));
+  }
+
   std::vector<Eigen::Vector3d> positions_;
   std::vector<std::array<int, 3>> corners_;
   std::vector<char> alive_;
-  std::vector<std::vector<int>> around_;  ///< triangles around each vertex; empty once it is gone
+  std::vector<std::vector<int>> around_;   ///< triangles around each vertex; empty once it is gone
   std::vector<Quadric> planes_, scatter_;  ///< of all the input area that a vertex stands for
-  std::vector<long> stamps_;  ///< raised whenever a vertex or its ring changes: older candidates are void
+  std::vector<long> stamps_;               ///< raised whenever a vertex or its ring changes: older candidates are void
   std::priority_queue<Candidate> queue_;
-  std::vector<FlatPatch> collapses_;
+  std::vector<FlatPatch> changes_;
   int remaining_;
 };
 

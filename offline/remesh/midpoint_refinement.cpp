@@ -28,7 +28,8 @@ MidpointRefinement refine_midpoints(const std::vector<std::array<int, 3>>& base_
   std::vector<RefinedTriangle> triangles;
   for (std::size_t t = 0; t < base_triangles.size(); ++t) {
     const int base = static_cast<int>(t);
-    triangles.push_back({base, base_triangles[t], {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}});
+    triangles.push_back(
+        {base, base_triangles[t], {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()}});
     for (int c = 0; c < 3; ++c) refined.places[base_triangles[t][c]] = {base, triangles.back().weights[c]};
   }
   for (int level = 1; level <= levels; ++level) {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "offline/remesh/self_intersection.hpp"
 #include "offline/remesh/surface.hpp"
 #include "offline/remesh/triangle_tree.hpp"
+#include "offline/surface/triangle_intersection.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -70,7 +70,7 @@ RemeshQuality measure_quality(const TriangleMesh& input, const SemiRegularMesh& 
   quality.hausdorff_relative = quality.hausdorff / diagonal;
   quality.triangles = finest.triangles.size();
   quality.flipped = flipped_triangles(finest, surface, input_tree);
-  quality.self_intersections = self_intersections(finest).size();
+  quality.self_intersections = self_intersections(finest, std::vector<bool>(finest.triangles.size(), false)).size();
   quality.base_vertices = static_cast<int>(mesh.vertex_end.front());
   quality.levels = mesh.finest_level();
   return quality;

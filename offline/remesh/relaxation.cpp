@@ -1,13 +1,23 @@
 #include "offline/remesh/relaxation.hpp"
 
+#include "offline/remesh/triangle_tree.hpp"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace greenloop::offline {
 namespace {
+
+constexpr int kSweeps = 60;
+constexpr int kFirstLook = 10, kLookEvery = 5;  ///< sweeps after which the input's distance is looked at
+constexpr double kTolerance = 0.003;            ///< distance that shrinks a triangle, in diagonals
+constexpr double kMostWeight = 6;               ///< how many times smaller than the mean a triangle is asked to be
+constexpr double kAnchor = 3;                   ///< weight of a base vertex's distance from the planes it stands for
+constexpr double kPull = 20;                    ///< weight of a vertex's distance from the place it is to come to
 
 struct Weighted {
   int vertex;
@@ -34,9 +44,12 @@ std::vector<Patch> hat_patches(const SemiRegularMesh& mesh, int level, const std
     } else {
       for (const int parent : mesh.parents[v]) {
         for (const auto& [vertex, weight] : rows[parent]) {
-          const auto same = std::find_if(row.begin(), row.end(), [v = vertex](const Weighted& w) { return w.vertex == v; });
-          if (same == row.end()) row.push_back({vertex, weight / 2});
-          else same->weight += weight / 2;
+          const auto same =
+              std::find_if(row.begin(), row.end(), [v = vertex](const Weighted& w) { return w.vertex == v; });
+          if (same == row.end())
+            row.push_back({vertex, weight / 2});
+          else
+            same->weight += weight / 2;
         }
       }
     }
@@ -55,15 +68,26 @@ std::vector<Patch> hat_patches(const SemiRegularMesh& mesh, int level, const std
   return patches;
 }
 
+Eigen::Vector3d position_on(const TriangleMesh& mesh, const SurfacePoint& place) {
+  const auto& [a, b, c] = mesh.triangles[place.triangle];
+  return place.weights[0] * mesh.vertices[a] + place.weights[1] * mesh.vertices[b] +
+         place.weights[2] * mesh.vertices[c];
+}
+
 class Relaxation {
  public:
-  Relaxation(const Surface& surface, const SemiRegularMesh& mesh, std::vector<SurfacePoint> points, const std::vector<Quadric>& base_planes)
-      : surface_(surface), points_(std::move(points)), triangles_(triangles_of_level(mesh, mesh.finest_level())), base_planes_(base_planes) {
+  Relaxation(const Surface& surface, const SemiRegularMesh& mesh, std::vector<SurfacePoint> points,
+             const std::vector<Quadric>& base_planes)
+      : surface_(surface),
+        points_(std::move(points)),
+        triangles_(triangles_of_level(mesh, mesh.finest_level())),
+        base_planes_(base_planes) {
     std::vector<std::vector<int>> around(points_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       for (const int v : triangles_[t]) around[v].push_back(static_cast<int>(t));
     }
     for (int level = 0; level <= mesh.finest_level(); ++level) patches_.push_back(hat_patches(mesh, level, around));
+    weights_.assign(triangles_.size(), 1.0);
     positions_.resize(points_.size());
     normals_.resize(points_.size());
     for (std::size_t v = 0; v < points_.size(); ++v) place(static_cast<int>(v), points_[v]);
@@ -72,30 +96,88 @@ class Relaxation {
     for (const auto& [a, b, c] : input.triangles) {
       area += (input.vertices[b] - input.vertices[a]).cross(input.vertices[c] - input.vertices[a]).norm() / 2;
     }
-    anchor_weight_ = (getenv("AN")?atof(getenv("AN")):0.0) / area * (double)mesh.base_triangles.size() * std::ldexp(1.0,2*mesh.finest_level());
+    anchor_weight_ = kAnchor * static_cast<double>(triangles_.size()) / area;
     ideal_area_ = area / static_cast<double>(triangles_.size());
+    targets_.assign(points_.size(), -1);
+    pull_ = kPull / ideal_area_;
   }
 
-  /// One pass over all vertices of all levels; returns the energy reached.
-  double sweep() {
+  /// Gives the input's vertices that stand out by more than `tolerance`, farthest first, a vertex to come to them.
+  void aim_at_far(double tolerance) {
+    const TriangleMesh now{positions_, triangles_};
+    const TriangleTree tree(now);
+    const auto& input = surface_.mesh().vertices;
+    std::vector<std::pair<double, int>> far;
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      const double distance = (position_on(now, tree.closest(input[i])) - input[i]).norm();
+      if (distance > tolerance) far.emplace_back(-distance, static_cast<int>(i));
+    }
+    std::sort(far.begin(), far.end());
+    const double apart = 2 * std::sqrt(ideal_area_ * 4 / std::sqrt(3.0));
+    std::vector<int> taken;
+    std::copy_if(targets_.begin(), targets_.end(), std::back_inserter(taken), [](int t) { return t >= 0; });
+    for (const auto& [minus, i] : far) {
+      if (std::any_of(taken.begin(), taken.end(), [&, i = i](int t) { return (input[t] - input[i]).norm() < apart; }))
+        continue;
+      const int nearest = nearest_without_target(tree.closest(input[i]).triangle, input[i]);
+      if (nearest < 0) continue;
+      targets_[nearest] = i;
+      taken.push_back(i);
+    }
+  }
+
+  /// One pass over all vertices of all levels.
+  void sweep() {
     regularize();
     for (std::size_t level = 0; level < patches_.size(); ++level) {
       const double finer = std::ldexp(1.0, static_cast<int>(patches_.size() - 1 - level));
       const double reach = 0.5 * finer * std::sqrt(ideal_area_ * 4 / std::sqrt(3.0));
       for (const auto& patch : patches_[level]) move(patch, reach);
     }
-    double total = 0;
-    for (std::size_t t = 0; t < triangles_.size(); ++t) total += energy(static_cast<int>(t));
-    return total / static_cast<double>(triangles_.size());
+  }
+
+  /// Raises the weight of triangles that the input sticks out of by more than `tolerance`, so that they shrink.
+  void refine_where_far(double tolerance) {
+    const TriangleMesh now{positions_, triangles_};
+    const TriangleTree tree(now);
+    std::vector<double> rise(triangles_.size(), 0.0);
+    for (const auto& vertex : surface_.mesh().vertices) {
+      const auto place = tree.closest(vertex);
+      const double distance = (position_on(now, place) - vertex).norm();
+      auto& here = rise[place.triangle];
+      here = std::max(here, std::log(std::min(kMostRise, std::max(1.0, distance / tolerance))));
+    }
+    const auto neighbors = triangle_neighbors(triangles_);
+    for (int pass = 0; pass < kRisePasses; ++pass) {
+      auto spread = rise;
+      for (std::size_t t = 0; t < rise.size(); ++t) {
+        for (const int n : neighbors[t]) spread[t] = std::max(spread[t], 0.8 * rise[n]);
+      }
+      rise = std::move(spread);
+    }
+    for (std::size_t t = 0; t < rise.size(); ++t) weights_[t] = std::min(weights_[t] * std::exp(rise[t]), kMostWeight);
   }
 
   [[nodiscard]] std::vector<SurfacePoint> points() && { return std::move(points_); }
 
  private:
+  static constexpr double kMostRise = 1.5;
+  static constexpr int kRisePasses = 6;
+
   void place(int v, const SurfacePoint& point) {
     points_[v] = point;
     positions_[v] = surface_.position(point);
     normals_[v] = surface_.normal(point);
+  }
+
+  /// The corner of triangle t nearest to x among those that are to come nowhere yet; -1 if there is none.
+  [[nodiscard]] int nearest_without_target(int t, const Eigen::Vector3d& x) const {
+    int nearest = -1;
+    for (const int v : triangles_[t]) {
+      if (targets_[v] >= 0) continue;
+      if (nearest < 0 || (positions_[v] - x).squaredNorm() < (positions_[nearest] - x).squaredNorm()) nearest = v;
+    }
+    return nearest;
   }
 
   /// Area over ideal area, signed by the surface's normal.
@@ -104,7 +186,8 @@ class Relaxation {
     const Eigen::Vector3d normal = normals_[a] + normals_[b] + normals_[c];
     const double length = normal.norm();
     if (length < 1e-9) return 0;
-    return (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]).dot(normal) / (2 * ideal_area_ * length);
+    return (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]).dot(normal) /
+           (2 * ideal_area_ * length);
   }
 
   [[nodiscard]] double energy(int t) const {
@@ -113,17 +196,18 @@ class Relaxation {
                          (positions_[a] - positions_[c]).squaredNorm();
     const double share = signed_share(t);
     const double positive = (share + std::sqrt(share * share + smoothing_ * smoothing_)) / 2;
+    const double weighted = positive * weights_[t];
     const double conformal = edges / (4 * std::sqrt(3.0) * ideal_area_ * positive);
-    static const auto env=[](const char*n,double d){return getenv(n)?atof(getenv(n)):d;};
-    static const double kC=env("CP",2),kP=env("AP",1),kS=env("DS",0),kD=env("DP",2),kW=env("SG",0),kQ=env("SQ",2);
-    double sag=0;
-    if(kW>0){ for(const auto&[x,y]:{std::pair(a,b),std::pair(b,c),std::pair(c,a)}) sag+=std::pow((positions_[x]-positions_[y]).squaredNorm()*(normals_[x]-normals_[y]).squaredNorm()/(64*ideal_area_*2.3),kQ/2);}
-    return std::pow(conformal,kC) * std::pow((positive + 1 / positive) / 2,kP)+kS*std::pow(positive,kD)+kW*sag;
+    return conformal * conformal * (weighted + 1 / weighted) / 2;
   }
 
   [[nodiscard]] double energy(const Patch& patch) const {
     double total = 0;
     for (const int t : patch.triangles) total += energy(t);
+    for (const auto& member : patch.members) {
+      const int target = targets_[member.vertex];
+      if (target >= 0) total += pull_ * (positions_[member.vertex] - surface_.mesh().vertices[target]).squaredNorm();
+    }
     for (const int v : patch.base) total += anchor_weight_ * base_planes_[v].at(positions_[v]);
     return total;
   }
@@ -166,7 +250,7 @@ class Relaxation {
     for (std::size_t m = 0; m < patch.members.size(); ++m) positions_[patch.members[m].vertex] = steps_[m].position;
     const Eigen::Vector2d gradient = Eigen::Vector2d(east - west, north - south) / (2 * h);
     const double xx = (east - 2 * start + west) / (h * h), yy = (north - 2 * start + south) / (h * h);
-    const double xy = (north_east - east - north + start) / (h * h) - 0.0;
+    const double xy = (north_east - east - north + start) / (h * h);
     Eigen::Matrix2d hessian;
     hessian << xx, xy, xy, yy;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(hessian);
@@ -199,8 +283,12 @@ class Relaxation {
   std::vector<std::vector<Patch>> patches_;  ///< of each level
   std::vector<Eigen::Vector3d> positions_, normals_;
   std::vector<MemberStep> steps_;
-  const std::vector<Quadric>& base_planes_; double anchor_weight_=0;
+  const std::vector<Quadric>& base_planes_;
+  double anchor_weight_ = 0;
+  std::vector<double> weights_;  ///< of each triangle: how many times smaller than the mean it should be
   double ideal_area_ = 0;
+  std::vector<int> targets_;  ///< of each vertex: the input's vertex that it should come to, or -1
+  double pull_ = 0;           ///< per squared length
   double smoothing_ = 0;
 };
 
@@ -209,11 +297,13 @@ class Relaxation {
 std::vector<SurfacePoint> relax(const Surface& surface, const SemiRegularMesh& connectivity,
                                 std::vector<SurfacePoint> points, const std::vector<Quadric>& base_planes,
                                 const std::function<void(double)>& progress) {
-  const int kSweeps = getenv("SW")?atoi(getenv("SW")):60;
   Relaxation relaxation(surface, connectivity, std::move(points), base_planes);
   for (int k = 0; k < kSweeps; ++k) {
-    const double energy = relaxation.sweep();
-    if (getenv("GL_DEBUG")) fprintf(stderr, "sweep %d energy %.6g\n", k, energy);
+    if (k >= kFirstLook && k < kSweeps - kFirstLook && k % kLookEvery == 0) {
+      relaxation.refine_where_far(kTolerance);
+      relaxation.aim_at_far(2 * kTolerance);
+    }
+    relaxation.sweep();
     progress((k + 1.0) / kSweeps);
   }
   return std::move(relaxation).points();

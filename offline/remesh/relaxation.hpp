@@ -16,8 +16,7 @@ namespace greenloop::offline {
 /// Coarse vertices move with their hat functions over the finest level, so that mass flows across the surface.
 /// A vertex only ever walks on the surface. `progress` gets the fraction done.
 [[nodiscard]] std::vector<SurfacePoint> relax(const Surface& surface, const SemiRegularMesh& connectivity,
-                                              std::vector<SurfacePoint> points,
-                                              const std::vector<Quadric>& base_planes,
+                                              std::vector<SurfacePoint> points, const std::vector<Quadric>& base_planes,
                                               const std::function<void(double)>& progress);
 
 }  // namespace greenloop::offline

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -17,8 +18,16 @@
 namespace greenloop::offline {
 namespace {
 
+/// By what the base grows from attempt to attempt, against the size asked for.
+constexpr std::array kGrowth{1.0, 1.1, 1.19, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0};
+
 /// Fewer levels than this leave triangles too large to be shaped by the surface below them.
 constexpr int kWorkingLevels = 3;
+
+double accuracy_of(const RemeshOptions& options) {
+  constexpr double at_base = 0.16;
+  return options.accuracy.value_or(std::ldexp(at_base, -options.levels));
+}
 
 void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument("remesh: " + message);
@@ -27,7 +36,7 @@ void require(bool holds, const std::string& message) {
 void check(const TriangleMesh& input, const RemeshOptions& options) {
   require(options.base_vertices >= 4, "base_vertices = " + std::to_string(options.base_vertices) + "; at least 4");
   require(options.levels >= 0 && options.levels <= 7, "levels = " + std::to_string(options.levels) + "; 0 to 7");
-  require(options.accuracy > 0, "accuracy = " + std::to_string(options.accuracy) + "; must be above 0");
+  require(accuracy_of(options) > 0, "accuracy = " + std::to_string(accuracy_of(options)) + "; must be above 0");
   require(!input.triangles.empty(), "the surface has no triangles");
   require(input.vertices.size() < 2 * input.triangles.size(), "the surface has vertices that no triangle uses");
 }
@@ -62,7 +71,7 @@ std::string described(const RemeshQuality& quality) {
 
 bool acceptable(const RemeshQuality& quality, const RemeshOptions& options) {
   return quality.flipped == 0 && quality.self_intersections == 0 &&
-         quality.smallest_angle_degrees >= options.smallest_angle && quality.hausdorff_relative <= options.accuracy;
+         quality.smallest_angle_degrees >= options.smallest_angle && quality.hausdorff_relative <= accuracy_of(options);
 }
 
 /// One attempt; `surface` holds the input in normalised coordinates.
@@ -104,9 +113,10 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const R
   const int most = std::max(options.most_base_vertices, options.base_vertices);
   double done = 0;
   std::string reached;
-  for (double wanted = options.base_vertices; std::lround(wanted) <= most; wanted *= std::sqrt(2.0)) {
-    const int base_vertices = static_cast<int>(std::lround(wanted));
-    const double share = (1 - done) / 2;
+  for (const double growth : kGrowth) {
+    const int base_vertices = static_cast<int>(std::lround(growth * options.base_vertices));
+    if (base_vertices > most) break;
+    const double share = (1 - done) / 2;  // how many attempts there will be is not known
     Remeshed result;
     result.mesh = attempt(input, surface, base_vertices, options.levels, [&](double fraction) {
       report(done + share * fraction, "sliding " + std::to_string(base_vertices) + " base vertices and their splits");
@@ -120,11 +130,10 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const R
     }
     reached = described(result.quality);
   }
-  throw std::runtime_error("remesh: the shape needs more: " + reached +
-                           "; raise most_base_vertices (now " + std::to_string(most) + "), add a level (now " +
-                           std::to_string(options.levels) + ") or allow more than " +
-                           std::to_string(options.accuracy) + " of the diagonal or less than " +
-                           std::to_string(options.smallest_angle) + " degrees");
+  throw std::runtime_error("remesh: the shape needs more: " + reached + "; raise most_base_vertices (now " +
+                           std::to_string(most) + "), add a level (now " + std::to_string(options.levels) +
+                           ") or allow more than " + std::to_string(accuracy_of(options)) +
+                           " of the diagonal or less than " + std::to_string(options.smallest_angle) + " degrees");
 }
 
 }  // namespace greenloop::offline

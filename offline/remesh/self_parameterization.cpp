@@ -40,12 +40,12 @@ class PointBuckets {
 std::vector<SurfacePoint> SelfParameterization::to_input(std::vector<SurfacePoint> points) const {
   int triangles = 0;
   for (const int id : base_ids) triangles = std::max(triangles, id + 1);
-  for (const auto& patch : collapses) {
+  for (const auto& patch : changes) {
     for (const auto& flat : patch.before) triangles = std::max(triangles, flat.triangle + 1);
   }
   for (auto& point : points) point.triangle = base_ids[point.triangle];
   PointBuckets buckets(points, triangles);
-  for (auto patch = collapses.rbegin(); patch != collapses.rend(); ++patch) buckets.carry(patch->after, patch->before);
+  for (auto patch = changes.rbegin(); patch != changes.rend(); ++patch) buckets.carry(patch->after, patch->before);
   return points;
 }
 

@@ -17,10 +17,10 @@ struct SelfParameterization {
   std::vector<Eigen::Vector3d> base_vertices;      ///< where the decimation left them: near the surface, not on it
   std::vector<Quadric> base_planes;                ///< mean squared distance to the planes a base vertex stands for
   std::vector<int> base_ids;                       ///< the triangle of the input that base triangle t descends from
-  std::vector<FlatPatch> collapses;                ///< in the order they were made
+  std::vector<FlatPatch> changes;                  ///< collapses and edge flips, in the order they were made
 
   /// Carries points on base triangles (SurfacePoint::triangle indexes base_triangles) to the input's triangles.
-  /// Work: linear in the points met by the collapses, about points * log(input / base vertices).
+  /// Work: linear in the points met by the changes, about points * log(input / base vertices).
   [[nodiscard]] std::vector<SurfacePoint> to_input(std::vector<SurfacePoint> points) const;
 };
 

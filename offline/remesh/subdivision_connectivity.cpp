@@ -89,7 +89,8 @@ class SplitTracing {
 };
 
 /// The split undone around these middle triangles; nothing if two coarse edges would have the same ends.
-std::optional<Unsplit> unsplit(const Triangles& triangles, const Triangles& neighbors, const std::vector<int>& middles) {
+std::optional<Unsplit> unsplit(const Triangles& triangles, const Triangles& neighbors,
+                               const std::vector<int>& middles) {
   const SplitTracing tracing(triangles, neighbors);
   Unsplit undone;
   std::vector<std::array<int, 3>> edges;  // lower end, higher end, midpoint
@@ -154,7 +155,8 @@ std::optional<SemiRegularMesh> find_subdivision_connectivity(const TriangleMesh&
   std::set<int> even;
   for (const auto& corners : hierarchy.base) even.insert(corners.begin(), corners.end());
   for (const int vertex : even) add(vertex, {-1, -1});
-  for (const auto& [a, b, c] : hierarchy.base) found.base_triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
+  for (const auto& [a, b, c] : hierarchy.base)
+    found.base_triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
   found.vertex_end.push_back(found.positions.size());
   for (const auto& split : hierarchy.splits) {
     for (const auto& [vertex, parents] : split) {

@@ -104,8 +104,8 @@ SurfacePoint Surface::walk(const SurfacePoint& start, const Eigen::Vector3d& dis
   int entered = -1;  // the corner opposite the edge we came through: its weight can only grow
   for (int crossing = 0; crossing < kMaxCrossings && remaining > 0; ++crossing) {
     const auto& corners = mesh_.triangles[here.triangle];
-    const Eigen::Vector3d rates = weight_rates(mesh_.vertices[corners[0]], mesh_.vertices[corners[1]],
-                                               mesh_.vertices[corners[2]], direction);
+    const Eigen::Vector3d rates =
+        weight_rates(mesh_.vertices[corners[0]], mesh_.vertices[corners[1]], mesh_.vertices[corners[2]], direction);
     double step = remaining;
     int leaving = -1;
     for (int c = 0; c < 3; ++c) {
@@ -127,9 +127,12 @@ SurfacePoint Surface::walk(const SurfacePoint& start, const Eigen::Vector3d& dis
     const auto& next_corners = mesh_.triangles[next];
     SurfacePoint beyond{next, Eigen::Vector3d::Zero()};
     for (int c = 0; c < 3; ++c) {
-      if (next_corners[c] == from) beyond.weights[c] = here.weights[edge];
-      else if (next_corners[c] == to) beyond.weights[c] = here.weights[(edge + 1) % 3];
-      else entered = c;
+      if (next_corners[c] == from)
+        beyond.weights[c] = here.weights[edge];
+      else if (next_corners[c] == to)
+        beyond.weights[c] = here.weights[(edge + 1) % 3];
+      else
+        entered = c;
     }
     const Eigen::Vector3d along = (mesh_.vertices[to] - mesh_.vertices[from]).stableNormalized();
     const Eigen::Vector3d inward = along.cross(triangle_normals_[next]).stableNormalized();

@@ -84,7 +84,8 @@ void TriangleTree::search(int node, const Eigen::Vector3d& point, double enough,
   const bool left_first = to_left <= to_right;
   for (const bool go_left : {left_first, !left_first}) {
     if (nearest.squared_distance <= enough * enough) return;
-    if ((go_left ? to_left : to_right) < nearest.squared_distance) search(go_left ? left : right, point, enough, nearest);
+    if ((go_left ? to_left : to_right) < nearest.squared_distance)
+      search(go_left ? left : right, point, enough, nearest);
   }
 }
 
@@ -98,38 +99,6 @@ double TriangleTree::distance(const Eigen::Vector3d& point, double enough) const
   Nearest nearest{std::numeric_limits<double>::infinity(), {}};
   search(0, point, enough, nearest);
   return std::sqrt(nearest.squared_distance);
-}
-
-std::vector<std::pair<int, int>> TriangleTree::overlapping_boxes() const {
-  std::vector<std::pair<int, int>> pairs;
-  std::vector<std::pair<int, int>> open{{0, 0}};
-  const auto box_of = [&](int t) {
-    Eigen::AlignedBox3d box;
-    for (const int v : mesh_.triangles[t]) box.extend(mesh_.vertices[v]);
-    return box;
-  };
-  while (!open.empty()) {
-    const auto [s, t] = open.back();
-    open.pop_back();
-    const auto &m = nodes_[s], &n = nodes_[t];
-    if (!m.box.intersects(n.box)) continue;
-    if (s == t && m.left >= 0) {
-      open.insert(open.end(), {{m.left, m.left}, {m.left, m.right}, {m.right, m.right}});
-    } else if (m.left >= 0 && (n.left < 0 || m.box.volume() >= n.box.volume())) {
-      open.insert(open.end(), {{m.left, t}, {m.right, t}});
-    } else if (n.left >= 0) {
-      open.insert(open.end(), {{s, n.left}, {s, n.right}});
-    } else {
-      for (int j = m.first; j < m.first + m.count; ++j) {
-        for (int k = s == t ? j + 1 : n.first; k < n.first + n.count; ++k) {
-          const auto pair = std::minmax(order_[j], order_[k]);
-          if (box_of(pair.first).intersects(box_of(pair.second))) pairs.push_back(pair);
-        }
-      }
-    }
-  }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
 }
 
 }  // namespace greenloop::offline

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
-#include <utility>
 #include <vector>
 
 #include "formats/exchange/triangle_mesh.hpp"
@@ -19,8 +17,6 @@ class TriangleTree {
   [[nodiscard]] SurfacePoint closest(const Eigen::Vector3d& point) const;
   /// Distance to the mesh, or any upper bound of it that is not above `enough`.
   [[nodiscard]] double distance(const Eigen::Vector3d& point, double enough = 0) const;
-  /// Pairs (smaller index first, sorted) of triangles whose boxes overlap.
-  [[nodiscard]] std::vector<std::pair<int, int>> overlapping_boxes() const;
 
  private:
   struct Node {
