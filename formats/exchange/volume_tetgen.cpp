@@ -35,12 +35,16 @@ void read_elements(MeshText& text, VolumeBuilder& builder) {
 }  // namespace
 
 TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content) {
+  const auto node_file = std::filesystem::path(file).replace_extension(".node");
+  const auto element_file = std::filesystem::path(file).replace_extension(".ele");
   const bool has_nodes = lower_extension(file) == ".node";
-  const auto other = std::filesystem::path(file).replace_extension(has_nodes ? ".ele" : ".node");
-  auto other_content = read_file(other);
-  MeshText nodes(has_nodes ? file : other, has_nodes ? std::move(content) : std::move(other_content), '#');
-  MeshText elements(has_nodes ? other : file, has_nodes ? std::move(other_content) : std::move(content), '#');
-  VolumeBuilder builder(has_nodes ? other : file);
+  auto other_content = read_file(has_nodes ? element_file : node_file);
+  if (!has_nodes) {
+    content.swap(other_content);
+  }
+  MeshText nodes(node_file, std::move(content), '#');
+  MeshText elements(element_file, std::move(other_content), '#');
+  VolumeBuilder builder(element_file);
   read_nodes(nodes, builder);
   read_elements(elements, builder);
   return builder.finish();

@@ -269,7 +269,8 @@ TetrahedralMesh parse_vtu(const std::filesystem::path& file, std::string content
   for (const char c : content) {
     spaced += c == '<' ? " <" : std::string_view(&c, 1);
   }
-  MeshText text(file, std::move(spaced), '\0');
+  content = std::move(spaced);
+  MeshText text(file, std::move(content), '\0');
   VolumeBuilder builder(file);
   XmlGrid(text, builder).read();
   return builder.finish();
