@@ -114,7 +114,8 @@ void draw_key(SvgCanvas& canvas, Point at, const std::string& paint, bool dot, c
 }
 
 std::string factor_text(double factor) {
-  return factor == 1 ? "drawn at true scale" : fmt::format("displacements drawn {}×", readable(factor));
+  if (factor == 1) return "drawn at true scale";
+  return factor > 1 ? fmt::format("drawn {}×", readable(factor)) : fmt::format("drawn at 1/{}", readable(1 / factor));
 }
 
 }  // namespace
@@ -138,11 +139,14 @@ Figure body_figure(const VisibleSurface& surface, const DrawnDisplacement& drawn
   }
   const SiPrefix prefix = si_prefix(drawn.largest);
   std::string caption = fmt::format(
-      "The body {}, {}. Largest displacement: {}\u202f{}m at node {}.",
+      "The body {}, displacements {}. Largest displacement: {}\u202f{}m at node {}.",
       cycle != nullptr ? fmt::format("at {}\u202fs, when the force is largest ({}\u202fN on {} contact nodes)",
                                      readable(cycle->time), readable(cycle->force, 3), cycle->contacts)
                        : "as in the snapshot",
       factor_text(drawn.factor), readable(drawn.largest / prefix.factor, 3), prefix.symbol, drawn.largest_node);
+  if (drawn.largest > 0.1 * diagonal(surface.positions)) {
+    caption += " That is more than a tenth of the body's size: too far for linear elasticity.";
+  }
   constexpr double height = 520, side = 210;
   SvgCanvas canvas(figure_width, height, "The deformed body", caption);
   const PlacedPicture picture = place(canvas, deformed_picture(surface, drawn.magnified, value, frame, 1000),

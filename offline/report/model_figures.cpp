@@ -52,6 +52,31 @@ bool chosen(const BuildRecord& record, const ErrorPoint& point) {
   return record.epsilon && std::abs(point.epsilon - *record.epsilon) <= 1e-9 * std::abs(*record.epsilon);
 }
 
+/// Rings the chosen point; names its ε and that of others as far as their texts keep clear of each other.
+void label_thresholds(SvgCanvas& canvas, const SvgPlot& plot, const Rectangle& area, const BuildRecord& record,
+                      const std::vector<ErrorPoint>& points, const std::vector<Point>& data) {
+  constexpr double room = 58;
+  std::vector<double> taken;
+  const auto label = [&](std::size_t i, const std::string& colour, bool bold) {
+    const Point at = plot.at(data[i].x, data[i].y);
+    taken.push_back(at.x);
+    canvas.text({at.x + 9, at.y - 7}, fmt::format("ε = {}", readable(points[i].epsilon, 2)),
+                {.paint = colour, .size = 11.5, .bold = bold});
+  };
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    if (!chosen(record, points[i])) continue;
+    const Point at = plot.at(data[i].x, data[i].y);
+    canvas.circle(at, 6.5, paint::page, {paint::vermilion, 2.4});
+    canvas.circle(at, 3, paint::vermilion);
+    label(i, paint::ink, true);
+  }
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const double x = plot.at(data[i].x, data[i].y).x;
+    const bool clear = std::none_of(taken.begin(), taken.end(), [&](double t) { return std::abs(t - x) < room; });
+    if (clear && x < area.right() - 40) label(i, paint::muted, false);
+  }
+}
+
 void draw_cost_curve(SvgCanvas& canvas, const Rectangle& area, const BuildRecord& record, const CostCurve& curve) {
   std::vector<double> errors;
   std::vector<Point> data;
@@ -65,18 +90,7 @@ void draw_cost_curve(SvgCanvas& canvas, const Rectangle& area, const BuildRecord
   std::sort(by_error.begin(), by_error.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
   plot.curve(by_error, {paint::blue, 1.8});
   plot.dots(data, 3.5, paint::blue);
-  Point last_label{-1e9, 0};
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const bool mark = chosen(record, curve.points[i]);
-    const Point at = plot.at(data[i].x, data[i].y);
-    if (mark) canvas.circle(at, 6.5, paint::page, {paint::vermilion, 2.4});
-    if (mark) canvas.circle(at, 3, paint::vermilion);
-    const bool clear = at.x - last_label.x > 58 && at.x < area.right() - 40;
-    if (!mark && !clear) continue;
-    canvas.text({at.x + 9, at.y - 7}, fmt::format("ε = {}", readable(curve.points[i].epsilon, 2)),
-                {.paint = mark ? paint::ink : paint::muted, .size = 11.5, .bold = mark});
-    last_label = at;
-  }
+  label_thresholds(canvas, plot, area, record, curve.points, data);
   std::vector<LegendEntry> legend{{curve.quantity + " over ε", {paint::blue, 2}}};
   if (std::any_of(curve.points.begin(), curve.points.end(), [&](const ErrorPoint& p) { return chosen(record, p); })) {
     legend.push_back({"chosen", {paint::vermilion}, true});

@@ -168,6 +168,17 @@ TEST_CASE("the displacement is drawn with its factor, the largest node named") {
   CHECK(drawn.magnified[4].z() == doctest::Approx(-0.02));
 }
 
+TEST_CASE("a displacement beyond linear elasticity is said to be so") {
+  const Sample sample;
+  const ModelSurface surface = model_surface(sample.file.view);
+  const std::vector<Eigen::Vector3d> far(surface.flags.size(), Eigen::Vector3d(5, 0, 0));
+  const auto drawn = drawn_displacement(surface.mesh.positions, far);
+  const ViewFrame frame = view_frame(Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ());
+  const Figure figure = body_figure(surface.level(2), drawn, frame, nullptr);
+  CHECK(has(figure.caption, "too far for linear elasticity"));
+  CHECK(has(figure.caption, "drawn at 1/200"));
+}
+
 TEST_CASE("a model's surface is its nodes and levels") {
   const Sample sample;
   const ModelSurface surface = model_surface(sample.file.view);

@@ -49,6 +49,7 @@ TEST_CASE("a long trace stays small") {
   SvgCanvas canvas(800, 300, "t", "d");
   SvgPlot plot(canvas, {50, 20, 700, 200}, {.label = "x", .min = 0, .max = 60}, {.label = "y", .min = 0, .max = 1});
   std::vector<Point> data;
+  data.reserve(60'000);
   for (int i = 0; i < 60'000; ++i) data.push_back({i * 1e-3, (i * 7919 % 1000) * 1e-3});
   plot.curve(data, {"var(--blue)", 1});
   CHECK(canvas.str().size() < 60'000);
@@ -58,6 +59,7 @@ TEST_CASE("crosses are thinned to one per pixel column") {
   SvgCanvas canvas(200, 100, "t", "d");
   SvgPlot plot(canvas, {0, 0, 100, 100}, {.label = "", .min = 0, .max = 1}, {.label = "", .min = 0, .max = 1});
   std::vector<Point> data;
+  data.reserve(10'000);
   for (int i = 0; i < 10'000; ++i) data.push_back({i * 1e-4, 0.5});
   plot.crosses(data, "#123456");
   CHECK(occurrences(canvas.str(), "#123456") == 200);
