@@ -47,15 +47,23 @@ struct MeshDeleter {
 };
 using MeshHandle = std::unique_ptr<nglib::Ng_Mesh, MeshDeleter>;
 
-/// Coordinates centred and of order one, as Netgen's absolute tolerances want them; the scale is a power of two.
+/// Coordinates centred, turned and of order one, as Netgen's absolute tolerances want them.
 struct Frame {
   Eigen::Vector3d centre;
+  Eigen::Matrix3d rotation;
   double scale;
 
-  explicit Frame(const Eigen::AlignedBox3d& box)
-      : centre(box.center()), scale(std::exp2(2 - std::ilogb(box.diagonal().norm()))) {}
-  [[nodiscard]] Eigen::Vector3d in(const Eigen::Vector3d& x) const { return (x - centre) * scale; }
-  [[nodiscard]] Eigen::Vector3d out(const Eigen::Vector3d& x) const { return x / scale + centre; }
+  Frame(const TriangleMesh& surface, double turn)
+      : rotation(Eigen::AngleAxisd(turn, Eigen::Vector3d(1, 2, 3).normalized())) {
+    Eigen::AlignedBox3d box;
+    for (const auto& x : surface.vertices) box.extend(x);
+    centre = box.center();
+    scale = std::exp2(2 - std::ilogb(box.diagonal().norm()));
+  }
+  [[nodiscard]] Eigen::Vector3d in(const Eigen::Vector3d& x) const { return rotation * (x - centre) * scale; }
+  [[nodiscard]] Eigen::Vector3d out(const Eigen::Vector3d& x) const {
+    return rotation.transpose() * x / scale + centre;
+  }
 };
 
 double mean_edge_length(const TriangleMesh& surface) {
@@ -74,9 +82,11 @@ void add_triangle(nglib::Ng_Mesh* mesh, const std::array<int, 3>& triangle, int 
 
 /// A regular tetrahedron beside the body. Netgen bounds the size of interior elements by the longest edge of all its
 /// input, whatever maxh says; this edge sets the bound, and its own elements are dropped afterwards.
-TriangleMesh size_decoy(const Eigen::Vector3d& box_max, double edge) {
+TriangleMesh size_decoy(const TriangleMesh& body, double edge) {
+  Eigen::AlignedBox3d box;
+  for (const auto& x : body.vertices) box.extend(x);
   const double half = edge / std::sqrt(8.0);
-  const Eigen::Vector3d centre(box_max.x() + 2.0 * edge, 0.0, 0.0);
+  const Eigen::Vector3d centre(box.max().x() + 2.0 * edge, 0.0, 0.0);
   TriangleMesh decoy;
   decoy.vertices = {centre + half * Eigen::Vector3d(1, 1, 1), centre + half * Eigen::Vector3d(1, -1, -1),
                     centre + half * Eigen::Vector3d(-1, 1, -1), centre + half * Eigen::Vector3d(-1, -1, 1)};
@@ -143,19 +153,17 @@ TetrahedralMesh collect(nglib::Ng_Mesh* mesh, const TriangleMesh& surface, const
 
 }  // namespace
 
-TetrahedralMesh mesh_with_netgen(const TriangleMesh& surface, const TetrahedralizeOptions& options) {
-  Eigen::AlignedBox3d box;
-  for (const auto& x : surface.vertices) box.extend(x);
-  const Frame frame(box);
-  const double size = options.interior_growth * mean_edge_length(surface) * frame.scale;
+TetrahedralMesh mesh_with_netgen(const TriangleMesh& surface, const TetrahedralizeOptions& options, double turn) {
+  const Frame frame(surface, turn);
   TriangleMesh framed = surface;
   for (auto& x : framed.vertices) x = frame.in(x);
+  const double size = options.interior_growth * mean_edge_length(framed);
 
   const MutedStreams muted;
   const Session session;
   const MeshHandle mesh(nglib::Ng_NewMesh());
   add_surface(mesh.get(), framed, 0);
-  add_surface(mesh.get(), size_decoy(frame.in(box.max()), size), static_cast<int>(surface.vertices.size()));
+  add_surface(mesh.get(), size_decoy(framed, size), static_cast<int>(surface.vertices.size()));
   generate(mesh.get(), options, size);
   return collect(mesh.get(), surface, frame);
 }

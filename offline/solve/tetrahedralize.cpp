@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "offline/remesh/self_intersection.hpp"
 #include "offline/solve/netgen_mesher.hpp"
 #include "offline/solve/tetgen_mesher.hpp"
 
@@ -25,6 +26,15 @@ void require_valid(const TetrahedralizeOptions& options) {
   require_in_range("interior_growth", options.interior_growth, 1.0, 16.0);
   require_in_range("grading", options.grading, 0.1, 0.8);
   require_in_range("optimization_steps", options.optimization_steps, 0, 10);
+}
+
+/// Netgen may run forever on a surface that crosses itself.
+void require_no_crossing(const TriangleMesh& surface) {
+  const auto pairs = self_intersections(surface);
+  if (pairs.empty()) return;
+  throw std::invalid_argument("tetrahedralize: the surface intersects itself in " + std::to_string(pairs.size()) +
+                              " pairs of triangles, the first are " + std::to_string(pairs[0].first) + " and " +
+                              std::to_string(pairs[0].second) + "; repair or remesh it");
 }
 
 /// Every directed edge exactly once, and its reverse too: closed, manifold along edges, consistently oriented.
@@ -70,6 +80,7 @@ void require_valid(const TriangleMesh& surface) {
   if (!(enclosed_volume(surface) > 0.0)) {
     throw std::invalid_argument("tetrahedralize: the surface encloses no positive volume; reverse its triangles");
   }
+  require_no_crossing(surface);
 }
 
 using Mesher = std::function<TetrahedralMesh()>;
@@ -86,9 +97,11 @@ std::optional<TetrahedralMesh> attempt(const Mesher& mesher, const TriangleMesh&
   }
 }
 
-Tetrahedralization measured(TetrahedralMesh mesh, std::string mesher) {
-  auto quality = measure_quality(mesh);
-  return {std::move(mesh), quality, std::move(mesher)};
+void keep_better(std::optional<Tetrahedralization>& best, std::optional<TetrahedralMesh> mesh, const char* mesher) {
+  if (!mesh) return;
+  const auto quality = measure_quality(*mesh);
+  if (best && best->quality.min_quality >= quality.min_quality) return;
+  best = Tetrahedralization{*std::move(mesh), quality, mesher};
 }
 
 }  // namespace
@@ -97,17 +110,20 @@ Tetrahedralization tetrahedralize(const TriangleMesh& surface, const Tetrahedral
   require_valid(options);
   require_valid(surface);
   std::string reasons;
-  if (auto mesh = attempt([&] { return mesh_with_netgen(surface, options); }, surface, reasons)) {
-    return measured(*std::move(mesh), "netgen");
+  std::optional<Tetrahedralization> best;
+  for (const double turn : {0.0, 1.0, 2.0}) {
+    if (best && best->quality.slivers == 0) break;
+    keep_better(best, attempt([&] { return mesh_with_netgen(surface, options, turn); }, surface, reasons), "netgen");
   }
+  if (best) return *std::move(best);
   if (tetgen_is_installed()) {
-    if (auto mesh = attempt([&] { return mesh_with_tetgen(surface); }, surface, reasons)) {
-      return measured(*std::move(mesh), "tetgen");
-    }
+    keep_better(best, attempt([&] { return mesh_with_tetgen(surface); }, surface, reasons), "tetgen");
+    if (best) return *std::move(best);
   } else {
     reasons += "\n  the program tetgen is not installed; it is tried when it is on PATH";
   }
-  throw std::runtime_error("cannot fill the surface with tetrahedra; does it intersect itself?" + reasons);
+  throw std::runtime_error("cannot fill the surface with tetrahedra" + reasons +
+                           "\nRemesh the surface more evenly or at another level");
 }
 
 TriangleMesh finest_surface(const SemiRegularMesh& mesh) {

@@ -22,11 +22,12 @@ struct Tetrahedralization {
 };
 
 /// Fills a closed surface with tetrahedra that keep every surface vertex and triangle and add interior nodes, whose
-/// spacing grows from the surface's edge length inwards (a volume without them locks). Uses linked Netgen; when that
-/// fails, the separate program `tetgen`, if there is one on PATH. Deterministic. The result is checked with
-/// require_fills_surface. Not reentrant: Netgen keeps global state, and std::cout is muted meanwhile.
-/// Throws std::invalid_argument on an open or inward-facing surface or options out of range, std::runtime_error
-/// when neither mesher succeeds.
+/// spacing grows from the surface's edge length inwards (a volume without them locks). Uses linked Netgen, up to three
+/// times while there are slivers; when that fails, the separate program `tetgen`, if there is one on PATH.
+/// Deterministic. The result is checked with require_fills_surface. Not reentrant: Netgen keeps global state, and
+/// std::cout is muted meanwhile.
+/// Throws std::invalid_argument on a surface that is open, faces inwards or intersects itself and on options out of
+/// range, std::runtime_error when neither mesher succeeds.
 [[nodiscard]] Tetrahedralization tetrahedralize(const TriangleMesh& surface, const TetrahedralizeOptions& options = {});
 
 /// The finest level of a semi-regular surface as a triangle mesh, to be given to tetrahedralize.
