@@ -55,6 +55,14 @@ void visit_column(const ModelView& view, std::uint32_t constraint_level, std::ui
   }
 }
 
+void prefetch_lines(const void* data, std::size_t begin, std::size_t size) {
+  constexpr std::size_t line = 64;
+  const auto* bytes = static_cast<const char*>(data) + begin;
+  for (std::size_t at = 0; at < size; at += line) {
+    __builtin_prefetch(bytes + at);
+  }
+}
+
 }  // namespace
 
 std::uint32_t column_blocks(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column,
@@ -65,6 +73,19 @@ std::uint32_t column_blocks(const ModelView& view, std::uint32_t constraint_leve
     count += begin[1] - begin[0];
   }
   return count;
+}
+
+void prefetch_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column,
+                     std::uint32_t row_level) noexcept {
+  for (std::uint32_t level = 0; level <= row_level; ++level) {
+    const BlocksView& blocks = view.blocks[constraint_level][level];
+    const std::uint32_t begin = blocks.begin[column];
+    const std::uint32_t count = blocks.begin[column + 1] - begin;
+    prefetch_lines(blocks.value, std::size_t{9} * blocks.value_bytes * begin,
+                   std::size_t{9} * blocks.value_bytes * count);
+    prefetch_lines(blocks.index, std::size_t{blocks.index_bytes} * begin, std::size_t{blocks.index_bytes} * count);
+    __builtin_prefetch(blocks.scale + column);
+  }
 }
 
 void add_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column, const float (&force)[3],

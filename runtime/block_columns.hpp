@@ -13,6 +13,11 @@ namespace greenloop {
 [[nodiscard]] std::uint32_t column_blocks(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column,
                                           std::uint32_t row_level) noexcept;
 
+/// Asks for the memory of a column that add_column or scatter_column will soon read; changes no result. For the loop;
+/// work: a hint per cache line of the column.
+void prefetch_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column,
+                     std::uint32_t row_level) noexcept;
+
 /// x += column times force, in the rows of levels 0..row_level (step 5 of fast summation, James & Pai 2003, section
 /// 5.4). x: [node_count], by file node. For the loop; work: 9 units per block.
 void add_column(const ModelView& view, std::uint32_t constraint_level, std::uint32_t column, const float (&force)[3],

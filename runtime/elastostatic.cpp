@@ -91,8 +91,15 @@ bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& f
 void compute_field(const Body& body, std::uint32_t field_level, std::span<float> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   const auto* force = reinterpret_cast<const float*>(body.force);
+  constexpr std::uint32_t ahead = 3;  // columns whose memory is on its way while one is summed
+  for (std::uint32_t k = 0; k < ahead && k < body.set.columns; ++k) {
+    prefetch_column(*body.view, body.set.level, body.set.column[k], field_level);
+  }
   std::memset(displacement.data(), 0, displacement.size_bytes());
   for (std::uint32_t k = 0; k < body.set.columns; ++k) {
+    if (k + ahead < body.set.columns) {
+      prefetch_column(*body.view, body.set.level, body.set.column[k + ahead], field_level);
+    }
     const float* at = force + std::size_t{3} * k;
     const float of_column[3] = {at[0], at[1], at[2]};
     add_column(*body.view, body.set.level, body.set.column[k], of_column, field_level, x);

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "offline/remesh/self_intersection.hpp"
 #include "offline/solve/netgen_mesher.hpp"
 #include "offline/solve/tetgen_mesher.hpp"
+#include "offline/surface/triangle_intersection.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -30,11 +30,11 @@ void require_valid(const TetrahedralizeOptions& options) {
 
 /// Netgen may run forever on a surface that crosses itself.
 void require_no_crossing(const TriangleMesh& surface) {
-  const auto pairs = self_intersections(surface);
+  const auto pairs = self_intersections(surface, std::vector<bool>(surface.triangles.size(), false));
   if (pairs.empty()) return;
   throw std::invalid_argument("tetrahedralize: the surface intersects itself in " + std::to_string(pairs.size()) +
-                              " pairs of triangles, the first are " + std::to_string(pairs[0].first) + " and " +
-                              std::to_string(pairs[0].second) + "; repair or remesh it");
+                              " pairs of triangles, the first are " + std::to_string(pairs[0][0]) + " and " +
+                              std::to_string(pairs[0][1]) + "; repair or remesh it");
 }
 
 /// Every directed edge exactly once, and its reverse too: closed, manifold along edges, consistently oriented.
