@@ -118,8 +118,10 @@ std::uint32_t finest_constraint_level(const ModelView& view) {
 // nothing is touched: the body is at rest
 void release(const Body& body, const Response& response, StepReport& report) {
   const ModelView& view = *body.view;
-  std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
-  report.work += response.displacement.size() / 4;
+  if (!response.displacement.empty()) {
+    std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
+    report.work += response.displacement.size() / 4;
+  }
   report.constraint_level = finest_constraint_level(view);
   report.field_level = view.levels - 1;
 }

@@ -200,6 +200,7 @@ TEST_CASE("released: no contact, no field") {
   const StepReport report = body.step({}, body.requirement().least_work);
   CHECK(report.status == Status::ok);
   CHECK(std::all_of(body.field().begin(), body.field().end(), [](float u) { return u == 0; }));
+  CHECK(body.step({}, body.requirement().least_work, false).work == 0);
 }
 
 // a body that has answered once, and what it must still show after a refusal

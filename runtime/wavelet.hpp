@@ -52,7 +52,7 @@ void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint3
 
 /// Work units of inverse_transform: records of the levels up to field_level, domain nodes above level 0.
 constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_records, std::uint64_t odd_nodes) {
-  return std::uint64_t{3 * OddNeighbours::most} * lifting_records + 6 * odd_nodes;
+  return 3 * std::uint64_t{OddNeighbours::most} * lifting_records + 6 * odd_nodes;
 }
 
 }  // namespace greenloop

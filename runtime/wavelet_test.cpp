@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -105,13 +107,13 @@ TEST_CASE("a point functional gives what the inverse transform gives there, at e
     const std::uint32_t length = point_functional(view, placed.body->lifting, node, functional.data());
     REQUIRE(length <= bound);
     longest = std::max(longest, length);
+    std::vector<int> times_named(view.node_count);
     double sum = 0;
     for (std::uint32_t k = 0; k < length; ++k) {
       sum += double{functional[k].weight} * double{coefficients[functional[k].node][0]};
-      for (std::uint32_t before = 0; before < k; ++before) {
-        REQUIRE(functional[before].node != functional[k].node);
-      }
+      ++times_named[functional[k].node];
     }
+    CHECK(std::all_of(times_named.begin(), times_named.end(), [](int times) { return times <= 1; }));
     CHECK(std::abs(sum - double{field[node][0]}) <= 64 * 0x1p-24);
   }
   MESSAGE("longest functional over five levels: ", longest, " coefficients");

@@ -31,7 +31,9 @@ using greenloop::allocation_guard::note;
 
 #ifdef GREENLOOP_SANITIZER_HOOKS
 
-#include <sanitizer/allocator_interface.h>
+// the sanitizer's own interface; not every compiler ships its header
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
+                                                         void (*on_free)(const volatile void*));
 
 namespace {
 const int installed = __sanitizer_install_malloc_and_free_hooks([](const volatile void*, std::size_t) { note(); },
