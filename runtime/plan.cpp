@@ -43,7 +43,7 @@ std::uint64_t most_blocks(const ModelView& view, std::uint32_t constraint_level,
 }  // namespace
 
 std::uint64_t plan_work(const ModelCounts& model, std::uint64_t contacts, std::uint64_t columns) noexcept {
-  return resolve_contacts_work(contacts) + columns * (model.levels + 1) + 2 * model.levels +
+  return resolve_contacts_work(contacts) + columns * (model.levels + 1) + std::uint64_t{2} * model.levels +
          FactorCache::find_work(model.cached_factors, columns);
 }
 

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 #include <hdf5.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <csignal>
 
 #include <cmath>
 #include <fstream>
