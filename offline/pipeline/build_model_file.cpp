@@ -86,7 +86,7 @@ GreenStoreContents store_contents(const Scene& scene, const BodyGeometry& body, 
   }
   contents.volume = std::move(volume.mesh);
   contents.volume_fixed = std::move(volume.fixed);
-  contents.interpolation = std::move(volume.interpolation);
+  contents.interpolation.swap(volume.interpolation);
   contents.young = scene.material.young;
   contents.poisson = scene.material.poisson;
   contents.provenance = record.dump();
