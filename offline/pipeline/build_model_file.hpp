@@ -12,7 +12,7 @@ struct BuildRequest {
   std::filesystem::path model;   ///< .gloop to write; its record goes beside it as .build.json
   std::filesystem::path store;   ///< exact Green's functions, HDF5; resumed if it is the scene's. Empty: as the scene
                                  ///< says, else beside the model
-  bool overwrite_store = false;  ///< replace a store that belongs to another scene
+  bool overwrite_store = false;  ///< replace a store of another scene that holds columns
   bool force = false;            ///< build even if the model is up to date
 };
 
