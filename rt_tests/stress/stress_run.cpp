@@ -79,6 +79,9 @@ class StressRun {
   }
 
   StressResult run() {
+    {
+      const std::lock_guard lock(mutex_);  // so that the guard has looked up the real function, which may allocate
+    }
     const bool watches_system_calls = system_call_guard::install();
     const std::uint64_t allocations = allocation_guard::count();
     const std::uint64_t locks = mutex_guard::count();
