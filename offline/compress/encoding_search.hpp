@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "offline/compress/column_source.hpp"
+#include "offline/compress/contact_patches.hpp"
+#include "offline/compress/coupling_coder.hpp"
+
+namespace greenloop::offline {
+
+/// The errors a model may have against the exact compliance, all relative.
+struct Accuracy {
+  double rms = 0;           ///< of the field: FieldError::rms
+  double worst_column = 0;  ///< FieldError::worst_column
+  double patch_force = 0;   ///< ContactPatches::worst_force_error
+};
+
+/// An exact column to compare with.
+struct SampleColumn {
+  std::size_t row = 0;
+  double area = 0;            ///< m^2
+  std::vector<double> exact;  ///< rows blocks of 9
+};
+
+/// One way to encode a model, and what came of it on a sample of patches and columns.
+struct Trial {
+  Encoding encoding;
+  std::size_t bytes = 0, blocks = 0;
+  double rms = 0, worst_column = 0, patch_force = 0;
+  std::uint64_t step_work = 0;  ///< units
+
+  [[nodiscard]] bool meets(const Accuracy& accuracy) const {
+    return rms <= accuracy.rms && worst_column <= accuracy.worst_column && patch_force <= accuracy.patch_force;
+  }
+};
+
+/// What trials are made and measured with. The referenced objects must outlive the search.
+struct TrialBench {
+  const CompliancePyramid& pyramid;
+  const ModelData& tables;  ///< the model without scales and couplings
+  const std::vector<SampleColumn>& columns;
+  std::function<std::uint64_t(std::span<const std::byte>)> step_work;  ///< of an encoded model; may be empty
+};
+
+/// Encodes and measures one trial. Work: an encoding, 64 columns a patch and the sample's columns.
+[[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
+
+/// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2, for 8
+/// and for 16 bits of the strong couplings. If none does, the most accurate one. Adds every trial to `trials`.
+[[nodiscard]] Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy,
+                                    double floor, std::vector<Trial>& trials, const Progress& progress);
+
+}  // namespace greenloop::offline
