@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "formats/layout.hpp"
-#include "offline/compress/scale.hpp"
+#include "offline/compress/conditional_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -38,8 +38,7 @@ class ColumnReader {
     x.resize(width * count_);
     const auto column = static_cast<Eigen::Index>(3 * (at_ - first_));
     for (std::size_t i = 0; i < count_; ++i) {
-      Eigen::Map<Eigen::Matrix3d>(x.data() + width * i) =
-          block_.block<3, 3>(static_cast<Eigen::Index>(3 * i), column);
+      Eigen::Map<Eigen::Matrix3d>(x.data() + width * i) = block_.block<3, 3>(static_cast<Eigen::Index>(3 * i), column);
     }
     ++at_;
   }
@@ -50,7 +49,9 @@ class ColumnReader {
   Eigen::MatrixXd block_;
 };
 
-Eigen::Matrix3d block_of(const double* x, std::size_t row) { return Eigen::Map<const Eigen::Matrix3d>(x + width * row); }
+Eigen::Matrix3d block_of(const double* x, std::size_t row) {
+  return Eigen::Map<const Eigen::Matrix3d>(x + width * row);
+}
 
 Eigen::Matrix3d symmetric(const Eigen::Matrix3d& block) { return 0.5 * (block + block.transpose()); }
 
@@ -68,6 +69,19 @@ double rough_inverse_root(const Eigen::Matrix3d& block) {
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric(block), Eigen::EigenvaluesOnly).eigenvalues();
   const double least = std::max(values.minCoeff(), 0.05 * values.cwiseAbs().sum() / 3);
   return least > 0 ? 1 / std::sqrt(least) : 0;
+}
+
+// block (i, j) becomes rows[i] block columns[j]^T
+void rescale(CouplingCandidates& couplings, const std::vector<Eigen::Matrix3d>& rows,
+             const std::vector<Eigen::Matrix3d>& columns) {
+  for (std::size_t j = 0; j + 1 < couplings.begin.size(); ++j) {
+    for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
+      Eigen::Map<Eigen::Matrix3f> block(couplings.value.data() + width * b);
+      const Eigen::Matrix3d scaled = rows[couplings.row[b]] * block.cast<double>() * columns[j].transpose();
+      block = scaled.cast<float>();
+      couplings.norm[b] = static_cast<float>(scaled.norm() / std::sqrt(3.0));
+    }
+  }
 }
 
 // One level of the pyramid while its columns stream by.
@@ -115,7 +129,20 @@ class LevelReduction {
     return std::move(lifted_);
   }
 
-  [[nodiscard]] CompliancePyramid::Level result() { return std::move(result_); }
+  // rescaled by conditional compliances; couplings with partners are not scaled yet
+  [[nodiscard]] CompliancePyramid::Level result() {
+    auto& same = result_.partner[static_cast<int>(layout::Partner::same)];
+    const auto conditional = conditional_compliance(diagonal_, same);
+    for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+      result_.details.emplace_back(diagonal_[i], conditional[i], "detail", i);
+    }
+    std::vector<Eigen::Matrix3d> change;
+    for (std::size_t i = 0; i < diagonal_.size(); ++i) {
+      change.push_back(result_.details[i].inverse() * own_scales_[i].root());
+    }
+    rescale(same, change, change);
+    return std::move(result_);
+  }
 
  private:
   void symmetrize(std::size_t i, std::size_t j) {
@@ -145,21 +172,21 @@ class LevelReduction {
   void keep_details(std::size_t row, const Values& x) {
     const std::size_t own = row - evens_;
     const Eigen::Matrix3d diagonal = symmetric(block_of(x.data(), row));
-    const Scale scale(diagonal, "detail", row);
+    const CoefficientScale scale(diagonal, diagonal, "detail", row);
     auto& kept = result_.partner[static_cast<int>(layout::Partner::same)];
     kept.rows = rows_ - evens_;
     for (std::size_t i = 0; i < own; ++i) {
-      const Eigen::Matrix3d scaled = scales_[i].inverse() * block_of(x.data(), evens_ + i) * scale.inverse();
+      const Eigen::Matrix3d scaled = own_scales_[i].inverse() * block_of(x.data(), evens_ + i) * scale.inverse();
       append(kept, i, scaled, scaled.norm() / std::sqrt(3.0));
     }
     kept.begin.push_back(kept.row.size());
-    result_.details.push_back(diagonal);
-    scales_.push_back(scale);
+    diagonal_.push_back(diagonal);
+    own_scales_.push_back(scale);
   }
 
   void keep_partners(const Values& x) {
     const std::size_t averages = level_ > 1 ? wavelet_->row_end(level_ - 2) : evens_;
-    const double own = scales_.back().inverse().norm();
+    const double own = own_scales_.back().inverse().norm();
     for (std::size_t row = 0; row < evens_; ++row) {
       const bool is_average = row < averages;
       auto& kept = result_.partner[static_cast<int>(is_average ? layout::Partner::averages : layout::Partner::parents)];
@@ -184,44 +211,35 @@ class LevelReduction {
   std::vector<std::vector<float>> even_columns_;  // split by rows, unlifted by columns
   DenseCompliance lifted_;                        // what lifting adds to them
   std::vector<double> guess_;                     // of each partner's largest inverse root
-  std::vector<Scale> scales_;
+  std::vector<Eigen::Matrix3d> diagonal_;
+  std::vector<CoefficientScale> own_scales_;  // by the diagonal blocks alone
   CompliancePyramid::Level result_;
 };
 
-// unscaled couplings with a partner become scaled ones; the guess that let them in was generous
-void scale_partner(CouplingCandidates& candidates, const std::vector<Eigen::Matrix3d>& rows,
-                   const std::vector<Eigen::Matrix3d>& columns, double floor) {
-  std::vector<Scale> row_scale, column_scale;
-  for (std::size_t i = 0; i < rows.size(); ++i) row_scale.emplace_back(rows[i], "partner", i);
-  for (std::size_t j = 0; j < columns.size(); ++j) column_scale.emplace_back(columns[j], "detail", j);
-  CouplingCandidates scaled;
-  scaled.rows = candidates.rows;
-  for (std::size_t j = 0; j + 1 < candidates.begin.size(); ++j) {
-    for (std::size_t b = candidates.begin[j]; b < candidates.begin[j + 1]; ++b) {
-      const Eigen::Matrix3d block =
-          row_scale[candidates.row[b]].inverse() *
-          Eigen::Map<const Eigen::Matrix3f>(candidates.value.data() + width * b).cast<double>() *
-          column_scale[j].inverse();
-      const double norm = block.norm() / std::sqrt(3.0);
-      if (norm < floor) continue;
-      scaled.row.push_back(candidates.row[b]);
-      scaled.norm.push_back(static_cast<float>(norm));
-      for (int k = 0; k < 9; ++k) scaled.value.push_back(static_cast<float>(block.data()[k]));
-    }
-    scaled.begin.push_back(scaled.row.size());
+std::vector<Eigen::Matrix3d> inverse_roots(const std::vector<CoefficientScale>& scales) {
+  std::vector<Eigen::Matrix3d> inverses;
+  for (const auto& scale : scales) inverses.push_back(scale.inverse());
+  return inverses;
+}
+
+std::vector<CoefficientScale> average_scales(const DenseCompliance& compliance) {
+  const auto conditional = conditional_compliance(compliance);
+  std::vector<CoefficientScale> scales;
+  for (std::size_t i = 0; i < compliance.rows(); ++i) {
+    scales.emplace_back(compliance.block(i, i), conditional[i], "average", i);
   }
-  candidates = std::move(scaled);
+  return scales;
 }
 
 // level 0 couples all averages with each other
 CompliancePyramid::Level base_level(const DenseCompliance& compliance) {
   CompliancePyramid::Level base;
+  base.averages = average_scales(compliance);
   auto& kept = base.partner[static_cast<int>(layout::Partner::same)];
   kept.rows = compliance.rows();
   for (std::size_t j = 0; j < compliance.rows(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
-      const Eigen::Matrix3d block = Scale(compliance.block(i, i), "average", i).inverse() * compliance.block(i, j) *
-                                    Scale(compliance.block(j, j), "average", j).inverse();
+      const Eigen::Matrix3d block = base.averages[i].inverse() * compliance.block(i, j) * base.averages[j].inverse();
       kept.row.push_back(static_cast<std::uint32_t>(i));
       kept.norm.push_back(static_cast<float>(block.norm() / std::sqrt(3.0)));
       for (int k = 0; k < 9; ++k) kept.value.push_back(static_cast<float>(block.data()[k]));
@@ -229,12 +247,6 @@ CompliancePyramid::Level base_level(const DenseCompliance& compliance) {
     kept.begin.push_back(kept.row.size());
   }
   return base;
-}
-
-std::vector<Eigen::Matrix3d> diagonal(const DenseCompliance& compliance) {
-  std::vector<Eigen::Matrix3d> blocks;
-  for (std::size_t i = 0; i < compliance.rows(); ++i) blocks.push_back(compliance.block(i, i));
-  return blocks;
 }
 
 ColumnSource read_dense(const DenseCompliance& compliance) {
@@ -295,13 +307,14 @@ CompliancePyramid build_pyramid(const LinearWavelet& wavelet, const ColumnSource
 
   for (auto it = fine_to_coarse.rbegin(); it != fine_to_coarse.rend(); ++it) pyramid.coarse.push_back(std::move(*it));
   pyramid.levels[0] = base_level(pyramid.coarse[0]);
-  for (std::size_t level = 0; level + 2 <= std::max<std::size_t>(finest, 2); ++level) {
-    pyramid.levels[level].averages = diagonal(pyramid.coarse[level]);
+  for (std::size_t level = 1; level + 2 <= finest; ++level) {
+    pyramid.levels[level].averages = average_scales(pyramid.coarse[level]);
   }
   for (std::size_t level = 1; level <= finest; ++level) {
     auto& own = pyramid.levels[level];
-    scale_partner(own.partner[0], pyramid.levels[level > 2 ? level - 2 : 0].averages, own.details, floor);
-    if (level > 1) scale_partner(own.partner[1], pyramid.levels[level - 1].details, own.details, floor);
+    const auto columns = inverse_roots(own.details);
+    rescale(own.partner[0], inverse_roots(pyramid.levels[level > 2 ? level - 2 : 0].averages), columns);
+    if (level > 1) rescale(own.partner[1], inverse_roots(pyramid.levels[level - 1].details), columns);
   }
   progress(1.0, "transform columns");
   return pyramid;

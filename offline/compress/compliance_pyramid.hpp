@@ -7,6 +7,7 @@
 
 #include "offline/compress/column_source.hpp"
 #include "offline/compress/linear_wavelet.hpp"
+#include "offline/compress/scale.hpp"
 
 namespace greenloop::offline {
 
@@ -40,17 +41,18 @@ struct CouplingCandidates {
 /// Coifman and Rokhlin 1991), without what is too small to matter.
 struct CompliancePyramid {
   struct Level {
-    std::vector<Eigen::Matrix3d> details;   ///< diagonal blocks [m/N]; level 0: empty
-    std::vector<Eigen::Matrix3d> averages;  ///< diagonal blocks; empty above level max(L-2, 0)
-    CouplingCandidates partner[3];          ///< by layout::Partner
+    std::vector<CoefficientScale> details;   ///< level 0: empty
+    std::vector<CoefficientScale> averages;  ///< empty above level max(L-2, 0)
+    CouplingCandidates partner[3];           ///< by layout::Partner
   };
   std::vector<Level> levels;
   std::vector<DenseCompliance> coarse;  ///< exact compliance between the averages of level q, q = 0..L-1
 };
 
-/// Streams the exact columns, one per domain node, once and in order, and keeps couplings of scaled norm `floor` and
-/// more. Memory: the columns of K(L-1) in single precision, a quarter of the dense matrix, besides the result.
-/// Throws std::invalid_argument if columns are not finite or a diagonal block is not positive definite. Offline only.
+/// Streams the exact columns, one per domain node, once and in order, and keeps couplings of norm `floor` and more,
+/// scaled by the coefficients' own diagonal blocks. Memory: the columns of K(L-1) in single precision, a quarter of the
+/// dense matrix, besides the result. Throws std::invalid_argument if columns are not finite or a diagonal block is not
+/// positive definite. Offline only.
 [[nodiscard]] CompliancePyramid build_pyramid(const LinearWavelet& wavelet, const ColumnSource& columns, double floor,
                                               const Progress& progress);
 

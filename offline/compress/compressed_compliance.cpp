@@ -35,6 +35,11 @@ std::uint32_t row_at(const CouplingsView& couplings, std::size_t column, std::si
   return static_cast<std::uint32_t>(block - couplings.begin[column]);
 }
 
+void append(const float (&six)[6], std::vector<float>& matrices) {
+  const Eigen::Matrix3f matrix = symmetric_matrix(six).cast<float>();
+  matrices.insert(matrices.end(), matrix.data(), matrix.data() + 9);
+}
+
 }  // namespace
 
 CompressedCompliance::CompressedCompliance(const ModelView& view, std::uint32_t layers) : wavelet_(view) {
@@ -44,8 +49,8 @@ CompressedCompliance::CompressedCompliance(const ModelView& view, std::uint32_t 
 
 void CompressedCompliance::number_coefficients(const ModelView& view) {
   const auto add = [this](const layout::Scale& scale, std::uint32_t needs) {
-    const Eigen::Matrix3f root = load_scale(scale).cast<float>();
-    root_.insert(root_.end(), root.data(), root.data() + 9);
+    append(scale.root, root_);
+    append(scale.diagonal, diagonal_);
     needs_level_.push_back(needs);
   };
   for (std::uint32_t level = 0; level < view.levels; ++level) {
@@ -121,7 +126,7 @@ void CompressedCompliance::apply(std::size_t level, std::size_t columns, const d
     std::fill(scaled.begin(), scaled.end(), 0.0);
     multiply(root_.data() + 9 * i, false, columns, own, scaled.data());
     if (i < wavelet_.rows()) {
-      for (std::size_t k = 0; k < width; ++k) sum[i * width + k] += scaled[k];
+      multiply(diagonal_.data() + 9 * i, false, columns, scaled.data(), sum.data() + i * width);
     }
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
       const Link& link = links_[at];

@@ -9,12 +9,14 @@
 
 namespace greenloop::offline {
 
+inline constexpr std::uint32_t all_layers = 3;  ///< of couplings, by layout::Strength
+
 /// The compliance that a model file stands for, in double precision: what the loop's answers are measured with and
 /// certified on. Non-standard form, see formats/layout.hpp. Offline only.
 class CompressedCompliance {
  public:
-  /// `layers` = 1: strong couplings only, 2: all. The view must outlive this object. Memory: about 80 bytes per
-  /// coupling.
+  /// `layers`: how many layers of couplings count, strong ones first; 3: all. The view must outlive this object.
+  /// Memory: about 80 bytes per coupling.
   CompressedCompliance(const ModelView& view, std::uint32_t layers);
 
   [[nodiscard]] std::size_t finest() const { return wavelet_.finest(); }
@@ -46,11 +48,11 @@ class CompressedCompliance {
   void link(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& ends);
 
   LinearWavelet wavelet_;
-  std::vector<Role> averages_;                 // [level], empty for level 0 (whose averages are domain rows)
-  std::vector<std::uint32_t> needs_level_;     // [coefficient] it takes part from this level on
-  std::vector<float> root_;                    // [coefficient] 9 numbers
-  std::vector<float> block_;                   // [coupling] 9 numbers
-  std::vector<std::size_t> link_begin_;        // [coefficient + 1]
+  std::vector<Role> averages_;              // [level], empty for level 0 (whose averages are domain rows)
+  std::vector<std::uint32_t> needs_level_;  // [coefficient] it takes part from this level on
+  std::vector<float> root_, diagonal_;      // [coefficient] 9 numbers
+  std::vector<float> block_;                // [coupling] 9 numbers
+  std::vector<std::size_t> link_begin_;     // [coefficient + 1]
   std::vector<Link> links_;
 };
 

@@ -11,8 +11,10 @@ namespace greenloop::offline {
 namespace {
 
 constexpr std::size_t width = 9;
-constexpr double largest_weak = 7;  // quanta
-constexpr int strong = static_cast<int>(layout::Strength::strong), weak = static_cast<int>(layout::Strength::weak);
+constexpr int layers = 3;
+constexpr std::uint32_t bits[layers] = {16, 8, 4};         // by layout::Strength
+constexpr double largest_value[layers] = {32767, 127, 7};  // quanta
+constexpr int strong = static_cast<int>(layout::Strength::strong);
 
 using Block = std::array<std::int16_t, width>;
 
@@ -30,45 +32,41 @@ double largest(const float* value) {
   return static_cast<double>(most);
 }
 
-bool is_weak(const float* value, double quantum) { return largest(value) < (largest_weak + 0.5) * quantum; }
-
-void append(CouplingsData& data, std::uint32_t row, const Block& block) {
-  data.index.push_back(row);
-  data.value.insert(data.value.end(), block.begin(), block.end());
+// the layer of fewest bits that holds a block
+int layer_of(const float* value, double quantum) {
+  int layer = layers - 1;
+  while (layer > strong && largest(value) >= (largest_value[layer] + 0.5) * quantum) --layer;
+  return layer;
 }
 
-// the least quantum that every kept strong value fits
-double strong_quantum(const CouplingCandidates& candidates, const Encoding& encoding) {
+// the common quantum, or a larger one where 16 bits would not hold the largest value
+double strong_quantum(const CouplingCandidates& candidates, double quantum) {
   double most = 0;
   for (std::size_t b = 0; b < candidates.row.size(); ++b) {
-    const float* value = candidates.value.data() + width * b;
-    if (static_cast<double>(candidates.norm[b]) >= encoding.threshold && !is_weak(value, encoding.weak_quantum)) {
-      most = std::max(most, largest(value));
-    }
+    most = std::max(most, largest(candidates.value.data() + width * b));
   }
-  return most / ((1 << (encoding.strong_bits - 1)) - 1);
+  return std::max(quantum, most / largest_value[strong]);
 }
 
-void encode_partner(const CouplingCandidates& candidates, const Encoding& encoding, CouplingsData (&layers)[2]) {
-  const auto quantum = static_cast<float>(strong_quantum(candidates, encoding));
-  layers[strong] = {.value_bits = encoding.strong_bits, .quantum = quantum, .begin = {0}, .index = {}, .value = {}};
-  layers[weak] = {.value_bits = 4,
-                  .quantum = static_cast<float>(encoding.weak_quantum),
-                  .begin = {0},
-                  .index = {},
-                  .value = {}};
+void encode_partner(const CouplingCandidates& candidates, const Encoding& encoding, CouplingsData (&to)[layers]) {
+  for (int layer = 0; layer < layers; ++layer) {
+    const double quantum = layer == strong ? strong_quantum(candidates, encoding.quantum) : encoding.quantum;
+    to[layer] = {
+        .value_bits = bits[layer], .quantum = static_cast<float>(quantum), .begin = {0}, .index = {}, .value = {}};
+  }
   for (std::size_t j = 0; j + 1 < candidates.begin.size(); ++j) {
     for (std::size_t b = candidates.begin[j]; b < candidates.begin[j + 1]; ++b) {
       if (static_cast<double>(candidates.norm[b]) < encoding.threshold) continue;
       const float* value = candidates.value.data() + width * b;
-      if (!is_weak(value, encoding.weak_quantum)) {
-        append(layers[strong], candidates.row[b], quantize(value, static_cast<double>(quantum)));
-      } else if (const Block block = quantize(value, encoding.weak_quantum);
-                 std::any_of(block.begin(), block.end(), [](std::int16_t q) { return q != 0; })) {
-        append(layers[weak], candidates.row[b], block);
-      }
+      CouplingsData& layer = to[layer_of(value, encoding.quantum)];
+      const Block block = quantize(value, static_cast<double>(layer.quantum));
+      if (std::all_of(block.begin(), block.end(), [](std::int16_t q) { return q == 0; })) continue;
+      layer.index.push_back(candidates.row[b]);
+      layer.value.insert(layer.value.end(), block.begin(), block.end());
     }
-    for (auto& layer : layers) layer.begin.push_back(static_cast<std::uint32_t>(layer.index.size()));
+    for (int layer = 0; layer < layers; ++layer) {
+      to[layer].begin.push_back(static_cast<std::uint32_t>(to[layer].index.size()));
+    }
   }
 }
 
@@ -78,7 +76,11 @@ void encode_base(const CouplingCandidates& candidates, CouplingsData& data) {
   for (std::size_t b = 0; b < candidates.row.size(); ++b) {
     most = std::max(most, largest(candidates.value.data() + width * b));
   }
-  data = {.value_bits = 16, .quantum = static_cast<float>(most / 32767), .begin = {}, .index = {}, .value = {}};
+  data = {.value_bits = 16,
+          .quantum = static_cast<float>(most / largest_value[strong]),
+          .begin = {},
+          .index = {},
+          .value = {}};
   for (std::size_t b = 0; b < candidates.row.size(); ++b) {
     const Block block = quantize(candidates.value.data() + width * b, static_cast<double>(data.quantum));
     data.value.insert(data.value.end(), block.begin(), block.end());
@@ -86,9 +88,9 @@ void encode_base(const CouplingCandidates& candidates, CouplingsData& data) {
   for (const std::size_t begin : candidates.begin) data.begin.push_back(static_cast<std::uint32_t>(begin));
 }
 
-std::vector<layout::Scale> scales(const std::vector<Eigen::Matrix3d>& blocks, std::string_view role) {
+std::vector<layout::Scale> stored(const std::vector<CoefficientScale>& scales) {
   std::vector<layout::Scale> result;
-  for (std::size_t i = 0; i < blocks.size(); ++i) result.push_back(store_scale(Scale(blocks[i], role, i).root()));
+  for (const auto& scale : scales) result.push_back(scale.stored());
   return result;
 }
 
@@ -98,8 +100,8 @@ void encode_couplings(const CompliancePyramid& pyramid, const Encoding& encoding
   for (std::size_t level = 0; level < pyramid.levels.size(); ++level) {
     const auto& from = pyramid.levels[level];
     auto& to = model.levels[level];
-    to.details = scales(from.details, "detail");
-    to.averages = scales(from.averages, "average");
+    to.details = stored(from.details);
+    to.averages = stored(from.averages);
     if (level == 0) {
       const int same = static_cast<int>(layout::Partner::same);
       encode_base(from.partner[same], to.couplings[same][strong]);

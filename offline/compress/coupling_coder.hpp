@@ -7,12 +7,11 @@
 
 namespace greenloop::offline {
 
-/// How couplings are thresholded and quantised. Scaled couplings are at most 1; a block that fits in 4 bits at
-/// `weak_quantum` is weak, any other strong.
+/// How couplings are thresholded and quantised. All share one quantum and take as many bits as they need: 4 (weak), 8
+/// (medium) or 16 (strong).
 struct Encoding {
-  double threshold = 0;       ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
-  double weak_quantum = 0;    ///< of weak couplings; the strong ones' follows from their largest value
-  std::uint32_t strong_bits = 8;  ///< 8 or 16
+  double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
+  double quantum = 0;    ///< of scaled values
 };
 
 /// Fills in scales and couplings of every level. `model.levels` must have one entry per level of the pyramid. Work:

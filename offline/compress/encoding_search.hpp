@@ -49,8 +49,8 @@ struct TrialBench {
 /// Encodes and measures one trial. Work: an encoding, 64 columns a patch and the sample's columns.
 [[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
 
-/// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2, for 8
-/// and for 16 bits of the strong couplings. If none does, the most accurate one. Adds every trial to `trials`.
+/// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2. If none
+/// does, the most accurate one. Adds every trial to `trials`.
 [[nodiscard]] Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy,
                                     double floor, std::vector<Trial>& trials, const Progress& progress);
 

@@ -16,7 +16,7 @@ class FieldError {
   /// Work: one column.
   void add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact, double area);
 
-  [[nodiscard]] double rms() const;           ///< ||Xi^ - Xi||_F / ||Xi||_F over the columns added
+  [[nodiscard]] double rms() const;            ///< ||Xi^ - Xi||_F / ||Xi||_F over the columns added
   [[nodiscard]] double worst_column() const {  ///< max_j ||Xi^_j - Xi_j||_inf / ||Xi_j||_inf, block-wise Frobenius
     return worst_column_;
   }

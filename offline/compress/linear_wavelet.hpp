@@ -37,8 +37,8 @@ class LinearWavelet {
   explicit LinearWavelet(const ModelView& view);
 
   [[nodiscard]] bool lifted() const { return lifted_; }
-  [[nodiscard]] std::size_t rows() const { return nodes_.size(); }           ///< domain nodes
-  [[nodiscard]] std::size_t finest() const { return row_end_.size() - 1; }   ///< level L
+  [[nodiscard]] std::size_t rows() const { return nodes_.size(); }                        ///< domain nodes
+  [[nodiscard]] std::size_t finest() const { return row_end_.size() - 1; }                ///< level L
   [[nodiscard]] std::size_t row_end(std::size_t level) const { return row_end_[level]; }  ///< of K(level)
   [[nodiscard]] const std::vector<std::size_t>& nodes() const { return nodes_; }          ///< node of each row
   [[nodiscard]] std::span<const Odd> odds(std::size_t level) const;  ///< M(level), 1 <= level <= L, by row

@@ -20,10 +20,10 @@ constexpr std::size_t most_patches = 160;   // measured
 constexpr std::size_t search_patches = 16;  // of them, the worst ones are searched with
 constexpr std::size_t sample_columns = 64;
 constexpr std::size_t stream_columns = 64;  // read at a time
-constexpr double first_floor = 0.001, least_floor = 1e-5;
-constexpr double first_threshold = 0.005;   // that picks the worst patches
-constexpr double safety = 0.97;             // of the patches' error, which the search sees only a part of
-constexpr double certificate_share = 0.5;   // of the least eigenvalue's estimate
+constexpr double first_floor = 0.0005, least_floor = 1e-5;
+constexpr double first_threshold = 0.005;  // that picks the worst patches
+constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
+constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
 
 void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
   if (input.mesh.vertex_end.size() > layout::max_levels) {
@@ -43,8 +43,7 @@ void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
   }
 }
 
-std::vector<Eigen::Vector3d> positions(const CompressionInput& input, const LinearWavelet& wavelet,
-                                       std::size_t level) {
+std::vector<Eigen::Vector3d> positions(const CompressionInput& input, const LinearWavelet& wavelet, std::size_t level) {
   std::vector<Eigen::Vector3d> result;
   for (std::size_t row = 0; row < wavelet.row_end(level); ++row) {
     result.push_back(input.mesh.positions[wavelet.nodes()[row]]);
@@ -55,8 +54,7 @@ std::vector<Eigen::Vector3d> positions(const CompressionInput& input, const Line
 std::vector<double> blocks_of(const Eigen::MatrixXd& columns, std::size_t j) {
   std::vector<double> blocks(3 * static_cast<std::size_t>(columns.rows()));
   for (Eigen::Index i = 0; i < columns.rows() / 3; ++i) {
-    Eigen::Map<Eigen::Matrix3d>(blocks.data() + 9 * i) =
-        columns.block<3, 3>(3 * i, static_cast<Eigen::Index>(3 * j));
+    Eigen::Map<Eigen::Matrix3d>(blocks.data() + 9 * i) = columns.block<3, 3>(3 * i, static_cast<Eigen::Index>(3 * j));
   }
   return blocks;
 }
@@ -186,12 +184,11 @@ std::size_t add_representatives(const CompressionInput& input, ModelData& model)
 }
 
 [[noreturn]] void unreachable_accuracy(const Accuracy& wanted, const Trial& best) {
-  throw std::runtime_error("compression: rms = " + std::to_string(wanted.rms) +
-                           ", worst_column = " + std::to_string(wanted.worst_column) +
-                           ", patch_force = " + std::to_string(wanted.patch_force) +
-                           " cannot be met; the best found was " + std::to_string(best.rms) + ", " +
-                           std::to_string(best.worst_column) + ", " + std::to_string(best.patch_force) +
-                           ": ask for larger errors");
+  throw std::runtime_error(
+      "compression: rms = " + std::to_string(wanted.rms) + ", worst_column = " + std::to_string(wanted.worst_column) +
+      ", patch_force = " + std::to_string(wanted.patch_force) + " cannot be met; the best found was " +
+      std::to_string(best.rms) + ", " + std::to_string(best.worst_column) + ", " + std::to_string(best.patch_force) +
+      ": ask for larger errors");
 }
 
 }  // namespace
@@ -202,7 +199,7 @@ BuiltModel build_model(const CompressionInput& input, const Progress& progress) 
   BuiltModel built{describe_mesh(input.mesh, input.flags, input.area, wavelet, input.facts), {}};
   auto& [model, report] = built;
   model.provenance = input.provenance;
-  model.info.field_layers = 2;
+  model.info.field_layers = all_layers;
   model.info.coarsest_constraint_level = static_cast<std::uint32_t>(add_representatives(input, model));
   report.dense_bytes = 36 * wavelet.rows() * wavelet.rows();
 
@@ -228,10 +225,10 @@ BuiltModel build_model(const CompressionInput& input, const Progress& progress) 
     ModelView view;
     ModelData first_guess = model;
     const double guess = std::max(first_threshold, floor);
-    encode_couplings(pyramid, {.threshold = guess, .weak_quantum = guess, .strong_bits = 16}, first_guess);
+    encode_couplings(pyramid, {.threshold = guess, .quantum = 0.5 * guess}, first_guess);
     const AlignedBytes guessed = encoded(first_guess, view);
     ContactPatches searched =
-        reference.patches.worst_of(CompressedCompliance(view, 2), wavelet.finest(), search_patches);
+        reference.patches.worst_of(CompressedCompliance(view, all_layers), wavelet.finest(), search_patches);
 
     Accuracy aim = input.accuracy;
     aim.patch_force *= safety;
@@ -243,7 +240,7 @@ BuiltModel build_model(const CompressionInput& input, const Progress& progress) 
       }
       encode_couplings(pyramid, chosen.encoding, model);
       const AlignedBytes bytes = encoded(model, view);
-      const CompressedCompliance all(view, 2), strong(view, 1);
+      const CompressedCompliance all(view, all_layers), strong(view, 2);
       const FinestErrors errors = measure_finest(input, all, strong, part(0.7, 0.8));
       const double force = reference.patches.worst_force_error(all, wavelet.finest());
       const Trial measured{.encoding = chosen.encoding,
@@ -269,7 +266,7 @@ BuiltModel build_model(const CompressionInput& input, const Progress& progress) 
       report.lambda_min = certificate_share * least;
       const bool strong_suffices =
           errors.strong.rms() <= input.accuracy.rms && errors.strong.worst_column() <= input.accuracy.worst_column;
-      report.field_layers = strong_suffices ? 1 : 2;
+      report.field_layers = strong_suffices ? 2 : all_layers;
       const FieldError& field = strong_suffices ? errors.strong : errors.all;
       report.field_rms_error = field.rms();
       report.field_column_error = field.worst_column();

@@ -38,7 +38,8 @@ ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint
   ModelData model;
   model.info = facts;
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
-  model.info.wavelet = static_cast<std::uint32_t>(wavelet.lifted() ? layout::Wavelet::lifted_linear : layout::Wavelet::linear);
+  model.info.wavelet =
+      static_cast<std::uint32_t>(wavelet.lifted() ? layout::Wavelet::lifted_linear : layout::Wavelet::linear);
   model.info.components = 3;
   for (const auto& triangle : mesh.base_triangles) {
     for (const int corner : triangle) model.base_triangles.push_back(static_cast<std::uint32_t>(corner));

@@ -69,8 +69,8 @@ std::vector<std::uint32_t> representatives(const SemiRegularMesh& mesh, const st
     for (const auto& hat : hats[node]) {
       if (has(flags[hat.vertex], layout::node_domain) && (best == nullptr || hat.weight > best->weight)) best = &hat;
     }
-    result[node] = best != nullptr ? static_cast<std::uint32_t>(best->vertex)
-                                   : nearest(mesh, flags, mesh.vertex_end[level], node);
+    result[node] =
+        best != nullptr ? static_cast<std::uint32_t>(best->vertex) : nearest(mesh, flags, mesh.vertex_end[level], node);
   }
   return result;
 }

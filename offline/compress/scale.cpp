@@ -5,28 +5,41 @@
 #include <string>
 
 namespace greenloop::offline {
+namespace {
 
-Scale::Scale(const Eigen::Matrix3d& block, std::string_view role, std::size_t index) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(block);
+void store(const Eigen::Matrix3d& symmetric, float (&six)[6]) {
+  int k = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) six[k++] = static_cast<float>(symmetric(i, j));
+  }
+}
+
+}  // namespace
+
+CoefficientScale::CoefficientScale(const Eigen::Matrix3d& diagonal, const Eigen::Matrix3d& conditional,
+                                   std::string_view role, std::size_t index) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(conditional);
   if (!(solver.eigenvalues().minCoeff() > 0)) {
-    throw std::invalid_argument("compression: the compliance is not positive definite: diagonal block of " +
-                                std::string(role) + " " + std::to_string(index) + " has the eigenvalue " +
+    throw std::invalid_argument("compression: the compliance is not positive definite: " + std::string(role) + " " +
+                                std::to_string(index) + " has the conditional compliance " +
                                 std::to_string(solver.eigenvalues().minCoeff()) + " m/N");
   }
   root_ = solver.operatorSqrt();
   inverse_ = solver.operatorInverseSqrt();
+  diagonal_ = inverse_ * diagonal * inverse_;
 }
 
-layout::Scale store_scale(const Eigen::Matrix3d& root) {
-  const Eigen::Matrix3f r = root.cast<float>();
-  return {{r(0, 0), r(0, 1), r(0, 2), r(1, 1), r(1, 2), r(2, 2)}};
+layout::Scale CoefficientScale::stored() const {
+  layout::Scale scale{};
+  store(root_, scale.root);
+  store(0.5 * (diagonal_ + diagonal_.transpose()), scale.diagonal);
+  return scale;
 }
 
-Eigen::Matrix3d load_scale(const layout::Scale& scale) {
-  const auto& r = scale.root;
-  Eigen::Matrix3f root;
-  root << r[0], r[1], r[2], r[1], r[3], r[4], r[2], r[4], r[5];
-  return root.cast<double>();
+Eigen::Matrix3d symmetric_matrix(const float (&six)[6]) {
+  Eigen::Matrix3f matrix;
+  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+  return matrix.cast<double>();
 }
 
 }  // namespace greenloop::offline
