@@ -51,10 +51,34 @@ TEST_CASE("verify accepts: every size of the synthetic model") {
 }
 
 TEST_CASE("verify accepts: one triangle with one free node") {
-  ModelMutant mutant(encode(smallest_model()));
+  ModelData data = smallest_model();
+  LevelData& level = data.levels[0];
+  level.nodes[1].flags = layout::node_fixed;
+  level.averages.pop_back();
+  CouplingsData& couplings = level.couplings[same][strong];
+  couplings.begin = {0, 0};
+  couplings.value.clear();
+  ModelMutant mutant(encode(data));
   check_accepted(mutant);
   CHECK(mutant.view().domain_count == 1);
   CHECK(mutant.view().level[0].couplings[same][strong].begin[1] == 0);
+}
+
+TEST_CASE("verify accepts: levels without domain nodes") {
+  ModelData data = smallest_model();
+  LevelData none_moves;
+  none_moves.nodes = {{{0.5F, 0, 0}, 0.125F, layout::node_fixed}};
+  none_moves.refinement = {{{0, 1}, {0, 0}}};
+  none_moves.representatives = {{0, layout::none, layout::none}, {layout::none}};
+  for (auto& partner : none_moves.couplings) {
+    if (&partner == &none_moves.couplings[parents]) continue;
+    for (CouplingsData& couplings : partner) couplings.begin = {0};
+  }
+  data.levels[0].representatives.push_back({layout::none});
+  data.levels.push_back(none_moves);
+  ModelMutant mutant(encode(data));
+  check_accepted(mutant);
+  CHECK(mutant.view().domain_count == 2);
 }
 
 TEST_CASE("verify: the view shows every array where it stands") {
