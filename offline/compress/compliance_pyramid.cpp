@@ -312,9 +312,9 @@ CompliancePyramid build_pyramid(const LinearWavelet& wavelet, const ColumnSource
   }
   for (std::size_t level = 1; level <= finest; ++level) {
     auto& own = pyramid.levels[level];
-    const auto columns = inverse_roots(own.details);
-    rescale(own.partner[0], inverse_roots(pyramid.levels[level > 2 ? level - 2 : 0].averages), columns);
-    if (level > 1) rescale(own.partner[1], inverse_roots(pyramid.levels[level - 1].details), columns);
+    const auto own_inverses = inverse_roots(own.details);
+    rescale(own.partner[0], inverse_roots(pyramid.levels[level > 2 ? level - 2 : 0].averages), own_inverses);
+    if (level > 1) rescale(own.partner[1], inverse_roots(pyramid.levels[level - 1].details), own_inverses);
   }
   progress(1.0, "transform columns");
   return pyramid;
