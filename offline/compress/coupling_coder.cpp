@@ -48,7 +48,8 @@ double strong_quantum(const CouplingCandidates& candidates, double quantum) {
   return std::max(quantum, most / largest_value[strong]);
 }
 
-void encode_partner(const CouplingCandidates& candidates, const Encoding& encoding, std::array<CouplingsData, layout::strengths>& to) {
+void encode_partner(const CouplingCandidates& candidates, const Encoding& encoding,
+                    std::array<CouplingsData, layout::strengths>& to) {
   for (int layer = 0; layer < layers; ++layer) {
     const double quantum = layer == strong ? strong_quantum(candidates, encoding.quantum) : encoding.quantum;
     to[layer] = {
