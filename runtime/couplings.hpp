@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/view.hpp"
+#include "runtime/arena.hpp"
+#include "runtime/coefficients.hpp"
+#include "runtime/float4.hpp"
+
+namespace greenloop {
+
+// Sums over the stored blocks of the symmetric compliance in non-standard form (Beylkin, Coifman & Rokhlin 1991): a
+// block M of column j and row i adds M f_j to the displacement of i (direct) and M^T f_i to that of j (mirrored), all
+// in scaled coefficients.
+
+/// A stored block, seen from its row or its column.
+struct BlockPlace {
+  std::uint32_t target;    ///< coefficient within its group, or what stands for it
+  std::uint32_t position;  ///< of the block in its section
+};
+
+/// Couplings(q, partner, strength) with an index by rows.
+struct CouplingSection {
+  CouplingsView view;
+  std::uint32_t column_group = 0;
+  std::uint32_t row_group = 0;
+  std::uint32_t column_level = 0;
+  std::uint32_t row_level = 0;
+  bool weak = false;
+  float factor = 0;                               ///< value of one quantum, times the widening of the stored values
+  const std::uint32_t* mirrored_begin = nullptr;  ///< [rows + 1] into mirrored
+  const BlockPlace* mirrored = nullptr;           ///< [blocks] by rows; target: the column
+
+  [[nodiscard]] std::uint32_t direct_length(std::uint32_t column) const {
+    return view.begin[column + 1] - view.begin[column];
+  }
+  [[nodiscard]] std::uint32_t mirrored_length(std::uint32_t row) const {
+    return mirrored_begin[row + 1] - mirrored_begin[row];
+  }
+};
+
+/// All sections that hold blocks, coarse to fine.
+struct Couplings {
+  static constexpr std::uint32_t most = 6 * layout::max_levels;
+  std::uint32_t count = 0;
+  CouplingSection section[most];
+};
+
+/// The sections of a model without their mirrored index. Start-up; linear in the levels.
+[[nodiscard]] Couplings list_couplings(const ModelView& view) noexcept;
+
+/// Carves the mirrored index of every section out of `arena` and fills it in, unless `arena` only counts. Start-up;
+/// linear in the blocks.
+void place_mirrored(Arena& arena, Couplings& couplings) noexcept;
+
+/// Longest column and longest row of a section. Start-up; a pass over its blocks for every 1,024 rows.
+struct LongestLists {
+  std::uint32_t direct = 0;
+  std::uint32_t mirrored = 0;
+};
+[[nodiscard]] LongestLists longest_lists(const CouplingSection& section) noexcept;
+
+/// rows += the blocks of a column times force. rows: [rows of the section]; force: scaled force times section.factor.
+/// For the loop; work: 9 units per block.
+void add_direct(const CouplingSection& section, std::uint32_t column, Float4 force, Float4* rows) noexcept;
+
+/// columns += the transposed blocks of a row times force; see add_direct.
+void add_mirrored(const CouplingSection& section, std::uint32_t row, Float4 force, Float4* columns) noexcept;
+
+/// Asks for the memory that add_direct or add_mirrored will soon read; changes no result. For the loop.
+void prefetch_direct(const CouplingSection& section, std::uint32_t column) noexcept;
+void prefetch_mirrored(const CouplingSection& section, std::uint32_t row) noexcept;
+
+/// add_direct for a 3x3 block of forces, into slots: sums[slot[row]] += M force, for the rows that have a slot (not
+/// layout::none); the other blocks are not read. chosen: scratch, [blocks of the column + 1]. For the loop; work: 9
+/// units per block, for slots and sums together.
+void add_direct(const CouplingSection& section, std::uint32_t column, const Block& force, const std::uint32_t* slot,
+                BlockPlace* chosen, Block* sums) noexcept;
+
+/// sums[slot[column]] += M^T force; see above.
+void add_mirrored(const CouplingSection& section, std::uint32_t row, const Block& force, const std::uint32_t* slot,
+                  BlockPlace* chosen, Block* sums) noexcept;
+
+}  // namespace greenloop
