@@ -96,7 +96,7 @@ std::vector<int> GreenStore::missing_columns() const {
 void GreenStore::write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement) {
   auto& hdf5 = file_->hdf5;
   if (!file_->writable) hdf5.fail(kDisplacement, "the store was opened read-only");
-  if (displacement.rows() != 3 * row_count() || displacement.cols() % 3 != 0) {
+  if (displacement.rows() != Eigen::Index{3} * row_count() || displacement.cols() % 3 != 0) {
     hdf5.fail(kDisplacement, "a block of " + std::to_string(displacement.rows()) + " x " +
                                  std::to_string(displacement.cols()) + " does not fit; 3 rows per row node (" +
                                  std::to_string(3 * row_count()) + ") and 3 columns per column node are wanted");

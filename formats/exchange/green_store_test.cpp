@@ -4,9 +4,9 @@
 #include <hdf5.h>
 #include <sys/wait.h>
 #include <unistd.h>
-#include <csignal>
 
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <limits>
 #include <stdexcept>

@@ -1,8 +1,10 @@
 #include "formats/exchange/hdf5_file.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <type_traits>
 
 namespace greenloop {
 namespace {
@@ -98,13 +100,14 @@ std::string Hdf5File::read_text(const std::string& object_name, const std::strin
   if (H5Tis_variable_str(type.get()) > 0) {
     char* text = nullptr;
     if (H5Aread(id.get(), type.get(), &text) < 0) fail(object_name, "the attribute '" + name + "' cannot be read");
-    const std::string value(text != nullptr ? text : "");
+    std::string value(text != nullptr ? text : "");
     H5free_memory(text);
     return value;
   }
   std::string value(H5Tget_size(type.get()), '\0');
   if (H5Aread(id.get(), type.get(), value.data()) < 0) fail(object_name, "the attribute '" + name + "' cannot be read");
-  return value.c_str();
+  value.resize(std::min(value.find('\0'), value.size()));
+  return value;
 }
 
 void Hdf5File::write_number(const std::string& object_name, const std::string& name, double value) {
@@ -208,12 +211,14 @@ void Hdf5File::flush() {
   if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0) fail("file", "cannot be flushed; is the disk full?");
 }
 
-#define GREENLOOP_INSTANTIATE(Number)                                                                                \
-  template void Hdf5File::reserve<Number>(const std::string&, const Hdf5Shape&);                                     \
-  template void Hdf5File::write<Number>(const std::string&, const Hdf5Shape&, const std::vector<Number>&);           \
-  template std::vector<Number> Hdf5File::read<Number>(const std::string&, Hdf5Shape&) const;                         \
-  template void Hdf5File::write_part<Number>(const std::string&, const Hdf5Shape&, const Hdf5Shape&, const Number*); \
-  template void Hdf5File::read_part<Number>(const std::string&, const Hdf5Shape&, const Hdf5Shape&, Number*) const;
+#define GREENLOOP_INSTANTIATE(Number)                                                                      \
+  template void Hdf5File::reserve<Number>(const std::string&, const Hdf5Shape&);                           \
+  template void Hdf5File::write<Number>(const std::string&, const Hdf5Shape&, const std::vector<Number>&); \
+  template std::vector<Number> Hdf5File::read<Number>(const std::string&, Hdf5Shape&) const;               \
+  template void Hdf5File::write_part<Number>(const std::string&, const Hdf5Shape&, const Hdf5Shape&,       \
+                                             std::add_pointer_t<const Number>);                            \
+  template void Hdf5File::read_part<Number>(const std::string&, const Hdf5Shape&, const Hdf5Shape&,        \
+                                            std::add_pointer_t<Number>) const;
 GREENLOOP_INSTANTIATE(double)
 GREENLOOP_INSTANTIATE(int)
 GREENLOOP_INSTANTIATE(unsigned char)

@@ -35,15 +35,32 @@ void scale(std::vector<Eigen::Vector3d>& positions, double factor) {
   }
 }
 
-TriangleMesh read_input(const Scene& scene, std::optional<TetrahedralMesh>& volume) {
-  if (!scene.mesh.tetrahedra) {
-    auto surface = read_surface(scene.mesh.path);
-    scale(surface.vertices, scene.mesh.scale(bounding_box(surface.vertices)));
-    return surface;
+/// Runs `work`; what it finds wrong with the scene's mesh is reported with the file's name.
+template <class Work>
+auto naming_the_file(const Scene& scene, const Work& work) {
+  try {
+    return work();
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(scene.mesh.path.string() + ": " + error.what());
   }
-  volume = read_volume(scene.mesh.path);
-  scale(volume->vertices, scene.mesh.scale(bounding_box(volume->vertices)));
-  return extract_boundary(*volume).surface;
+}
+
+/// The skin in metres, checked and repaired before it is scaled: defects are reported in the file's own coordinates.
+PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& volume) {
+  TriangleMesh surface;
+  if (scene.mesh.tetrahedra) {
+    volume = read_volume(scene.mesh.path);
+    surface = naming_the_file(scene, [&] { return extract_boundary(*volume).surface; });
+  } else {
+    surface = read_surface(scene.mesh.path);
+  }
+  const double unit = scene.mesh.scale(bounding_box(volume ? volume->vertices : surface.vertices));
+  auto prepared = naming_the_file(scene, [&] { return prepare_surface(surface); });
+  scale(prepared.mesh.vertices, unit);
+  if (volume) {
+    scale(volume->vertices, unit);
+  }
+  return prepared;
 }
 
 json quality_record(const RemeshQuality& quality) {
@@ -86,8 +103,11 @@ Volume attach(const Scene& scene, TetrahedralMesh tetrahedra, const SemiRegularM
   const auto box = bounding_box(tetrahedra.vertices);
   const auto fixed = evaluate(scene.fixed, tetrahedra.vertices, box);
   constexpr double tolerance = 1e-6;  // of the diagonal: remeshed nodes lie on the boundary up to round-off
-  auto interpolation = interpolate_on_boundary(surface.positions, tetrahedra, tolerance * box.diagonal().norm());
-  return {std::move(tetrahedra), {fixed.begin(), fixed.end()}, std::move(interpolation)};
+  Volume volume{{},
+                {fixed.begin(), fixed.end()},
+                interpolate_on_boundary(surface.positions, tetrahedra, tolerance * box.diagonal().norm())};
+  volume.mesh = std::move(tetrahedra);
+  return volume;
 }
 
 }  // namespace
@@ -97,8 +117,7 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
 
   progress.begin("surface");
   std::optional<TetrahedralMesh> tetrahedra;
-  const TriangleMesh input = read_input(scene, tetrahedra);
-  auto prepared = prepare_surface(input);
+  const auto prepared = read_input(scene, tetrahedra);
   body.record["surface"] = {{"file", scene.mesh.name},
                             {"vertices", prepared.report.vertex_count},
                             {"triangles", prepared.report.triangle_count},
@@ -111,8 +130,10 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   RemeshOptions options;
   options.base_vertices = scene.remesh.base_vertices;
   options.levels = scene.remesh.levels;
-  auto remeshed = remesh(prepared.mesh, options,
-                         [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
+  auto remeshed = naming_the_file(scene, [&] {
+    return remesh(prepared.mesh, options,
+                  [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
+  });
   body.record["remesh"] = quality_record(remeshed.quality);
   progress.end(
       fmt::format("{} vertices on {} levels over {}, smallest angle {:.1f} degrees, Hausdorff {:.2f} % of the diagonal",
@@ -151,8 +172,8 @@ Volume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress, nlo
                       {"slivers", filled.quality.slivers}};
   progress.end(fmt::format("{} tetrahedra, {} vertices inside, by {}", filled.mesh.tetrahedra.size(),
                            filled.quality.interior_nodes, filled.mesher));
-  auto selection = select_first_vertices(static_cast<int>(body.flags.size()), static_cast<int>(vertices));
-  return {std::move(filled.mesh), std::move(fixed), std::move(selection)};
+  return {std::move(filled.mesh), std::move(fixed),
+          select_first_vertices(static_cast<int>(body.flags.size()), static_cast<int>(vertices))};
 }
 
 }  // namespace greenloop::offline

@@ -33,7 +33,7 @@ struct BodyGeometry {
 };
 
 /// Reads, checks, scales and remeshes what the scene names, finds the scene's node sets and orders the nodes.
-/// Throws SceneError, SurfaceError or std::runtime_error that name what is wrong and how to mend it.
+/// Throws SceneError or std::runtime_error that name what is wrong and how to mend it.
 [[nodiscard]] BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress);
 
 /// Tetrahedra inside the surface, made by tetrahedralize; what came out is added to `record`.

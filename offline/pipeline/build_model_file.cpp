@@ -86,7 +86,7 @@ GreenStoreContents store_contents(const Scene& scene, const BodyGeometry& body, 
   }
   contents.volume = std::move(volume.mesh);
   contents.volume_fixed = std::move(volume.fixed);
-  contents.interpolation = std::move(volume.interpolation);
+  contents.interpolation.swap(volume.interpolation);
   contents.young = scene.material.young;
   contents.poisson = scene.material.poisson;
   contents.provenance = record.dump();
@@ -102,7 +102,8 @@ GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene,
     if (store.contents().fingerprint == columns) {
       return store;
     }
-    if (!request.overwrite_store) {
+    const bool empty = static_cast<int>(store.missing_columns().size()) == store.column_count();
+    if (!request.overwrite_store && !empty) {
       throw std::runtime_error(
           fmt::format("{}: holds the Green's functions of another scene, mesh or version; name another file with "
                       "--store, or pass --overwrite-store to replace it",

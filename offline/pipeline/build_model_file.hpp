@@ -12,7 +12,7 @@ struct BuildRequest {
   std::filesystem::path model;   ///< .gloop to write; its record goes beside it as .build.json
   std::filesystem::path store;   ///< exact Green's functions, HDF5; resumed if it is the scene's. Empty: as the scene
                                  ///< says, else beside the model
-  bool overwrite_store = false;  ///< replace a store that belongs to another scene
+  bool overwrite_store = false;  ///< replace a store of another scene that holds columns
   bool force = false;            ///< build even if the model is up to date
 };
 
@@ -21,7 +21,7 @@ struct BuildRequest {
 
 /// From a scene to a verified model file: surface, remesh, solve, compress, write. Columns already in the store are
 /// kept, a model that is up to date is left alone. Returns the build's record, which is also written to
-/// build_record_path. Throws SceneError, SurfaceError or std::runtime_error saying what to mend; what was computed
+/// build_record_path. Throws SceneError or std::runtime_error saying what to mend; what was computed
 /// until then stays in the store.
 nlohmann::json build_model_file(const BuildRequest& asked, ProgressBar& progress);
 

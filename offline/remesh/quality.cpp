@@ -12,33 +12,46 @@
 namespace greenloop::offline {
 namespace {
 
-double smallest_angle(const TriangleMesh& mesh) {
-  double least = std::numbers::pi;
+/// A greatest or smallest value, and where it is.
+struct Extreme {
+  double value;
+  Eigen::Vector3d place;
+};
+
+Extreme smallest_angle(const TriangleMesh& mesh) {
+  Extreme least{std::numbers::pi, Eigen::Vector3d::Zero()};
   for (const auto& corners : mesh.triangles) {
     for (int c = 0; c < 3; ++c) {
       const Eigen::Vector3d u = mesh.vertices[corners[(c + 1) % 3]] - mesh.vertices[corners[c]];
       const Eigen::Vector3d v = mesh.vertices[corners[(c + 2) % 3]] - mesh.vertices[corners[c]];
-      least = std::min(least, std::atan2(u.cross(v).norm(), u.dot(v)));
+      const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+      if (angle < least.value) least = {angle, mesh.vertices[corners[c]]};
     }
   }
-  return least * 180 / std::numbers::pi;
+  return {least.value * 180 / std::numbers::pi, least.place};
 }
 
-std::size_t flipped_triangles(const TriangleMesh& mesh, const Surface& input, const TriangleTree& input_tree) {
+std::size_t flipped_triangles(const TriangleMesh& mesh, const Surface& input, const TriangleTree& input_tree,
+                              Eigen::Vector3d& place) {
   std::vector<Eigen::Vector3d> normals;
   normals.reserve(mesh.vertices.size());
   for (const auto& v : mesh.vertices) normals.push_back(input.normal(input_tree.closest(v)));
   return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& t) {
     const auto& a = mesh.vertices[t[0]];
     const Eigen::Vector3d normal = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a);
-    return !(normal.dot(normals[t[0]] + normals[t[1]] + normals[t[2]]) > 0);
+    const bool flipped = !(normal.dot(normals[t[0]] + normals[t[1]] + normals[t[2]]) > 0);
+    if (flipped) place = a;
+    return flipped;
   }));
 }
 
 /// The greatest distance from samples of `from` to the surface of `to`, at least `known`.
-double one_sided_distance(const TriangleMesh& from, const TriangleTree& to, double spacing, double known) {
-  double greatest = known;
-  const auto sample = [&](const Eigen::Vector3d& p) { greatest = std::max(greatest, to.distance(p, greatest)); };
+Extreme one_sided_distance(const TriangleMesh& from, const TriangleTree& to, double spacing, const Extreme& known) {
+  Extreme greatest = known;
+  const auto sample = [&](const Eigen::Vector3d& p) {
+    const double distance = to.distance(p, greatest.value);
+    if (distance > greatest.value) greatest = {distance, p};
+  };
   for (const auto& vertex : from.vertices) sample(vertex);
   for (const auto& [ia, ib, ic] : from.triangles) {
     const auto &a = from.vertices[ia], &b = from.vertices[ib], &c = from.vertices[ic];
@@ -64,12 +77,21 @@ RemeshQuality measure_quality(const TriangleMesh& input, const SemiRegularMesh& 
   const double diagonal = box.diagonal().norm();
 
   RemeshQuality quality;
-  quality.smallest_angle_degrees = smallest_angle(finest);
-  quality.hausdorff = one_sided_distance(finest, input_tree, diagonal / 400, 0);
-  quality.hausdorff = one_sided_distance(input, finest_tree, diagonal / 400, quality.hausdorff);
+  const auto fraction = [&](const Eigen::Vector3d& place) -> Eigen::Vector3d {
+    return (place - box.min()).cwiseQuotient(box.sizes().cwiseMax(1e-300));
+  };
+  const auto angle = smallest_angle(finest);
+  quality.smallest_angle_degrees = angle.value;
+  quality.smallest_angle_at = fraction(angle.place);
+  const auto farthest = one_sided_distance(finest, input_tree, diagonal / 400, {0, box.min()});
+  const auto distance = one_sided_distance(input, finest_tree, diagonal / 400, farthest);
+  quality.hausdorff = distance.value;
+  quality.hausdorff_at = fraction(distance.place);
   quality.hausdorff_relative = quality.hausdorff / diagonal;
   quality.triangles = finest.triangles.size();
-  quality.flipped = flipped_triangles(finest, surface, input_tree);
+  Eigen::Vector3d flipped_place = box.min();
+  quality.flipped = flipped_triangles(finest, surface, input_tree, flipped_place);
+  quality.flipped_at = fraction(flipped_place);
   quality.self_intersections = self_intersections(finest, std::vector<bool>(finest.triangles.size(), false)).size();
   quality.base_vertices = static_cast<int>(mesh.vertex_end.front());
   quality.levels = mesh.finest_level();

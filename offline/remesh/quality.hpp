@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 
 #include "formats/exchange/semi_regular_mesh.hpp"
@@ -18,6 +19,11 @@ struct RemeshQuality {
   bool kept_connectivity = false;      ///< the input already had subdivision connectivity and was kept
   int base_vertices = 0;
   int levels = 0;
+  /// Where the smallest angle, the Hausdorff distance and the last flipped triangle are, as fractions of the input's
+  /// bounding box.
+  Eigen::Vector3d smallest_angle_at = Eigen::Vector3d::Zero();
+  Eigen::Vector3d hausdorff_at = Eigen::Vector3d::Zero();
+  Eigen::Vector3d flipped_at = Eigen::Vector3d::Zero();
 };
 
 /// Measures `mesh` against `input` (kept_connectivity is left false). The Hausdorff distance is sampled from both

@@ -46,10 +46,11 @@ std::vector<Patch> hat_patches(const SemiRegularMesh& mesh, int level, const std
         for (const auto& [vertex, weight] : rows[parent]) {
           const auto same =
               std::find_if(row.begin(), row.end(), [v = vertex](const Weighted& w) { return w.vertex == v; });
-          if (same == row.end())
+          if (same == row.end()) {
             row.push_back({vertex, weight / 2});
-          else
+          } else {
             same->weight += weight / 2;
+          }
         }
       }
     }

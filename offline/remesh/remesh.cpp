@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -59,19 +60,65 @@ struct Normalization {
   }
 };
 
-std::string described(const RemeshQuality& quality) {
-  char text[256];
+std::string place(const Eigen::Vector3d& p) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.3g, %.3g, %.3g)", p.x(), p.y(), p.z());
+  return text;
+}
+
+std::string failure(const RemeshQuality& reached, const RemeshOptions& options) {
+  char text[768];
   std::snprintf(text, sizeof text,
-                "with %d base vertices and %d levels: smallest angle %.3g degrees, Hausdorff distance %.3g %% of the "
-                "diagonal, %zu flipped triangles, %zu self-intersections",
-                quality.base_vertices, quality.levels, quality.smallest_angle_degrees, 100 * quality.hausdorff_relative,
-                quality.flipped, quality.self_intersections);
+                "remesh: %d levels over a base of %d to %d vertices do not resolve this shape. Last reached: smallest "
+                "angle %.3g degrees at %s, Hausdorff distance %.3g %% of the diagonal at %s, %zu flipped triangles%s, "
+                "%zu self-intersections; wanted: at least %.3g degrees, at most %.3g %%, none and none (places are "
+                "fractions of the bounding box). Raise remesh.levels (now %d) or remesh.base_vertices (now %d); if "
+                "there are needles or features thinner than a finest triangle, remesh the input evenly or thicken it",
+                options.levels, options.base_vertices, reached.base_vertices, reached.smallest_angle_degrees,
+                place(reached.smallest_angle_at).c_str(), 100 * reached.hausdorff_relative,
+                place(reached.hausdorff_at).c_str(), reached.flipped,
+                reached.flipped > 0 ? (" around " + place(reached.flipped_at)).c_str() : "", reached.self_intersections,
+                options.smallest_angle, 100 * accuracy_of(options), options.levels, options.base_vertices);
   return text;
 }
 
 bool acceptable(const RemeshQuality& quality, const RemeshOptions& options) {
   return quality.flipped == 0 && quality.self_intersections == 0 &&
          quality.smallest_angle_degrees >= options.smallest_angle && quality.hausdorff_relative <= accuracy_of(options);
+}
+
+/// `mesh` as a base and `levels` splits of it, in the triangles' own planes.
+SemiRegularMesh split(const TriangleMesh& mesh, int levels) {
+  auto result = refine_midpoints(mesh.triangles, static_cast<int>(mesh.vertices.size()), levels).mesh;
+  std::copy(mesh.vertices.begin(), mesh.vertices.end(), result.positions.begin());
+  for (std::size_t v = mesh.vertices.size(); v < result.positions.size(); ++v) {
+    const auto& [a, b] = result.parents[v];
+    result.positions[v] = (result.positions[a] + result.positions[b]) / 2;
+  }
+  return result;
+}
+
+/// The number of vertices after one split of a closed surface.
+std::size_t vertices_after_split(const TriangleMesh& mesh) {
+  return mesh.vertices.size() + 3 * mesh.triangles.size() / 2;
+}
+
+TriangleMesh split_once(const TriangleMesh& mesh) {
+  auto finer = split(mesh, 1);
+  auto triangles = triangles_of_level(finer, 1);
+  return {std::move(finer.positions), std::move(triangles)};
+}
+
+/// The input's own triangles, split as often as a base of `base_vertices` allows, as the base.
+SemiRegularMesh exact(TriangleMesh input, int base_vertices, int levels) {
+  while (vertices_after_split(input) <= static_cast<std::size_t>(base_vertices)) input = split_once(input);
+  return split(input, levels);
+}
+
+/// The input in triangles small enough to be decimated to `base_vertices`.
+TriangleMesh with_enough_vertices(TriangleMesh input, int base_vertices) {
+  while (input.vertices.size() < 2 * static_cast<std::size_t>(base_vertices)) input = split_once(input);
+  return input;
 }
 
 /// One attempt; `surface` holds the input in normalised coordinates.
@@ -109,16 +156,33 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const R
       return kept;
     }
   }
-  const Surface surface(Normalization(input).apply(input));
-  const int most = std::max(options.most_base_vertices, options.base_vertices);
+  const Normalization normalization(input);
+  std::optional<Surface> surface;
+  TriangleMesh fine;
+  const int most = options.most_base_vertices.value_or(static_cast<int>(kGrowth.back()) * options.base_vertices);
   double done = 0;
-  std::string reached;
+  bool tried_exact = false;
+  RemeshQuality reached;
   for (const double growth : kGrowth) {
     const int base_vertices = static_cast<int>(std::lround(growth * options.base_vertices));
-    if (base_vertices > most) break;
+    if (base_vertices > std::max(most, options.base_vertices)) break;
+    if (!tried_exact && input.vertices.size() <= static_cast<std::size_t>(base_vertices)) {
+      Remeshed result{exact(input, base_vertices, options.levels), {}};
+      result.quality = measure_quality(input, result.mesh);
+      result.quality.flipped = 0;  // no triangle leaves the input's own; smooth normals mislead on so few
+      if (acceptable(result.quality, options)) {
+        report(1, "split the surface's own triangles");
+        return result;
+      }
+      tried_exact = true;
+    }
+    if (!surface || fine.vertices.size() < 2 * static_cast<std::size_t>(base_vertices)) {
+      fine = with_enough_vertices(input, base_vertices);
+      surface.emplace(normalization.apply(fine));
+    }
     const double share = (1 - done) / 2;  // how many attempts there will be is not known
     Remeshed result;
-    result.mesh = attempt(input, surface, base_vertices, options.levels, [&](double fraction) {
+    result.mesh = attempt(fine, *surface, base_vertices, options.levels, [&](double fraction) {
       report(done + share * fraction, "sliding " + std::to_string(base_vertices) + " base vertices and their splits");
     });
     done += share;
@@ -128,12 +192,9 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const R
       report(1, "remeshed");
       return result;
     }
-    reached = described(result.quality);
+    reached = result.quality;
   }
-  throw std::runtime_error("remesh: the shape needs more: " + reached + "; raise most_base_vertices (now " +
-                           std::to_string(most) + "), add a level (now " + std::to_string(options.levels) +
-                           ") or allow more than " + std::to_string(accuracy_of(options)) +
-                           " of the diagonal or less than " + std::to_string(options.smallest_angle) + " degrees");
+  throw std::runtime_error(failure(reached, options));
 }
 
 }  // namespace greenloop::offline

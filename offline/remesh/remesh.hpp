@@ -12,9 +12,10 @@ namespace greenloop::offline {
 
 /// What to make of a surface.
 struct RemeshOptions {
-  int base_vertices = 42;        ///< of the first attempt; at least 4
-  int most_base_vertices = 336;  ///< how far an attempt that fails `accuracy` or `smallest_angle` may grow the base
-  int levels = 3;                ///< midpoint splits of the base, 0 to 7
+  int base_vertices = 42;  ///< of the first attempt; at least 4
+  /// How far an attempt that fails `accuracy` or `smallest_angle` may grow the base; if not set, eightfold.
+  std::optional<int> most_base_vertices;
+  int levels = 3;  ///< midpoint splits of the base, 0 to 7
   /// Greatest Hausdorff distance, as a share of the bounding box's diagonal; if not set, 2 % at three levels, halved
   /// with each further one.
   std::optional<double> accuracy;
@@ -35,11 +36,12 @@ using RemeshProgress = std::function<void(double fraction, std::string_view stag
 /// If it has such connectivity already, its vertices are kept exactly, with as many levels as it has, options.levels at
 /// most (quality.levels says how many). Otherwise it is decimated to a base whose bijection with the input is kept
 /// (see decimate), the base is split at midpoints, and the vertices slide along the input until the triangles are
-/// even (see relax): every vertex lies on the input. A base too small for the shape is grown step by step until
-/// accuracy and smallest angle hold and nothing is flipped or self-intersecting.
-/// The same input and options give the same bits. Needs memory and time linear in input plus result.
-/// Throws std::invalid_argument on impossible options or an input that is not closed and manifold, and
-/// std::runtime_error, naming what was reached and what to change, if no base of at most most_base_vertices will do.
+/// even (see relax): every vertex lies on the input. An input with no more vertices than the base may have is itself
+/// the base, or its splits that are no larger, and is reproduced exactly. A base too small for the shape is grown step
+/// by step until accuracy and smallest angle hold and nothing is flipped or self-intersecting. The same input and
+/// options give the same bits. Needs memory and time linear in input plus result. Throws std::invalid_argument on
+/// impossible options or an input that is not closed and manifold, and std::runtime_error, naming what was reached and
+/// what to change, if no base of at most most_base_vertices will do.
 [[nodiscard]] Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options,
                               const RemeshProgress& progress = {});
 

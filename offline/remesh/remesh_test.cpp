@@ -88,13 +88,29 @@ TEST_CASE("a surface that has subdivision connectivity keeps its vertices") {
   CHECK(sorted(kept.mesh.positions) == sorted(input.vertices));  // kept to the bit, in another order
 }
 
+TEST_CASE("a surface of few triangles is split as it is, corners and edges included") {
+  const auto input = fetched("meshes/tetrahedron.off");
+  const auto remeshed = remesh(input, {});
+  check_sound(remeshed, 3, 0);
+  CHECK(remeshed.quality.base_vertices == 34);  // split twice: another split would exceed 42
+  CHECK(remeshed.quality.hausdorff_relative < 1e-12);
+}
+
+TEST_CASE("a coarse surface of genus 3 with sharp edges is split as it is") {
+  const auto remeshed = remesh(fetched("meshes/3torus.off"), {});
+  check_sound(remeshed, 3, 3);
+  CHECK(remeshed.quality.base_vertices == 19);
+}
+
+TEST_CASE("a genus-3 surface gets the base it needs") { check_remeshed("meshes/elephant.off", 3, 3, 150, 0.02); }
+
 TEST_CASE("what cannot be met is refused with what was reached") {
   RemeshOptions options;
   options.levels = 0;
   options.base_vertices = 8;
   options.most_base_vertices = 8;
   options.accuracy = 1e-4;
-  CHECK_THROWS_WITH_AS(remesh(fetched("meshes/cactus.off"), options), doctest::Contains("raise most_base_vertices"),
+  CHECK_THROWS_WITH_AS(remesh(fetched("meshes/cactus.off"), options), doctest::Contains("Raise remesh.levels (now 0)"),
                        std::runtime_error);
   options.base_vertices = 3;
   CHECK_THROWS_AS(remesh(fetched("meshes/cactus.off"), options), std::invalid_argument);

@@ -127,12 +127,13 @@ SurfacePoint Surface::walk(const SurfacePoint& start, const Eigen::Vector3d& dis
     const auto& next_corners = mesh_.triangles[next];
     SurfacePoint beyond{next, Eigen::Vector3d::Zero()};
     for (int c = 0; c < 3; ++c) {
-      if (next_corners[c] == from)
+      if (next_corners[c] == from) {
         beyond.weights[c] = here.weights[edge];
-      else if (next_corners[c] == to)
+      } else if (next_corners[c] == to) {
         beyond.weights[c] = here.weights[(edge + 1) % 3];
-      else
+      } else {
         entered = c;
+      }
     }
     const Eigen::Vector3d along = (mesh_.vertices[to] - mesh_.vertices[from]).stableNormalized();
     const Eigen::Vector3d inward = along.cross(triangle_normals_[next]).stableNormalized();

@@ -39,7 +39,7 @@ int nonempty_columns(const Eigen::SparseMatrix<double>& matrix) {
   return count;
 }
 
-constexpr const char* kRemedy = "; use fewer levels or fewer base vertices in the surface, or a finer tetrahedral mesh";
+constexpr const char* kRemedy = "; use fewer levels (remesh.levels) or a finer tetrahedral mesh";
 
 }  // namespace
 

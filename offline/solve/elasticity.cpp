@@ -63,8 +63,8 @@ Eigen::Matrix<double, 12, 12> element_stiffness(const Eigen::Matrix<double, 3, 4
   gradient.col(0) = -gradient.rightCols<3>().rowwise().sum();
 
   Eigen::Matrix<double, 12, 12> stiffness;
-  for (int a = 0; a < 4; ++a) {
-    for (int b = 0; b < 4; ++b) {
+  for (Eigen::Index a = 0; a < 4; ++a) {
+    for (Eigen::Index b = 0; b < 4; ++b) {
       const Eigen::Vector3d ga = gradient.col(a), gb = gradient.col(b);
       stiffness.block<3, 3>(3 * a, 3 * b) =
           volume * (lame.lambda * ga * gb.transpose() + lame.mu * gb * ga.transpose() +
@@ -99,7 +99,8 @@ Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, cons
     }
     scatter(element_stiffness(corners, material), mesh.tetrahedra[t], free, entries);
   }
-  Eigen::SparseMatrix<double> stiffness(3 * free.count, 3 * free.count);
+  const Eigen::Index unknowns = Eigen::Index{3} * free.count;
+  Eigen::SparseMatrix<double> stiffness(unknowns, unknowns);
   stiffness.setFromTriplets(entries.begin(), entries.end());
   return stiffness;
 }

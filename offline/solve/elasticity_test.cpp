@@ -76,11 +76,11 @@ TEST_CASE("patch test: fixed values of a linear field on the boundary give that 
     if (fixed[v] == 0) boundary_values.segment<3>(3 * static_cast<Eigen::Index>(v)).setZero();
   }
   const VectorXd pull = full_stiffness(mesh, {2.0, 0.4}) * boundary_values;
-  VectorXd force(3 * free.count), expected(3 * free.count);
+  VectorXd force(Eigen::Index{3} * free.count), expected(force.size());
   for (std::size_t v = 0; v < fixed.size(); ++v) {
     if (free.number[v] < 0) continue;
-    force.segment<3>(3 * free.number[v]) = -pull.segment<3>(3 * static_cast<Eigen::Index>(v));
-    expected.segment<3>(3 * free.number[v]) = exact.segment<3>(3 * static_cast<Eigen::Index>(v));
+    force.segment<3>(Eigen::Index{3} * free.number[v]) = -pull.segment<3>(3 * static_cast<Eigen::Index>(v));
+    expected.segment<3>(Eigen::Index{3} * free.number[v]) = exact.segment<3>(3 * static_cast<Eigen::Index>(v));
   }
   const VectorXd inside = solve_one(assemble_stiffness(mesh, {2.0, 0.4}, free), force);
   CHECK((inside - expected).norm() < 1e-13 * expected.norm());
@@ -99,7 +99,7 @@ TEST_CASE("an element has exactly six modes without energy, and a body's rigid m
   const auto stiffness = full_stiffness(mesh, {1.0, 0.3});
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d e = Vector3d::Unit(axis);
-    CHECK((stiffness * sample(mesh, [&](const Vector3d&) { return e; })).norm() < 1e-13);
+    CHECK((stiffness * sample(mesh, [&](const Vector3d&) -> const Vector3d& { return e; })).norm() < 1e-13);
     CHECK((stiffness * sample(mesh, [&](const Vector3d& x) { return Vector3d(e.cross(x)); })).norm() < 1e-13);
   }
 }
@@ -119,11 +119,11 @@ double lame_inner_displacement(int levels, int layers, double poisson) {
     const auto& x = boundary.surface.vertices;
     if (x[t[0]].norm() > 1.5) continue;
     const Vector3d third = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]) / -6.0;
-    for (const int v : t) force.segment<3>(3 * boundary.volume_vertex[v]) += third;
+    for (const int v : t) force.segment<3>(Eigen::Index{3} * boundary.volume_vertex[v]) += third;
   }
   const VectorXd displacement = solve_one(stiffness, force);
   double mean = 0.0;
-  for (int v = 0; v < inner; ++v) mean += displacement.segment<3>(3 * v).dot(mesh.vertices[v]) / inner;
+  for (Eigen::Index v = 0; v < inner; ++v) mean += displacement.segment<3>(3 * v).dot(mesh.vertices[v]) / inner;
   return mean;
 }
 
@@ -149,7 +149,7 @@ double cantilever_deflection(int cells_across) {
   std::vector<std::uint8_t> fixed;
   for (const auto& x : mesh.vertices) fixed.push_back(x.x() == 0.0 ? 1 : 0);
   const FreeVertices free(fixed);
-  VectorXd force = VectorXd::Zero(3 * free.count);
+  VectorXd force = VectorXd::Zero(Eigen::Index{3} * free.count);
   for (const auto& t : boundary_triangles(mesh)) {
     const Vector3d a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
     if (std::min({a.x(), b.x(), c.x()}) < 10.0) continue;

@@ -59,7 +59,8 @@ class Compliance {
   /// 3R x 3 count, m/N.
   Eigen::MatrixXd columns(const ColumnRange& range) {
     factors_.solve(unit_forces(range), volume_displacement_);
-    Eigen::MatrixXd displacement(3 * static_cast<Eigen::Index>(contents_.row_node.size()), 3 * range.count);
+    Eigen::MatrixXd displacement(3 * static_cast<Eigen::Index>(contents_.row_node.size()),
+                                 Eigen::Index{3} * range.count);
     for (Eigen::Index c = 0; c < displacement.cols(); ++c) gather(c, displacement);
     return displacement;
   }
@@ -77,7 +78,7 @@ class Compliance {
         for (int axis = 0; axis < 3; ++axis) entries.emplace_back(3 * number + axis, 3 * c + axis, it.value());
       }
     }
-    Eigen::SparseMatrix<double> forces(3 * free_.count, 3 * range.count);
+    Eigen::SparseMatrix<double> forces(Eigen::Index{3} * free_.count, Eigen::Index{3} * range.count);
     forces.setFromTriplets(entries.begin(), entries.end());
     return forces;
   }
@@ -86,7 +87,7 @@ class Compliance {
     for (std::size_t r = 0; r < contents_.row_node.size(); ++r) {
       Eigen::Vector3d sum = Eigen::Vector3d::Zero();
       for (Interpolation::InnerIterator it(contents_.interpolation, contents_.row_node[r]); it; ++it) {
-        const int number = free_.number[it.col()];
+        const Eigen::Index number = free_.number[it.col()];
         if (number >= 0) sum += it.value() * volume_displacement_.col(column).segment<3>(3 * number);
       }
       displacement.col(column).segment<3>(3 * static_cast<Eigen::Index>(r)) = sum;
@@ -154,7 +155,8 @@ class Tile {
         block_(store.read_block(first_row_, (rows_end - 1)->row - first_row_ + 1, first_column_,
                                 (columns_end - 1)->column - first_column_ + 1)) {}
   [[nodiscard]] Eigen::Matrix3d at(const SharedNode& row, const SharedNode& column) const {
-    return block_.block<3, 3>(3 * (row.row - first_row_), 3 * (column.column - first_column_));
+    return block_.block<3, 3>(Eigen::Index{3} * (row.row - first_row_),
+                              Eigen::Index{3} * (column.column - first_column_));
   }
 
  private:

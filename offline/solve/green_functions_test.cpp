@@ -61,11 +61,11 @@ MatrixXd dense_compliance(const GreenStoreContents& contents) {
   const auto lower = assemble_stiffness(contents.volume, {contents.young, contents.poisson}, free);
   const MatrixXd stiffness = MatrixXd(lower).selfadjointView<Eigen::Lower>();
   const auto interpolate = [&](const std::vector<int>& nodes) {
-    MatrixXd weights = MatrixXd::Zero(3 * static_cast<Eigen::Index>(nodes.size()), 3 * free.count);
+    MatrixXd weights = MatrixXd::Zero(3 * static_cast<Eigen::Index>(nodes.size()), Eigen::Index{3} * free.count);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       for (Interpolation::InnerIterator it(contents.interpolation, nodes[k]); it; ++it) {
         if (free.number[it.col()] < 0) continue;
-        weights.block<3, 3>(3 * static_cast<Eigen::Index>(k), 3 * free.number[it.col()]) =
+        weights.block<3, 3>(3 * static_cast<Eigen::Index>(k), Eigen::Index{3} * free.number[it.col()]) =
             it.value() * Eigen::Matrix3d::Identity();
       }
     }

@@ -1,12 +1,12 @@
 #include "rt_tests/stress/stress_run.hpp"
 
 #include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -79,6 +79,9 @@ class StressRun {
   }
 
   StressResult run() {
+    {
+      const std::lock_guard lock(mutex_);  // so that the guard has looked up the real function, which may allocate
+    }
     const bool watches_system_calls = system_call_guard::install();
     const std::uint64_t allocations = allocation_guard::count();
     const std::uint64_t locks = mutex_guard::count();

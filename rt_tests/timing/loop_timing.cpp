@@ -1,9 +1,8 @@
 // Times the kernels of the loop: medians of thread CPU time over many repetitions.
 //   loop_timing [MODEL.gloop]      without a model: a synthetic sphere
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <random>
 #include <vector>
 

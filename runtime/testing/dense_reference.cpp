@@ -25,9 +25,10 @@ void scatter(const ModelView& view, std::uint32_t c, std::uint32_t column, Eigen
   for (std::uint32_t r = 0; r < view.levels; ++r) {
     const BlocksView& blocks = view.blocks[c][r];
     for (std::uint32_t b = blocks.begin[column]; b < blocks.begin[column + 1]; ++b) {
-      const std::uint32_t node = view.level[r].node_begin + row_of(blocks, column, b);
+      const Eigen::Index node = view.level[r].node_begin + row_of(blocks, column, b);
       for (std::uint32_t k = 0; k < 9; ++k) {
-        x(3 * node + k % 3, 3 * column + k / 3) = blocks.scale[column] * value_of(blocks, std::size_t{9} * b + k);
+        x(3 * node + k % 3, Eigen::Index{3} * column + k / 3) =
+            blocks.scale[column] * value_of(blocks, std::size_t{9} * b + k);
       }
     }
   }
@@ -36,14 +37,14 @@ void scatter(const ModelView& view, std::uint32_t c, std::uint32_t column, Eigen
 void invert_level(const LevelView& level, Eigen::MatrixXd& x) {
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     for (std::uint32_t side = 0; side < 2; ++side) {
-      x.middleRows<3>(3 * level.refinement[i].parent[side]) -=
-          double{level.refinement[i].lift[side]} * x.middleRows<3>(3 * (level.node_begin + i));
+      x.middleRows<3>(Eigen::Index{3} * level.refinement[i].parent[side]) -=
+          double{level.refinement[i].lift[side]} * x.middleRows<3>(Eigen::Index{3} * (level.node_begin + i));
     }
   }
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     const std::uint32_t* parent = level.refinement[i].parent;
-    x.middleRows<3>(3 * (level.node_begin + i)) +=
-        0.5 * (x.middleRows<3>(3 * parent[0]) + x.middleRows<3>(3 * parent[1]));
+    x.middleRows<3>(Eigen::Index{3} * (level.node_begin + i)) +=
+        0.5 * (x.middleRows<3>(Eigen::Index{3} * parent[0]) + x.middleRows<3>(Eigen::Index{3} * parent[1]));
   }
 }
 
@@ -59,7 +60,7 @@ std::uint32_t representative(const ModelView& view, std::uint32_t c, std::uint32
 
 Eigen::MatrixXd decode_columns(const ModelView& view, std::uint32_t c) {
   const std::uint32_t columns = view.level[c].counts->column_count;
-  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(3 * view.node_count, 3 * columns);
+  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(Eigen::Index{3} * view.node_count, Eigen::Index{3} * columns);
   for (std::uint32_t j = 0; j < columns; ++j) {
     scatter(view, c, j, x);
   }
@@ -81,7 +82,7 @@ DenseAnswer solve_dense(const ModelView& view, std::uint32_t c, const Eigen::Mat
   Eigen::VectorXd prescribed = Eigen::VectorXd::Zero(3 * n);
   Eigen::Index j = 0;
   for (const auto& [column, of_column] : members) {
-    used.middleCols<3>(3 * j) = columns.middleCols<3>(3 * column);
+    used.middleCols<3>(3 * j) = columns.middleCols<3>(Eigen::Index{3} * column);
     for (const std::size_t i : of_column) {
       for (Eigen::Index r = 0; r < 3; ++r) {
         prescribed(3 * j + r) += double{contacts[i].displacement[r]} / static_cast<double>(of_column.size());
@@ -91,7 +92,7 @@ DenseAnswer solve_dense(const ModelView& view, std::uint32_t c, const Eigen::Mat
   }
   Eigen::Index i = 0;
   for (const auto& [column, of_column] : members) {
-    capacitance.middleRows<3>(3 * i++) = used.middleRows<3>(3 * view.level[c].columns[column].node);
+    capacitance.middleRows<3>(3 * i++) = used.middleRows<3>(Eigen::Index{3} * view.level[c].columns[column].node);
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(capacitance);
   const Eigen::VectorXd force = capacitance.fullPivLu().solve(prescribed);

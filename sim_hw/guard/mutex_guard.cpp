@@ -30,18 +30,18 @@ std::uint64_t count() noexcept { return events; }
 
 using greenloop::mutex_guard::counted;
 
-#define GREENLOOP_COUNTED(name, Lock)                                    \
-  __attribute__((visibility("default"))) int name(Lock* lock) noexcept { \
-    static int (*original)(Lock*) = nullptr;                             \
-    return counted(original, #name)(lock);                               \
+#define GREENLOOP_COUNTED(name, Lock)                                   \
+  __attribute__((visibility("default"))) int name(Lock lock) noexcept { \
+    static int (*original)(Lock) = nullptr;                             \
+    return counted(original, #name)(lock);                              \
   }
 
 extern "C" {
-GREENLOOP_COUNTED(pthread_mutex_lock, pthread_mutex_t)
-GREENLOOP_COUNTED(pthread_mutex_trylock, pthread_mutex_t)
-GREENLOOP_COUNTED(pthread_rwlock_rdlock, pthread_rwlock_t)
-GREENLOOP_COUNTED(pthread_rwlock_wrlock, pthread_rwlock_t)
-GREENLOOP_COUNTED(pthread_spin_lock, pthread_spinlock_t)
+GREENLOOP_COUNTED(pthread_mutex_lock, pthread_mutex_t*)
+GREENLOOP_COUNTED(pthread_mutex_trylock, pthread_mutex_t*)
+GREENLOOP_COUNTED(pthread_rwlock_rdlock, pthread_rwlock_t*)
+GREENLOOP_COUNTED(pthread_rwlock_wrlock, pthread_rwlock_t*)
+GREENLOOP_COUNTED(pthread_spin_lock, pthread_spinlock_t*)
 
 __attribute__((visibility("default"))) int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* lock) {
   static int (*original)(pthread_cond_t*, pthread_mutex_t*) = nullptr;
