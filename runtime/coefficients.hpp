@@ -21,9 +21,7 @@ struct CoefficientGroup {
 struct Coefficients {
   static constexpr std::uint32_t groups = 2 * layout::max_levels;
   static constexpr std::uint32_t details(std::uint32_t level) { return level; }
-  static constexpr std::uint32_t averages(std::uint32_t level) {
-    return level == 0 ? 0 : layout::max_levels + level;
-  }
+  static constexpr std::uint32_t averages(std::uint32_t level) { return level == 0 ? 0 : layout::max_levels + level; }
   /// Averages of level 1 and above are partners only: the identity is not part of their row.
   static constexpr bool has_diagonal(std::uint32_t group) { return group < layout::max_levels; }
 

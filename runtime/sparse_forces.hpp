@@ -33,12 +33,12 @@ void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* l
 /// Which coefficients the forces on some nodes of K(c) reach.
 struct Touched {
   std::uint32_t constraint_level = 0;
-  std::uint64_t visits = 0;                             ///< steps of the transform
-  std::uint32_t count[Coefficients::groups] = {};       ///< coefficients of each group
-  std::uint32_t* list[Coefficients::groups] = {};       ///< those coefficients
-  std::uint32_t forced[layout::max_levels] = {};        ///< nodes of M(l) with a force of level l, first in the list
+  std::uint64_t visits = 0;                        ///< steps of the transform
+  std::uint32_t count[Coefficients::groups] = {};  ///< coefficients of each group
+  std::uint32_t* list[Coefficients::groups] = {};  ///< those coefficients
+  std::uint32_t forced[layout::max_levels] = {};   ///< nodes of M(l) with a force of level l, first in the list
   std::uint32_t even[layout::max_levels][layout::max_levels] = {};  ///< [l][q] nodes of M(q) with a force of level l-1
-  bool* mark = nullptr;                                 ///< [domain], false between uses
+  bool* mark = nullptr;                                             ///< [domain], false between uses
 
   /// Arrays out of `arena`; null while it counts.
   void carve(Arena& arena, const Coefficients& coefficients) noexcept;
