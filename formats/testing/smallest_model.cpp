@@ -24,8 +24,9 @@ ModelData smallest_model() {
                  {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
   level.representatives = {{0, layout::none, layout::none}};
   level.averages = {{{root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance}}};
-  level.couplings[static_cast<std::size_t>(layout::Partner::same)][static_cast<std::size_t>(layout::Strength::strong)] =
-      {.value_bits = 16, .begin = {0, 0}};
+  CouplingsData& couplings = level.couplings[static_cast<std::size_t>(layout::Partner::same)][0];
+  couplings.value_bits = 16;
+  couplings.begin = {0, 0};
   model.levels = {level};
   return model;
 }
