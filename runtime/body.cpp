@@ -77,46 +77,38 @@ float largest_force_sum(const ModelView& view, const Body& body) {
   return static_cast<float>(FLT_MAX / 4.0 / per_newton);
 }
 
-}  // namespace
-
-Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept {
-  auto* memory = arena.take<Body>(1);
-  if (memory != nullptr) {
-    new (memory) Body;
-  }
-  Body counting;
-  Body& body = memory != nullptr ? *memory : counting;
-  body.view = &view;
-  body.counts = sizes.counts;
-  body.coefficients = sizes.coefficients;
-  body.couplings = sizes.couplings;
+// what is written once, at the start
+struct Tables {
   std::uint32_t* begin[layout::max_levels] = {};
   OddNeighbours* neighbours[layout::max_levels] = {};
   ColumnCost* cost[layout::max_levels] = {};
+  DomainParents* parents = nullptr;
+  std::uint8_t* mesh_level = nullptr;
+};
+
+void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
-      begin[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
-      neighbours[q] = arena.take<OddNeighbours>(sizes.lifting_records[q]);
+      tables.begin[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
+      tables.neighbours[q] = arena.take<OddNeighbours>(sizes.lifting_records[q]);
     }
     if (q >= view.info->coarsest_constraint_level) {
-      cost[q] = arena.take<ColumnCost>(domain_up_to(view, q));
+      tables.cost[q] = arena.take<ColumnCost>(domain_up_to(view, q));
     }
-    body.lifting.begin[q] = begin[q];
-    body.lifting.neighbours[q] = neighbours[q];
-    body.cost[q] = cost[q];
   }
-  auto* parents = arena.take<DomainParents>(view.domain_count);
-  auto* mesh_level = arena.take<std::uint8_t>(view.domain_count);
-  body.refinement = {&view, &body.lifting, parents, mesh_level};
-  place_mirrored(arena, body.couplings);
-  body.facts = arena.take<NodeFacts>(view.node_count);
-  body.set.column = arena.take<std::uint32_t>(sizes.counts.max_contacts);
-  body.set.sorting = arena.take<std::uint32_t>(sizes.counts.max_contacts);
-  body.set.members = arena.take<std::uint32_t>(sizes.counts.max_contacts);
-  body.set.place = arena.take<std::uint32_t>(sizes.counts.max_contacts);
-  body.set.place_of_column = arena.take<std::uint32_t>(view.domain_count);
-  body.touched.carve(arena, sizes.coefficients);
-  CapacitanceScratch& scratch = body.capacitance;
+  tables.parents = arena.take<DomainParents>(view.domain_count);
+  tables.mesh_level = arena.take<std::uint8_t>(view.domain_count);
+}
+
+void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, ContactSet& set) {
+  set.column = arena.take<std::uint32_t>(contacts);
+  set.sorting = arena.take<std::uint32_t>(contacts);
+  set.members = arena.take<std::uint32_t>(contacts);
+  set.place = arena.take<std::uint32_t>(contacts);
+  set.place_of_column = arena.take<std::uint32_t>(view.domain_count);
+}
+
+void carve_capacitance(Arena& arena, const BodySizes& sizes, CapacitanceScratch& scratch) {
   scratch.touched.carve(arena, sizes.coefficients);
   scratch.coefficients = arena.take<PointCoefficient>(sizes.set_columns * sizes.functional);
   scratch.functional = arena.take<PointFunctional>(sizes.set_columns);
@@ -125,31 +117,64 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   scratch.root = arena.take<Block>(sizes.coefficients.count);
   scratch.sum = arena.take<Block>(sizes.coefficients.count);
   scratch.chosen = arena.take<BlockPlace>(sizes.longest_list + std::uint64_t{1});
+}
+
+void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
+  carve_tables(arena, view, sizes, tables);
+  body.couplings = sizes.couplings;
+  place_mirrored(arena, body.couplings);
+  body.facts = arena.take<NodeFacts>(view.node_count);
+  carve_set(arena, view, sizes.counts.max_contacts, body.set);
+  body.touched.carve(arena, sizes.coefficients);
+  carve_capacitance(arena, sizes, body.capacitance);
   body.column_force = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(sizes.coefficients.count);
   body.sum = arena.take_zeroed<Float4>(sizes.coefficients.count);
   body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
-  if (memory == nullptr) {
-    return nullptr;
-  }
+}
 
+void fill_tables(const ModelView& view, const Tables& tables, Body& body) {
   for (std::uint32_t q = 1; q < view.levels; ++q) {
-    list_odd_neighbours(view, q, begin[q], neighbours[q]);
+    list_odd_neighbours(view, q, tables.begin[q], tables.neighbours[q]);
   }
-  list_parents(view, parents, mesh_level);
+  list_parents(view, tables.parents, tables.mesh_level);
   list_node_facts(view, body.facts);
   for (std::uint32_t j = 0; j < view.domain_count; ++j) {
     body.set.place_of_column[j] = layout::none;
   }
-  for (std::uint32_t j = 0; j < sizes.coefficients.count; ++j) {
-    scratch.slot[j] = layout::none;
+  for (std::uint32_t j = 0; j < body.coefficients.count; ++j) {
+    body.capacitance.slot[j] = layout::none;
   }
   const CapacitanceModel model{body.refinement, body.coefficients, body.couplings};
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     for (std::uint32_t place = 0; place < domain_up_to(view, c); ++place) {
-      cost[c][place] = column_cost(model, c, place, body.touched);
+      tables.cost[c][place] = column_cost(model, c, place, body.touched);
     }
   }
+}
+
+}  // namespace
+
+Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept {
+  Tables tables;
+  auto* memory = arena.take<Body>(1);
+  if (memory == nullptr) {
+    Body counted;
+    carve(arena, view, sizes, counted, tables);
+    return nullptr;
+  }
+  Body& body = *new (memory) Body;
+  carve(arena, view, sizes, body, tables);
+  body.view = &view;
+  body.counts = sizes.counts;
+  body.coefficients = sizes.coefficients;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    body.lifting.begin[q] = tables.begin[q];
+    body.lifting.neighbours[q] = tables.neighbours[q];
+    body.cost[q] = tables.cost[q];
+  }
+  body.refinement = {&view, &body.lifting, tables.parents, tables.mesh_level};
+  fill_tables(view, tables, body);
   body.force_limit = largest_force_sum(view, body);
   body.last_red_zone = arena.last_red_zone();
   return &body;
