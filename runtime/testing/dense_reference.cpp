@@ -148,7 +148,24 @@ MatrixXd DenseReference::field(std::uint32_t c, std::uint32_t layers) const {
 
 MatrixXd DenseReference::averages(std::uint32_t q, MatrixXd x) const {
   for (std::uint32_t l = view_.levels - 1; l > q; --l) {
-    x = inverse_[l].partialPivLu().solve(x).topRows(3 * domain_up_to(view_, l - 1)).eval();
+    const LevelView& level = view_.level[l];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      for (const std::uint32_t parent : level.refinement[i].parent) {
+        if (in_domain(view_, parent)) {
+          x.middleRows<3>(3 * (level.domain_begin + i)) -= 0.5 * x.middleRows<3>(3 * domain_place(view_, parent));
+        }
+      }
+    }
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      for (std::uint32_t side = 0; side < 2; ++side) {
+        const std::uint32_t parent = level.refinement[i].parent[side];
+        if (in_domain(view_, parent)) {
+          x.middleRows<3>(3 * domain_place(view_, parent)) +=
+              double{level.refinement[i].lift[side]} * x.middleRows<3>(3 * (level.domain_begin + i));
+        }
+      }
+    }
+    x.conservativeResize(3 * domain_up_to(view_, l - 1), Eigen::NoChange);
   }
   return x;
 }
