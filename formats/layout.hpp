@@ -20,7 +20,8 @@
 //       Couplings(q, partner, strong) for each partner   q = 0: same; q = 1: averages, same; q > 1: all three
 //       Couplings(q, partner, weak) for each partner     only q > 0
 //
-// `first` is Info::coarsest_constraint_level; levels below it have no Representatives.
+// `first` is Info::coarsest_constraint_level; levels below it have no Representatives. A touchable node is represented
+// on constraint level c by a domain node of K(c), by itself if it is one; any other node by `none`.
 // So the first sections of a file, cut after any level, are again a valid and coarser model once the header says so.
 // A node is named by its place in the file: coarse to fine, and within a level the *domain* (nodes whose displacement
 // is stored: free and needed by the scene, closed under free parents) comes first. All other nodes do not move or are
@@ -163,7 +164,7 @@ static_assert(sizeof(NodeRecord) == 20);
 
 struct RefinementRecord {
   std::uint32_t parent[2];  ///< ends of the edge it halves, nodes of coarser levels
-  float lift[2];            ///< lifting weights towards the parents; 0 towards parents outside the domain
+  float lift[2];            ///< lifting weights towards the parents; 0 towards those outside the domain; 0 if unlifted
 };
 static_assert(sizeof(RefinementRecord) == 16);
 
@@ -184,7 +185,8 @@ static_assert(sizeof(Scale) == 24);
 /// Columns are the coefficients of the level, rows those of the partner, both by their place among the domain nodes of
 /// M(l) (details) or K(l) (averages). Partner::same: rows lie before their column, and the block of the other half is
 /// the transpose. Every array starts at the first multiple of 64 after the one before it.
-/// index_bytes = 0 (level 0 only): column j keeps every row 0..j-1, begin[j] = j (j - 1) / 2, index_offset = 0.
+/// index_bytes = 0 (level 0, in 16 bits; no other): column j keeps every row 0..j-1, begin[j] = j (j - 1) / 2,
+/// index_offset = 0.
 struct CouplingsHeader {
   std::uint32_t columns;
   std::uint32_t rows;

@@ -4,7 +4,8 @@ namespace greenloop {
 
 ModelData smallest_model() {
   constexpr float third_of_triangle = 0.5F / 3;  // m^2
-  constexpr float root_of_compliance = 0.25F;    // (m/N)^(1/2)
+  constexpr float quantum = 1.0F / 1024;
+  constexpr float root_of_compliance = 0.25F;  // (m/N)^(1/2)
   ModelData model;
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
   model.info.wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
@@ -20,13 +21,15 @@ ModelData smallest_model() {
 
   LevelData level;
   level.nodes = {{{0, 0, 0}, third_of_triangle, layout::node_domain | layout::node_touchable | layout::node_read},
-                 {{1, 0, 0}, third_of_triangle, layout::node_fixed},
+                 {{1, 0, 0}, third_of_triangle, layout::node_domain | layout::node_read},
                  {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
   level.representatives = {{0, layout::none, layout::none}};
-  level.averages = {{{root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance}}};
+  level.averages.assign(2, {{root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance}});
   CouplingsData& couplings = level.couplings[static_cast<std::size_t>(layout::Partner::same)][0];
   couplings.value_bits = 16;
-  couplings.begin = {0, 0};
+  couplings.quantum = quantum;
+  couplings.begin = {0, 0, 1};
+  couplings.value = {256, 0, 0, 0, 256, 0, 0, 64, 256};
   model.levels = {level};
   return model;
 }
