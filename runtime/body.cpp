@@ -121,8 +121,7 @@ void carve_capacitance(Arena& arena, const BodySizes& sizes, CapacitanceScratch&
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
-  body.couplings = sizes.couplings;
-  place_mirrored(arena, body.couplings);
+  body.couplings = place_couplings(arena, view);
   body.facts = arena.take<NodeFacts>(view.node_count);
   carve_set(arena, view, sizes.counts.max_contacts, body.set);
   body.touched.carve(arena, sizes.coefficients);

@@ -145,42 +145,52 @@ void mirror(const CouplingsView& view, std::uint32_t* begin, BlockPlace* blocks)
 
 }  // namespace
 
-Couplings list_couplings(const ModelView& view) noexcept {
+bool find_section(const ModelView& view, std::uint32_t n, CouplingSection& section) noexcept {
+  const std::uint32_t q = n / 6;
+  const std::uint32_t partner = n / 2 % 3;
+  if (q >= view.levels) {
+    return false;
+  }
+  const CouplingsView& of = view.level[q].couplings[partner][n % 2];
+  if (of.columns == 0 || of.begin[of.columns] == 0) {
+    return false;
+  }
+  constexpr auto averages = static_cast<std::uint32_t>(layout::Partner::averages);
+  constexpr auto parents = static_cast<std::uint32_t>(layout::Partner::parents);
+  section = {};
+  section.view = of;
+  section.column_group = Coefficients::details(q);
+  section.column_level = q;
+  section.row_level = partner == averages ? (q < 2 ? 0 : q - 2) : (partner == parents ? q - 1 : q);
+  section.row_group =
+      partner == averages ? Coefficients::averages(section.row_level) : Coefficients::details(section.row_level);
+  section.weak = n % 2 == static_cast<std::uint32_t>(layout::Strength::weak);
+  section.factor = of.quantum * widening(of);
+  return true;
+}
+
+Couplings place_couplings(Arena& arena, const ModelView& view) noexcept {
   Couplings couplings;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    for (std::uint32_t partner = 0; partner < 3; ++partner) {
-      for (std::uint32_t strength = 0; strength < 2; ++strength) {
-        const CouplingsView& of = view.level[q].couplings[partner][strength];
-        if (of.columns == 0 || of.begin[of.columns] == 0) {
-          continue;
-        }
-        CouplingSection section;
-        section.view = of;
-        section.column_group = Coefficients::details(q);
-        section.column_level = q;
-        section.row_level = partner == 0 ? (q < 2 ? 0 : q - 2) : (partner == 1 ? q - 1 : q);
-        section.row_group =
-            partner == 0 ? Coefficients::averages(section.row_level) : Coefficients::details(section.row_level);
-        section.weak = strength == 1;
-        section.factor = of.quantum * widening(of);
-        couplings.section[couplings.count++] = section;
-      }
+  CouplingSection section;
+  for (std::uint32_t n = 0; n < Couplings::most; ++n) {
+    couplings.count += find_section(view, n, section) ? 1 : 0;
+  }
+  auto* sections = arena.take<CouplingSection>(couplings.count);
+  couplings.section = sections;
+  for (std::uint32_t n = 0; n < Couplings::most; ++n) {
+    if (!find_section(view, n, section)) {
+      continue;
+    }
+    auto* begin = arena.take<std::uint32_t>(section.view.rows + std::uint64_t{1});
+    auto* blocks = arena.take<BlockPlace>(section.view.begin[section.view.columns]);
+    if (sections != nullptr) {
+      mirror(section.view, begin, blocks);
+      section.mirrored_begin = begin;
+      section.mirrored = blocks;
+      *sections++ = section;
     }
   }
   return couplings;
-}
-
-void place_mirrored(Arena& arena, Couplings& couplings) noexcept {
-  for (std::uint32_t s = 0; s < couplings.count; ++s) {
-    CouplingSection& section = couplings.section[s];
-    auto* begin = arena.take<std::uint32_t>(section.view.rows + std::uint64_t{1});
-    auto* blocks = arena.take<BlockPlace>(section.view.begin[section.view.columns]);
-    if (begin != nullptr) {
-      mirror(section.view, begin, blocks);
-    }
-    section.mirrored_begin = begin;
-    section.mirrored = blocks;
-  }
 }
 
 LongestLists longest_lists(const CouplingSection& section) noexcept {

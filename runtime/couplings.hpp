@@ -43,15 +43,15 @@ struct CouplingSection {
 struct Couplings {
   static constexpr std::uint32_t most = 6 * layout::max_levels;
   std::uint32_t count = 0;
-  CouplingSection section[most];
+  const CouplingSection* section = nullptr;
 };
 
-/// The sections of a model without their mirrored index. Start-up; linear in the levels.
-[[nodiscard]] Couplings list_couplings(const ModelView& view) noexcept;
+/// The `n`-th of Couplings::most possible sections, without its mirrored index; false if the model has no blocks there.
+[[nodiscard]] bool find_section(const ModelView& view, std::uint32_t n, CouplingSection& section) noexcept;
 
-/// Carves the mirrored index of every section out of `arena` and fills it in, unless `arena` only counts. Start-up;
-/// linear in the blocks.
-void place_mirrored(Arena& arena, Couplings& couplings) noexcept;
+/// Carves the sections of a model and the mirrored index of each out of `arena` and fills them in, unless `arena` only
+/// counts. Start-up; linear in the blocks.
+[[nodiscard]] Couplings place_couplings(Arena& arena, const ModelView& view) noexcept;
 
 /// Longest column and longest row of a section. Start-up; a pass over its blocks for every 1,024 rows.
 struct LongestLists {

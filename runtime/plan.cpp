@@ -85,8 +85,8 @@ SetCounts count_set(const ModelView& view, const Coefficients& coefficients, con
   return counts;
 }
 
-SetCounts most_counts(const ModelView& view, const Coefficients& coefficients, const Couplings& couplings,
-                      const LongestLists* longest, std::uint32_t c, std::uint32_t max_contacts,
+SetCounts most_counts(const ModelView& view, const Coefficients& coefficients,
+                      const LongestLists (&longest)[Couplings::most], std::uint32_t c, std::uint32_t max_contacts,
                       const ReachBound& reach) noexcept {
   SetCounts counts;
   counts.contacts = max_contacts;
@@ -97,8 +97,11 @@ SetCounts most_counts(const ModelView& view, const Coefficients& coefficients, c
     counts.coefficients += most_touched(coefficients, reach, g, c, counts.columns);
     counts.column_coefficients += counts.columns * most_touched(coefficients, reach, g, c, 1);
   }
-  for (std::uint32_t s = 0; s < couplings.count; ++s) {
-    const CouplingSection& section = couplings.section[s];
+  CouplingSection section;
+  for (std::uint32_t s = 0; s < Couplings::most; ++s) {
+    if (!find_section(view, s, section)) {
+      continue;
+    }
     const std::uint64_t all = section.view.begin[section.view.columns];
     const auto bound = [&](std::uint32_t group, std::uint32_t length, std::uint64_t nodes) {
       return smaller(all, length * most_touched(coefficients, reach, group, c, nodes));

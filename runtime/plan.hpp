@@ -53,10 +53,10 @@ struct SetCounts {
                                   const ContactSet& set, const Touched& touched, std::uint64_t contacts,
                                   const ColumnCost* cost) noexcept;
 
-/// Bounds of the counts of any set of at most `max_contacts` contacts at constraint level c. longest: of each section.
-/// Start-up; linear in the sections.
-[[nodiscard]] SetCounts most_counts(const ModelView& view, const Coefficients& coefficients, const Couplings& couplings,
-                                    const LongestLists* longest, std::uint32_t c, std::uint32_t max_contacts,
-                                    const ReachBound& reach) noexcept;
+/// Bounds of the counts of any set of at most `max_contacts` contacts at constraint level c. longest: of each possible
+/// section, see find_section. Start-up; linear in the sections.
+[[nodiscard]] SetCounts most_counts(const ModelView& view, const Coefficients& coefficients,
+                                    const LongestLists (&longest)[Couplings::most], std::uint32_t c,
+                                    std::uint32_t max_contacts, const ReachBound& reach) noexcept;
 
 }  // namespace greenloop

@@ -16,7 +16,6 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   ModelCounts& counts = sizes.counts;
   counts.nodes = view.node_count;
   counts.levels = view.levels;
-  counts.sections = sizes.couplings.count;
   counts.max_contacts = limits.max_contacts;
   counts.cached_factors = limits.cached_factors;
   std::uint64_t records = 0;
@@ -47,14 +46,17 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     return;
   }
   sizes.coefficients = number_coefficients(view);
-  sizes.couplings = list_couplings(view);
   count_model(view, limits, sizes);
   sizes.set_columns = view.domain_count < limits.max_contacts ? view.domain_count : limits.max_contacts;
   LongestLists longest[Couplings::most];
-  for (std::uint32_t s = 0; s < sizes.couplings.count; ++s) {
-    longest[s] = longest_lists(sizes.couplings.section[s]);
-    raise(sizes.longest_list, longest[s].direct);
-    raise(sizes.longest_list, longest[s].mirrored);
+  CouplingSection section;
+  for (std::uint32_t s = 0; s < Couplings::most; ++s) {
+    if (find_section(view, s, section)) {
+      ++sizes.counts.sections;
+      longest[s] = longest_lists(section);
+      raise(sizes.longest_list, longest[s].direct);
+      raise(sizes.longest_list, longest[s].mirrored);
+    }
   }
   std::uint64_t plans = check_contacts_work(limits.max_contacts);
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
@@ -62,8 +64,7 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     if (!reach.bounded) {
       return;
     }
-    const SetCounts most =
-        most_counts(view, sizes.coefficients, sizes.couplings, longest, c, limits.max_contacts, reach);
+    const SetCounts most = most_counts(view, sizes.coefficients, longest, c, limits.max_contacts, reach);
     const std::uint64_t functional = most.columns > 0 ? most.column_coefficients / most.columns : 0;
     sizes.functional = functional > sizes.functional ? functional : sizes.functional;
     plans += plan_work(sizes.counts, most);

@@ -18,7 +18,6 @@ struct BodySizes {
   std::uint64_t lifting_records[layout::max_levels] = {};
   std::uint64_t functional = 0;  ///< most coefficients of a point functional
   Coefficients coefficients;
-  Couplings couplings;  ///< without mirrored index
 };
 
 /// Whether each limit is within the range that Limits states.
