@@ -110,13 +110,21 @@ void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, Cont
 
 void carve_capacitance(Arena& arena, const BodySizes& sizes, CapacitanceScratch& scratch) {
   scratch.touched.carve(arena, sizes.coefficients);
-  scratch.coefficients = arena.take<PointCoefficient>(sizes.set_columns * sizes.functional);
-  scratch.functional = arena.take<PointFunctional>(sizes.set_columns);
+  const std::uint64_t entries = sizes.set_columns * sizes.functional;
+  const std::uint64_t slots = entries < sizes.coefficients.count ? entries : sizes.coefficients.count;
+  const std::uint64_t batch =
+      sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch;
+  scratch.coefficients = arena.take<PointCoefficient>(entries);
+  scratch.begin = arena.take<std::uint32_t>(sizes.set_columns + std::uint64_t{1});
+  scratch.column = arena.take<SlotColumn>(entries);
+  scratch.slot_begin = arena.take<std::uint32_t>(slots + 1);
+  scratch.batch_begin = arena.take<std::uint32_t>(slots);
+  scratch.batch_end = arena.take<std::uint32_t>(slots);
   scratch.slot = arena.take<std::uint32_t>(sizes.coefficients.count);
-  scratch.slotted = arena.take<std::uint32_t>(sizes.coefficients.count);
-  scratch.root = arena.take<Block>(sizes.coefficients.count);
-  scratch.sum = arena.take<Block>(sizes.coefficients.count);
-  scratch.chosen = arena.take<BlockPlace>(sizes.longest_list + std::uint64_t{1});
+  scratch.root = arena.take<Block>(slots);
+  scratch.sum = arena.take<Block>(slots * batch);
+  scratch.places = arena.take<BlockPlace>(sizes.longest_list + std::uint64_t{1});
+  scratch.blocks = arena.take<Block>(sizes.longest_list + std::uint64_t{1});
 }
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {

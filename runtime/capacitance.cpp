@@ -1,6 +1,7 @@
 #include "runtime/capacitance.hpp"
 
 #include <cstddef>
+#include <cstring>
 
 #include "runtime/cholesky.hpp"
 
@@ -20,83 +21,143 @@ Block times(const Block& a, const Block& b) {
   return result;
 }
 
-// the functional of the node at `place` into scratch.coefficients from `begin`; returns its end
+// gives every coefficient that the set touches a slot; returns their number
+std::uint32_t assign_slots(const Coefficients& coefficients, const Touched& touched, CapacitanceScratch& scratch) {
+  std::uint32_t slots = 0;
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    const CoefficientGroup& group = coefficients.group[g];
+    for (std::uint32_t k = 0; in_capacitance(g, touched.constraint_level) && k < touched.count[g]; ++k) {
+      const std::uint32_t coefficient = touched.list[g][k];
+      scratch.slot[coefficient] = slots;
+      scratch.root[slots++] = root_block(group.scale[coefficient - group.begin]);
+    }
+  }
+  return slots;
+}
+
+void release_slots(const Touched& touched, CapacitanceScratch& scratch) {
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    for (std::uint32_t k = 0; k < touched.count[g]; ++k) {
+      scratch.slot[touched.list[g][k]] = layout::none;
+    }
+  }
+}
+
+// the functional of the node at `place`, from `begin`; returns its end
 std::uint32_t write_functional(const CapacitanceModel& model, std::uint32_t c, std::uint32_t place, std::uint32_t begin,
-                               CapacitanceScratch& scratch, Float4* force, PointFunctional& functional) {
+                               CapacitanceScratch& scratch, Float4* force) {
   Touched& touched = scratch.touched;
   touch(model.refinement, model.coefficients, c, &place, 1, touched);
   force[place] = splat3(1.0F);
   transform_forces(model.refinement, model.coefficients, touched, force);
   std::uint32_t end = begin;
   for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    functional.begin[g] = end;
     for (std::uint32_t k = 0; in_capacitance(g, c) && k < touched.count[g]; ++k) {
       const std::uint32_t coefficient = touched.list[g][k];
-      scratch.coefficients[end++] = {coefficient, force[coefficient][0]};
+      scratch.coefficients[end++] = {scratch.slot[coefficient], force[coefficient][0]};
     }
   }
-  functional.begin[Coefficients::groups] = end;
   clear_forces(touched, force);
   clear(touched);
   return end;
 }
 
-// gives every coefficient of the functionals a slot; returns their number
-std::uint32_t assign_slots(const Coefficients& coefficients, std::uint32_t columns, CapacitanceScratch& scratch) {
-  std::uint32_t slots = 0;
+// the functionals' weights by slots
+void list_slot_columns(std::uint32_t columns, std::uint32_t slots, CapacitanceScratch& scratch) {
+  std::uint32_t* begin = scratch.slot_begin;
+  std::memset(begin, 0, sizeof(std::uint32_t) * (slots + std::size_t{1}));
+  for (std::uint32_t k = 0; k < scratch.begin[columns]; ++k) {
+    ++begin[scratch.coefficients[k].slot];
+  }
+  std::uint32_t end = 0;
+  for (std::uint32_t s = 0; s < slots; ++s) {
+    const std::uint32_t count = begin[s];
+    begin[s] = scratch.batch_end[s] = end;
+    end += count;
+  }
+  begin[slots] = end;
   for (std::uint32_t i = 0; i < columns; ++i) {
-    const PointFunctional& functional = scratch.functional[i];
-    for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-      const CoefficientGroup& group = coefficients.group[g];
-      for (std::uint32_t k = functional.begin[g]; k < functional.begin[g + 1]; ++k) {
-        const std::uint32_t coefficient = scratch.coefficients[k].coefficient;
-        if (scratch.slot[coefficient] == layout::none) {
-          scratch.slot[coefficient] = slots;
-          scratch.slotted[slots] = coefficient;
-          scratch.root[slots] = root_block(group.scale[coefficient - group.begin]);
-          scratch.sum[slots++] = Block{};
-        }
-      }
+    for (std::uint32_t k = scratch.begin[i]; k < scratch.begin[i + 1]; ++k) {
+      const PointCoefficient& at = scratch.coefficients[k];
+      scratch.column[scratch.batch_end[at.slot]++] = {i, at.weight};
     }
   }
-  return slots;
+  for (std::uint32_t s = 0; s < slots; ++s) {
+    scratch.batch_end[s] = begin[s];
+  }
 }
 
-void add_diagonal(const PointFunctional& functional, CapacitanceScratch& scratch) {
+// some columns of the matrix, and the sums of their slots
+struct Batch {
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+void begin_batch(const Batch& batch, std::uint32_t slots, CapacitanceScratch& scratch) {
+  for (std::uint32_t s = 0; s < slots; ++s) {
+    std::uint32_t end = scratch.batch_end[s];
+    scratch.batch_begin[s] = end;
+    while (end < scratch.slot_begin[s + 1] && scratch.column[end].column < batch.first + batch.count) {
+      ++end;
+    }
+    scratch.batch_end[s] = end;
+  }
+  std::memset(scratch.sum, 0, sizeof(Block) * slots * batch.count);
+}
+
+// sums of slot `to` += a block times the unit forces in slot `from`, in the columns that some row at or below the
+// diagonal asks slot `to` for
+void add_block(const Batch& batch, const Block& block, std::uint32_t from, std::uint32_t to,
+               CapacitanceScratch& scratch) {
+  const std::uint32_t last = scratch.column[scratch.slot_begin[to + 1] - 1].column;
+  Block* sums = scratch.sum + std::size_t{to} * batch.count;
+  for (std::uint32_t k = scratch.batch_begin[from]; k < scratch.batch_end[from]; ++k) {
+    const SlotColumn at = scratch.column[k];
+    if (at.column > last) {
+      break;
+    }
+    Block& sum = sums[at.column - batch.first];
+    const Float4 weight = splat(at.weight);
+    sum.column[0] += weight * block.column[0];
+    sum.column[1] += weight * block.column[1];
+    sum.column[2] += weight * block.column[2];
+  }
+}
+
+void add_diagonal(const Touched& touched, const Batch& batch, CapacitanceScratch& scratch) {
   for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    for (std::uint32_t k = functional.begin[g]; Coefficients::has_diagonal(g) && k < functional.begin[g + 1]; ++k) {
-      const std::uint32_t slot = scratch.slot[scratch.coefficients[k].coefficient];
-      const Block own = times(splat(scratch.coefficients[k].weight), scratch.root[slot]);
-      for (std::uint32_t c = 0; c < 3; ++c) {
-        scratch.sum[slot].column[c] += own.column[c];
-      }
+    for (std::uint32_t k = 0; Coefficients::has_diagonal(g) && k < touched.count[g]; ++k) {
+      const std::uint32_t slot = scratch.slot[touched.list[g][k]];
+      add_block(batch, times(scratch.root[slot], scratch.root[slot]), slot, slot, scratch);
     }
   }
 }
 
-// sum += couplings of the unit forces that `functional` has in `from`, in the coefficients of `to`
-void add_couplings(const CapacitanceModel& model, const CouplingSection& section, bool mirrored,
-                   const PointFunctional& functional, CapacitanceScratch& scratch) {
-  const std::uint32_t from = mirrored ? section.row_group : section.column_group;
-  const std::uint32_t to = mirrored ? section.column_group : section.row_group;
-  const std::uint32_t begin = model.coefficients.group[from].begin;
-  const std::uint32_t* slot = scratch.slot + model.coefficients.group[to].begin;
-  for (std::uint32_t k = functional.begin[from]; k < functional.begin[from + 1]; ++k) {
-    const PointCoefficient& at = scratch.coefficients[k];
-    const Block force = times(splat(at.weight * section.factor), scratch.root[scratch.slot[at.coefficient]]);
-    if (mirrored) {
-      add_mirrored(section, at.coefficient - begin, force, slot, scratch.chosen, scratch.sum);
-    } else {
-      add_direct(section, at.coefficient - begin, force, slot, scratch.chosen, scratch.sum);
+// every stored block between two slots, in both directions
+void add_couplings(const CapacitanceModel& model, const CouplingSection& section, const Touched& touched,
+                   const Batch& batch, CapacitanceScratch& scratch) {
+  const std::uint32_t begin = model.coefficients.group[section.column_group].begin;
+  const std::uint32_t* row_slot = scratch.slot + model.coefficients.group[section.row_group].begin;
+  const std::uint32_t* list = touched.list[section.column_group];
+  for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
+    const std::uint32_t slot = scratch.slot[list[k]];
+    const std::uint32_t count = load_slotted(section, list[k] - begin, row_slot, scratch.places, scratch.blocks);
+    const Block root = times(splat(section.factor), scratch.root[slot]);
+    for (std::uint32_t n = 0; n < count; ++n) {
+      const std::uint32_t row = scratch.places[n].target;
+      const Block block = times(scratch.root[row], times(scratch.blocks[n], root));
+      add_block(batch, block, slot, row, scratch);
+      add_block(batch, transposed(block), row, slot, scratch);
     }
   }
 }
 
-Block apply(const PointFunctional& functional, const CapacitanceScratch& scratch) {
+Block apply(const CapacitanceScratch& scratch, const Batch& batch, std::uint32_t i, std::uint32_t j) {
   Block sum{};
-  for (std::uint32_t k = functional.begin[0]; k < functional.begin[Coefficients::groups]; ++k) {
-    const Block& block = scratch.sum[scratch.slot[scratch.coefficients[k].coefficient]];
-    const Float4 weight = splat(scratch.coefficients[k].weight);
+  for (std::uint32_t k = scratch.begin[i]; k < scratch.begin[i + 1]; ++k) {
+    const PointCoefficient& at = scratch.coefficients[k];
+    const Block& block = scratch.sum[std::size_t{at.slot} * batch.count + (j - batch.first)];
+    const Float4 weight = splat(at.weight);
     sum.column[0] += weight * block.column[0];
     sum.column[1] += weight * block.column[1];
     sum.column[2] += weight * block.column[2];
@@ -143,38 +204,33 @@ ColumnCost column_cost(const CapacitanceModel& model, std::uint32_t c, std::uint
   return cost;
 }
 
-void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, CapacitanceScratch& scratch,
-                          Float4* force, Float4* a) noexcept {
+void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
+                          CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept {
   const std::size_t stride = padded_order(3 * set.columns);
-  std::uint32_t end = 0;
+  const std::uint32_t slots = assign_slots(model.coefficients, touched, scratch);
+  scratch.begin[0] = 0;
   for (std::uint32_t i = 0; i < set.columns; ++i) {
-    end = write_functional(model, set.level, set.column[i], end, scratch, force, scratch.functional[i]);
+    scratch.begin[i + 1] = write_functional(model, set.level, set.column[i], scratch.begin[i], scratch, force);
   }
-  const std::uint32_t slots = assign_slots(model.coefficients, set.columns, scratch);
-  for (std::uint32_t j = 0; j < set.columns; ++j) {
-    const PointFunctional& functional = scratch.functional[j];
-    add_diagonal(functional, scratch);
+  list_slot_columns(set.columns, slots, scratch);
+  for (Batch batch{0, 0}; batch.first < set.columns; batch.first += batch.count) {
+    const std::uint32_t left = set.columns - batch.first;
+    batch.count = left < CapacitanceScratch::batch ? left : CapacitanceScratch::batch;
+    begin_batch(batch, slots, scratch);
+    add_diagonal(touched, batch, scratch);
     for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
-      const CouplingSection& section = model.couplings.section[s];
-      if (in_reach(section, set.level)) {
-        add_couplings(model, section, false, functional, scratch);
-        add_couplings(model, section, true, functional, scratch);
+      if (in_reach(model.couplings.section[s], set.level)) {
+        add_couplings(model, model.couplings.section[s], touched, batch, scratch);
       }
     }
-    for (std::uint32_t k = 0; k < slots; ++k) {
-      scratch.sum[k] = times(scratch.root[k], scratch.sum[k]);
-    }
-    float* column = reinterpret_cast<float*>(a) + std::size_t{3} * j * stride;
-    for (std::uint32_t i = j; i < set.columns; ++i) {
-      store(apply(scratch.functional[i], scratch), stride, column + std::size_t{3} * i);
-    }
-    for (std::uint32_t k = 0; k < slots; ++k) {
-      scratch.sum[k] = Block{};
+    for (std::uint32_t j = batch.first; j < batch.first + batch.count; ++j) {
+      float* column = reinterpret_cast<float*>(a) + std::size_t{3} * j * stride;
+      for (std::uint32_t i = j; i < set.columns; ++i) {
+        store(apply(scratch, batch, i, j), stride, column + std::size_t{3} * i);
+      }
     }
   }
-  for (std::uint32_t k = 0; k < slots; ++k) {
-    scratch.slot[scratch.slotted[k]] = layout::none;
-  }
+  release_slots(touched, scratch);
 }
 
 }  // namespace greenloop

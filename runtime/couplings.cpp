@@ -5,8 +5,6 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint32_t ahead = 6;  // blocks whose memory is on its way while one is summed
-
 // lists of blocks as their n-th target and position
 
 struct EveryRow {
@@ -71,29 +69,6 @@ std::uint32_t choose(List list, std::uint32_t length, const std::uint32_t* slot,
     count += slot[place.target] != layout::none ? 1 : 0;
   }
   return count;
-}
-
-template <bool mirror>
-void add_chosen(const CouplingsView& view, const BlockPlace* chosen, std::uint32_t count, const Block& force,
-                Block* sums) {
-  with_values(view, [&](auto stored) {
-    using Stored = decltype(stored);
-    Float4 f[3][3];
-    for (std::uint32_t c = 0; c < 3; ++c) {
-      for (std::uint32_t r = 0; r < 3; ++r) {
-        f[c][r] = splat(force.column[c][r]);
-      }
-    }
-    for (std::uint32_t n = 0; n < count; ++n) {
-      const BlockPlace soon = chosen[n + ahead < count ? n + ahead : n];
-      __builtin_prefetch(view.value + Stored::bytes * std::size_t{soon.position});
-      const Block block = load<mirror, Stored>(view, chosen[n].position);
-      Block& sum = sums[chosen[n].target];
-      for (std::uint32_t c = 0; c < 3; ++c) {
-        sum.column[c] += product(block, f[c]);
-      }
-    }
-  });
 }
 
 void prefetch_lines(const void* data, std::size_t begin, std::size_t size) {
@@ -242,19 +217,17 @@ void prefetch_mirrored(const CouplingSection& section, std::uint32_t row) noexce
   prefetch_lines(section.mirrored, sizeof(BlockPlace) * begin, sizeof(BlockPlace) * section.mirrored_length(row));
 }
 
-void add_direct(const CouplingSection& section, std::uint32_t column, const Block& force, const std::uint32_t* slot,
-                BlockPlace* chosen, Block* sums) noexcept {
+std::uint32_t load_slotted(const CouplingSection& section, std::uint32_t column, const std::uint32_t* slot,
+                           BlockPlace* places, Block* blocks) noexcept {
   std::uint32_t count = 0;
   with_column(section.view, column,
-              [&](auto list, std::uint32_t length) { count = choose(list, length, slot, chosen); });
-  add_chosen<false>(section.view, chosen, count, force, sums);
-}
-
-void add_mirrored(const CouplingSection& section, std::uint32_t row, const Block& force, const std::uint32_t* slot,
-                  BlockPlace* chosen, Block* sums) noexcept {
-  const BlockPlace* list = section.mirrored + section.mirrored_begin[row];
-  const std::uint32_t count = choose(list, section.mirrored_length(row), slot, chosen);
-  add_chosen<true>(section.view, chosen, count, force, sums);
+              [&](auto list, std::uint32_t length) { count = choose(list, length, slot, places); });
+  with_values(section.view, [&](auto stored) {
+    for (std::uint32_t n = 0; n < count; ++n) {
+      blocks[n] = load<false, decltype(stored)>(section.view, places[n].position);
+    }
+  });
+  return count;
 }
 
 }  // namespace greenloop

@@ -71,14 +71,10 @@ void add_mirrored(const CouplingSection& section, std::uint32_t row, Float4 forc
 void prefetch_direct(const CouplingSection& section, std::uint32_t column) noexcept;
 void prefetch_mirrored(const CouplingSection& section, std::uint32_t row) noexcept;
 
-/// add_direct for a 3x3 block of forces, into slots: sums[slot[row]] += M force, for the rows that have a slot (not
-/// layout::none); the other blocks are not read. chosen: scratch, [blocks of the column + 1]. For the loop; work: 9
-/// units per block, for slots and sums together.
-void add_direct(const CouplingSection& section, std::uint32_t column, const Block& force, const std::uint32_t* slot,
-                BlockPlace* chosen, Block* sums) noexcept;
-
-/// sums[slot[column]] += M^T force; see above.
-void add_mirrored(const CouplingSection& section, std::uint32_t row, const Block& force, const std::uint32_t* slot,
-                  BlockPlace* chosen, Block* sums) noexcept;
+/// The blocks of a column in the rows that have a slot (not layout::none), to be multiplied by
+/// section.factor; target: the slot. The others are not decoded. Returns their number. places, blocks: [blocks of the
+/// column + 1]. For the loop; work: 20 units per block.
+std::uint32_t load_slotted(const CouplingSection& section, std::uint32_t column, const std::uint32_t* slot,
+                           BlockPlace* places, Block* blocks) noexcept;
 
 }  // namespace greenloop

@@ -68,7 +68,7 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
   const CapacitanceModel model{body.refinement, body.coefficients, body.couplings};
-  assemble_capacitance(model, body.set, body.capacitance, body.force, factor.matrix);
+  assemble_capacitance(model, body.set, body.touched, body.capacitance, body.force, factor.matrix);
   return cholesky_factor(3 * body.set.columns, factor.matrix) ? &factor : nullptr;
 }
 

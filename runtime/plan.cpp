@@ -38,8 +38,8 @@ std::uint64_t plan_work(const ModelCounts& model, const SetCounts& set) noexcept
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
   return FactorCache::find_work(model.cached_factors, set.columns) +
-         assemble_capacitance_work(set.columns, set.coefficients, set.column_visits, set.column_coefficients,
-                                   set.column_blocks) +
+         assemble_capacitance_work(set.columns, set.coefficients, set.stored, set.column_visits,
+                                   set.column_coefficients, set.column_blocks) +
          cholesky_factor_work(order);
 }
 
@@ -67,14 +67,16 @@ SetCounts count_set(const ModelView& view, const Coefficients& coefficients, con
   }
   for (std::uint32_t s = 0; s < couplings.count; ++s) {
     const CouplingSection& section = couplings.section[s];
+    const std::uint32_t column_begin = coefficients.group[section.column_group].begin;
+    std::uint64_t direct = 0;
+    for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
+      direct += section.direct_length(touched.list[section.column_group][k] - column_begin);
+    }
+    counts.stored += direct;
     if (!in_field(view, section)) {
       continue;
     }
-    const std::uint32_t column_begin = coefficients.group[section.column_group].begin;
-    for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
-      const std::uint32_t column = touched.list[section.column_group][k] - column_begin;
-      counts.blocks[section.row_level] += section.direct_length(column);
-    }
+    counts.blocks[section.row_level] += direct;
     const std::uint32_t row_begin = coefficients.group[section.row_group].begin;
     for (std::uint32_t k = 0; k < touched.count[section.row_group]; ++k) {
       const std::uint32_t row = touched.list[section.row_group][k] - row_begin;
@@ -110,6 +112,7 @@ SetCounts most_counts(const ModelView& view, const Coefficients& coefficients,
       counts.blocks[section.row_level] += bound(section.column_group, longest[s].direct, counts.columns);
       counts.blocks[section.column_level] += bound(section.row_group, longest[s].mirrored, counts.columns);
     }
+    counts.stored += bound(section.column_group, longest[s].direct, counts.columns);
     if (section.column_level <= c) {
       counts.column_blocks += counts.columns * (bound(section.column_group, longest[s].direct, 1) +
                                                 bound(section.row_group, longest[s].mirrored, 1));

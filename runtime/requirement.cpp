@@ -55,7 +55,6 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
       ++sizes.counts.sections;
       longest[s] = longest_lists(section);
       raise(sizes.longest_list, longest[s].direct);
-      raise(sizes.longest_list, longest[s].mirrored);
     }
   }
   std::uint64_t plans = check_contacts_work(limits.max_contacts);

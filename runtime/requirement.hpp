@@ -13,7 +13,7 @@ struct BodySizes {
   bool supported = false;  ///< limits in range, and every point interpolated from at most three nodes of each level
   ModelCounts counts;
   std::uint32_t set_columns = 0;   ///< most columns of a contact set
-  std::uint32_t longest_list = 0;  ///< most blocks in a column or row of a section
+  std::uint32_t longest_list = 0;  ///< most blocks in a column of a section
   std::uint32_t most_neighbours[layout::max_levels] = {};
   std::uint64_t lifting_records[layout::max_levels] = {};
   std::uint64_t functional = 0;  ///< most coefficients of a point functional
