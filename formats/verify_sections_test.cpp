@@ -147,8 +147,8 @@ TEST_CASE("verify refuses: constraint levels outside the file's levels") {
   }
 }
 
-TEST_CASE("verify refuses: other than one or two layers for the field") {
-  for (const std::uint32_t layers : {0u, 3u}) {
+TEST_CASE("verify refuses: other than one to three layers for the field") {
+  for (const std::uint32_t layers : {0u, 4u}) {
     check_info(VerifyRule::bad_enum, "field_layers", 0, [&](Info& info) { info.field_layers = layers; });
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -29,7 +30,7 @@ struct LevelData {
   std::vector<std::vector<std::uint32_t>> representatives;
   std::vector<layout::Scale> details;   ///< [domain nodes]; empty on level 0
   std::vector<layout::Scale> averages;  ///< [domain nodes of K(q)]; empty above level max(L-2, 0)
-  CouplingsData couplings[3][2];        ///< [layout::Partner][layout::Strength]
+  std::array<std::array<CouplingsData, layout::strengths>, 3> couplings;  ///< [layout::Partner][layout::Strength]
 };
 
 /// A whole model before encoding. Offline only.

@@ -57,15 +57,20 @@ std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index 
   std::vector<layout::Scale> scales;
   for (Index i = begin; i < end; ++i) {
     const Matrix3d block = blocks.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
-    const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(block).operatorSqrt();
+    // a conditional compliance must be smaller than the diagonal block; how much is the writer's choice
+    constexpr double share = 0.8;
+    const Matrix3d root = share * Eigen::SelfAdjointEigenSolver<Matrix3d>(block).operatorSqrt();
     const auto at = [&](Index r, Index c) { return static_cast<float>(root(r, c)); };
-    scales.push_back({{at(0, 0), at(0, 1), at(0, 2), at(1, 1), at(1, 2), at(2, 2)}});
+    const auto diagonal = static_cast<float>(1 / (share * share));
+    scales.push_back({.root = {at(0, 0), at(0, 1), at(0, 2), at(1, 1), at(1, 2), at(2, 2)},
+                      .diagonal = {diagonal, 0, 0, diagonal, 0, diagonal}});
   }
   return scales;
 }
 
 std::vector<Matrix3d> inverse_roots(const std::vector<layout::Scale>& scales) {
   std::vector<Matrix3d> inverses;
+  inverses.reserve(scales.size());
   for (const layout::Scale& scale : scales) inverses.emplace_back(root_of(scale).inverse());
   return inverses;
 }
@@ -111,13 +116,13 @@ class Compression {
 
   void measure(const Sphere& sphere) {
     exact_.push_back(exact_compliance(sphere));
-    for (std::uint32_t layers = 2; layers >= options_.field_layers; --layers) {
+    for (std::uint32_t layers = layout::strengths; layers >= options_.field_layers; --layers) {
       const std::vector<MatrixXd> decoded = decoded_compliances(model_, layers);
       for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
         layout::Level& counts = model_.levels[q].counts;
         counts.field_rms_error = static_cast<float>((decoded[q] - exact_[q]).norm() / exact_[q].norm());
         counts.field_column_error = static_cast<float>(worst_column(decoded[q], exact_[q]));
-        if (layers == 1) continue;
+        if (layers < layout::strengths) continue;
         counts.rms_error = counts.field_rms_error;
         counts.worst_column_error = counts.field_column_error;
       }
@@ -138,6 +143,10 @@ class Compression {
     return worst;
   }
 
+  [[nodiscard]] std::size_t layer_of(double norm) const {
+    return norm >= options_.strong ? 0 : norm >= options_.medium ? 1 : 2;
+  }
+
   void add_couplings(std::uint32_t q, const MatrixXd& form) {
     const auto& own = q == 0 ? model_.levels[0].averages : model_.levels[q].details;
     if (q > 0) add_couplings(q, Partner::averages, model_.levels[q < 2 ? 0 : q - 2].averages, own, 0, form);
@@ -148,7 +157,7 @@ class Compression {
   void add_couplings(std::uint32_t q, Partner partner, const std::vector<layout::Scale>& row_scales,
                      const std::vector<layout::Scale>& column_scales, Index first_row, const MatrixXd& form) {
     const auto rows = inverse_roots(row_scales), columns = inverse_roots(column_scales);
-    ScaledBlocks layers[2];
+    ScaledBlocks layers[layout::strengths];
     for (std::size_t j = 0; j < columns.size(); ++j) {
       for (std::size_t i = 0; i < (partner == Partner::same ? j : rows.size()); ++i) {
         const Index column = 3 * (wavelet_.begin(q) + static_cast<Index>(j));
@@ -156,7 +165,7 @@ class Compression {
         const Matrix3d block = rows[i] * form.block<3, 3>(column, row).transpose() * columns[j];
         const double norm = block.norm() / std::sqrt(3.0);
         if (q > 0 && norm < options_.epsilon) continue;
-        layers[q == 0 || norm >= options_.strong ? 0 : 1].add(static_cast<std::uint32_t>(i), block);
+        layers[q == 0 ? 0 : layer_of(norm)].add(static_cast<std::uint32_t>(i), block);
       }
       for (ScaledBlocks& layer : layers) layer.end_column();
     }
@@ -166,7 +175,8 @@ class Compression {
       stored[0].index.clear();
     } else {
       stored[0] = layers[0].quantised(options_.strong_bits);
-      stored[1] = layers[1].quantised(options_.weak_bits);
+      stored[1] = layers[1].quantised(options_.medium_bits);
+      stored[2] = layers[2].quantised(options_.weak_bits);
     }
   }
 
