@@ -46,11 +46,13 @@ double force_growth(const ModelView& view) {
   return 1 + most;
 }
 
-double largest_root(const Coefficients& coefficients) {
-  double largest = 0;
+// magnitudes within a part of the scales
+template <class Part>
+double largest_scale(const Coefficients& coefficients, Part part) {
+  double largest = 1;
   for (const CoefficientGroup& group : coefficients.group) {
     for (std::uint32_t i = 0; i < group.count; ++i) {
-      for (const float value : group.scale[i].root) {
+      for (const float value : group.scale[i].*part) {
         largest = larger(largest, magnitude(double{value}));
       }
     }
@@ -58,9 +60,9 @@ double largest_root(const Coefficients& coefficients) {
   return largest;
 }
 
-// largest stored value, or 1 for the diagonal
-double largest_value(const Couplings& couplings) {
-  double largest = 1;
+// largest value of a block
+double largest_value(const Coefficients& coefficients, const Couplings& couplings) {
+  double largest = largest_scale(coefficients, &layout::Scale::diagonal);
   for (std::uint32_t s = 0; s < couplings.count; ++s) {
     const CouplingsView& view = couplings.section[s].view;
     const double most = view.value_bits == 4 ? 8 : (view.value_bits == 8 ? 128 : 32768);
@@ -70,9 +72,9 @@ double largest_value(const Couplings& couplings) {
 }
 
 float largest_force_sum(const ModelView& view, const Body& body) {
-  const double root = larger(3 * largest_root(body.coefficients), 1);
+  const double root = 3 * largest_scale(body.coefficients, &layout::Scale::root);
   // a coefficient gets at most one block, or one and its other half, from any other
-  const double sums = 6.0 * body.coefficients.count * largest_value(body.couplings);
+  const double sums = 6.0 * body.coefficients.count * largest_value(body.coefficients, body.couplings);
   const double per_newton = transform_growth(view, body.lifting) * root * sums * root * force_growth(view);
   return static_cast<float>(FLT_MAX / 4.0 / per_newton);
 }

@@ -29,7 +29,7 @@ std::uint32_t assign_slots(const Coefficients& coefficients, const Touched& touc
     for (std::uint32_t k = 0; in_capacitance(g, touched.constraint_level) && k < touched.count[g]; ++k) {
       const std::uint32_t coefficient = touched.list[g][k];
       scratch.slot[coefficient] = slots;
-      scratch.root[slots++] = root_block(group.scale[coefficient - group.begin]);
+      scratch.root[slots++] = symmetric_block(group.scale[coefficient - group.begin].root);
     }
   }
   return slots;
@@ -124,11 +124,15 @@ void add_block(const Batch& batch, const Block& block, std::uint32_t from, std::
   }
 }
 
-void add_diagonal(const Touched& touched, const Batch& batch, CapacitanceScratch& scratch) {
+void add_diagonal(const Coefficients& coefficients, const Touched& touched, const Batch& batch,
+                  CapacitanceScratch& scratch) {
   for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    const CoefficientGroup& group = coefficients.group[g];
     for (std::uint32_t k = 0; Coefficients::has_diagonal(g) && k < touched.count[g]; ++k) {
-      const std::uint32_t slot = scratch.slot[touched.list[g][k]];
-      add_block(batch, times(scratch.root[slot], scratch.root[slot]), slot, slot, scratch);
+      const std::uint32_t coefficient = touched.list[g][k];
+      const std::uint32_t slot = scratch.slot[coefficient];
+      const Block diagonal = symmetric_block(group.scale[coefficient - group.begin].diagonal);
+      add_block(batch, times(scratch.root[slot], times(diagonal, scratch.root[slot])), slot, slot, scratch);
     }
   }
 }
@@ -217,7 +221,7 @@ void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, 
     const std::uint32_t left = set.columns - batch.first;
     batch.count = left < CapacitanceScratch::batch ? left : CapacitanceScratch::batch;
     begin_batch(batch, slots, scratch);
-    add_diagonal(touched, batch, scratch);
+    add_diagonal(model.coefficients, touched, batch, scratch);
     for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
       if (in_reach(model.couplings.section[s], set.level)) {
         add_couplings(model, model.couplings.section[s], touched, batch, scratch);

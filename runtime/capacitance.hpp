@@ -24,7 +24,7 @@ constexpr bool in_capacitance(std::uint32_t group, std::uint32_t c) {
 /// What a node costs as a column of the capacitance matrix.
 struct ColumnCost {
   std::uint32_t coefficients = 0;  ///< of its functional
-  std::uint32_t blocks = 0;        ///< stored blocks in the lists of those, over both layers
+  std::uint32_t blocks = 0;        ///< stored blocks in the lists of those, over all layers
   std::uint32_t visits = 0;        ///< of touch
 };
 
@@ -65,18 +65,18 @@ struct CapacitanceModel {
                                      Touched& touched) noexcept;
 
 /// Work units of assemble_capacitance. visits, coefficients, blocks: ColumnCost summed over the columns of the set;
-/// slots: coefficients that the set touches, and stored: blocks in the columns of those in both layers, none counted
+/// slots: coefficients that the set touches, and stored: blocks in the columns of those in all layers, none counted
 /// twice.
 constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::uint64_t slots, std::uint64_t stored,
                                                   std::uint64_t visits, std::uint64_t coefficients,
                                                   std::uint64_t blocks) {
   const std::uint64_t batches = (columns + CapacitanceScratch::batch - 1) / CapacitanceScratch::batch;
-  return 5 * visits + 16 * coefficients + 32 * slots + batches * (4 * slots + 74 * stored) + 9 * blocks +
+  return 5 * visits + 16 * coefficients + 16 * slots + batches * (68 * slots + 74 * stored) + 9 * blocks +
          columns * (3 * slots + 9 * coefficients);
 }
 
 /// The capacitance matrix of a contact set in force form: block (i, j) is the displacement of the average of column i
-/// per force at column j (James & Pai 2003, sections 3.2 and 5.4), by the non-standard form of both layers. Every block
+/// per force at column j (James & Pai 2003, sections 3.2 and 5.4), by the non-standard form of all layers. Every block
 /// of it between two touched coefficients is read once per batch of columns. Symmetric; only the lower triangle is
 /// written. touched: by the set; a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [coefficients], 0
 /// before and after. For the loop; work: assemble_capacitance_work.

@@ -22,7 +22,7 @@ struct Coefficients {
   static constexpr std::uint32_t groups = 2 * layout::max_levels;
   static constexpr std::uint32_t details(std::uint32_t level) { return level; }
   static constexpr std::uint32_t averages(std::uint32_t level) { return level == 0 ? 0 : layout::max_levels + level; }
-  /// Averages of level 1 and above are partners only: the identity is not part of their row.
+  /// Averages of level 1 and above are partners only: no diagonal block is part of their row.
   static constexpr bool has_diagonal(std::uint32_t group) { return group < layout::max_levels; }
 
   CoefficientGroup group[groups];
@@ -33,19 +33,19 @@ struct Coefficients {
 /// Start-up; linear in the levels.
 [[nodiscard]] Coefficients number_coefficients(const ModelView& view) noexcept;
 
-/// The symmetric root of a scale as a block; its fourth lanes are undefined.
-inline Block root_block(const layout::Scale& scale) {
+/// A symmetric matrix of a scale as a block; its fourth lanes are undefined.
+inline Block symmetric_block(const float (&matrix)[6]) {
   Float4 low;
   Float4 high;
-  std::memcpy(&low, scale.root, sizeof low);
-  std::memcpy(&high, scale.root + 2, sizeof high);
+  std::memcpy(&low, matrix, sizeof low);
+  std::memcpy(&high, matrix + 2, sizeof high);
   return {{low, __builtin_shufflevector(low, high, 1, 3, 6, 6), __builtin_shufflevector(high, high, 0, 2, 3, 3)}};
 }
 
-/// root times vector; the fourth lane is 0.
-inline Float4 scaled(const layout::Scale& scale, Float4 x) {
+/// symmetric matrix times vector; the fourth lane is 0.
+inline Float4 symmetric_product(const float (&matrix)[6], Float4 x) {
   const Float4 splats[3] = {splat(x[0]), splat(x[1]), splat(x[2])};
-  return xyz(product(root_block(scale), splats));
+  return xyz(product(symmetric_block(matrix), splats));
 }
 
 }  // namespace greenloop

@@ -121,12 +121,13 @@ void mirror(const CouplingsView& view, std::uint32_t* begin, BlockPlace* blocks)
 }  // namespace
 
 bool find_section(const ModelView& view, std::uint32_t n, CouplingSection& section) noexcept {
-  const std::uint32_t q = n / 6;
-  const std::uint32_t partner = n / 2 % 3;
+  const std::uint32_t layer = n % layout::strengths;
+  const std::uint32_t partner = n / layout::strengths % 3;
+  const std::uint32_t q = n / (3 * layout::strengths);
   if (q >= view.levels) {
     return false;
   }
-  const CouplingsView& of = view.level[q].couplings[partner][n % 2];
+  const CouplingsView& of = view.level[q].couplings[partner][layer];
   if (of.columns == 0 || of.begin[of.columns] == 0) {
     return false;
   }
@@ -139,7 +140,7 @@ bool find_section(const ModelView& view, std::uint32_t n, CouplingSection& secti
   section.row_level = partner == averages ? (q < 2 ? 0 : q - 2) : (partner == parents ? q - 1 : q);
   section.row_group =
       partner == averages ? Coefficients::averages(section.row_level) : Coefficients::details(section.row_level);
-  section.weak = n % 2 == static_cast<std::uint32_t>(layout::Strength::weak);
+  section.layer = layer;
   section.factor = of.quantum * widening(of);
   return true;
 }

@@ -26,7 +26,7 @@ struct CouplingSection {
   std::uint32_t row_group = 0;
   std::uint32_t column_level = 0;
   std::uint32_t row_level = 0;
-  bool weak = false;
+  std::uint32_t layer = 0;                        ///< layout::Strength
   float factor = 0;                               ///< value of one quantum, times the widening of the stored values
   const std::uint32_t* mirrored_begin = nullptr;  ///< [rows + 1] into mirrored
   const BlockPlace* mirrored = nullptr;           ///< [blocks] by rows; target: the column
@@ -41,7 +41,7 @@ struct CouplingSection {
 
 /// All sections that hold blocks, coarse to fine.
 struct Couplings {
-  static constexpr std::uint32_t most = 6 * layout::max_levels;
+  static constexpr std::uint32_t most = 3 * layout::strengths * layout::max_levels;
   std::uint32_t count = 0;
   const CouplingSection* section = nullptr;
 };

@@ -43,11 +43,17 @@ double relative_error(std::span<const float> computed, std::size_t stride, const
 double tolerance_of(const DenseAnswer& dense) { return 60 * dense.condition * 0x1p-24; }
 
 TEST_CASE("every constraint level agrees with a dense double-precision solution of what the file stands for") {
-  for (const auto& options : {SyntheticOptions{.levels = 4, .strong_bits = 16, .weak_bits = 16, .epsilon = 0},
-                              SyntheticOptions{.levels = 4}, SyntheticOptions{.levels = 4, .field_layers = 1},
-                              SyntheticOptions{.levels = 5, .strong_bits = 4, .weak_bits = 8, .touchable_above = 0.5},
-                              SyntheticOptions{.levels = 4, .lifted = false}, SyntheticOptions{.levels = 3},
-                              SyntheticOptions{.levels = 2, .field_layers = 1}, SyntheticOptions{.levels = 1}}) {
+  for (const auto& options :
+       {SyntheticOptions{.levels = 4, .strong_bits = 16, .medium_bits = 16, .weak_bits = 16, .epsilon = 0},
+        SyntheticOptions{.levels = 4}, SyntheticOptions{.levels = 4, .field_layers = 1},
+        SyntheticOptions{.levels = 5,
+        .strong_bits = 4,
+        .medium_bits = 16,
+        .weak_bits = 8,
+        .field_layers = 2,
+        .touchable_above = 0.5},
+        SyntheticOptions{.levels = 4, .lifted = false}, SyntheticOptions{.levels = 3, .field_layers = 2},
+        SyntheticOptions{.levels = 2, .field_layers = 1}, SyntheticOptions{.levels = 1}}) {
     const TestModel model(options);
     CAPTURE(options.levels);
     CAPTURE(options.field_layers);
@@ -82,7 +88,7 @@ TEST_CASE("every constraint level agrees with a dense double-precision solution 
 }
 
 TEST_CASE("nothing dropped and 16 bits reproduce the exact compliance to quantisation error") {
-  const TestModel model({.levels = 3, .strong_bits = 16, .weak_bits = 16, .epsilon = 0});
+  const TestModel model({.levels = 3, .strong_bits = 16, .medium_bits = 16, .weak_bits = 16, .epsilon = 0});
   const ModelView& view = model.view();
   TestBody body(model, {.max_contacts = 8, .cached_factors = 1});
   const auto position = [&view](std::uint32_t node) {
@@ -308,7 +314,7 @@ TEST_CASE("a capacitance matrix that is not positive definite is refused, not an
   ModelData data = synthetic_model({.levels = 1});
   data.levels[0].couplings[2][0].quantum = 1;
   for (std::int16_t& value : data.levels[0].couplings[2][0].value) {
-    value = static_cast<std::int16_t>(value < 0 ? -100 : 100);
+    value = static_cast<std::int16_t>(value < 0 ? -30000 : 30000);
   }
   const TestModel model(encode(data));
   TestBody body(model, {.max_contacts = 4, .cached_factors = 2});

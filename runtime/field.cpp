@@ -11,7 +11,7 @@ constexpr std::uint32_t ahead = 2;  // lists whose memory is on its way while on
 
 bool zero(Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0; }
 
-// scales the forces and adds the diagonal, which is the identity
+// scales the forces and adds the diagonal blocks
 void scale_forces(const Coefficients& coefficients, const Touched& touched, std::uint32_t field_level, Float4* force,
                   Float4* sum) {
   for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
@@ -19,9 +19,10 @@ void scale_forces(const Coefficients& coefficients, const Touched& touched, std:
     const bool diagonal = Coefficients::has_diagonal(g) && group.level <= field_level;
     for (std::uint32_t k = 0; k < touched.count[g]; ++k) {
       const std::uint32_t i = touched.list[g][k];
-      force[i] = without_denormals(scaled(group.scale[i - group.begin], force[i]));
+      const layout::Scale& scale = group.scale[i - group.begin];
+      force[i] = without_denormals(symmetric_product(scale.root, force[i]));
       if (diagonal) {
-        sum[i] += force[i];
+        sum[i] += symmetric_product(scale.diagonal, force[i]);
       }
     }
   }
@@ -58,7 +59,7 @@ void scale_back(const ModelView& view, const Coefficients& coefficients, std::ui
     Float4* from = sum + group.begin;
     const std::uint32_t kept = q <= field_level ? group.count : 0;
     for (std::uint32_t i = 0; i < kept; ++i) {
-      to[i] = scaled(group.scale[i], from[i]);
+      to[i] = symmetric_product(group.scale[i].root, from[i]);
       from[i] = Float4{};
     }
     std::memset(to + kept, 0, sizeof(Float4) * (level.counts->node_count - kept));
@@ -66,7 +67,7 @@ void scale_back(const ModelView& view, const Coefficients& coefficients, std::ui
   for (std::uint32_t m = 1; m <= coefficients.last_averages && m <= field_level; ++m) {
     const CoefficientGroup& group = coefficients.group[Coefficients::averages(m)];
     for (std::uint32_t i = 0; i < group.count; ++i) {
-      sum[group.begin + i] = scaled(group.scale[i], sum[group.begin + i]);
+      sum[group.begin + i] = symmetric_product(group.scale[i].root, sum[group.begin + i]);
     }
   }
 }

@@ -16,7 +16,7 @@ struct FieldModel {
 
 /// Whether a layer of couplings is part of the field.
 inline bool in_field(const ModelView& view, const CouplingSection& section) {
-  return !section.weak || view.info->field_layers > 1;
+  return section.layer < view.info->field_layers;
 }
 
 /// Finest details that forces of level c reach: beyond, they couple with averages that nobody knows.

@@ -44,7 +44,7 @@ bool all_zero(const Float4* x, std::uint32_t count) {
 }
 
 TEST_CASE("a field cut off at a level keeps its averages there, interpolates beyond, and leaves the scratch zero") {
-  for (const std::uint32_t layers : {1U, 2U}) {
+  for (const std::uint32_t layers : {1U, 2U, 3U}) {
     const TestModel model({.levels = 5, .field_layers = layers, .touchable_above = 0.5});
     const ModelView& view = model.view();
     const DenseReference reference(view);

@@ -48,7 +48,7 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
 }
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level) noexcept {
-  return 3 * set.visits + 16 * set.coefficients + 9 * set.blocks[field_level] + 9 * model.rows[field_level] +
+  return 3 * set.visits + 24 * set.coefficients + 9 * set.blocks[field_level] + 9 * model.rows[field_level] +
          model.nodes + model.transform_work[field_level] + 4 * set.contacts + 2 * model.sections;
 }
 

@@ -29,7 +29,7 @@ struct SetCounts {
   std::uint64_t coefficients = 0;                 ///< that the columns touch, none counted twice
   std::uint64_t visits = 0;                       ///< of touching them
   std::uint64_t blocks[layout::max_levels] = {};  ///< coupled with those, in rows of levels 0..F
-  std::uint64_t stored = 0;                       ///< blocks of both layers in those columns, up to the set's level
+  std::uint64_t stored = 0;                       ///< blocks of all layers in those columns, up to the set's level
   std::uint64_t column_coefficients = 0;          ///< ColumnCost over all columns
   std::uint64_t column_blocks = 0;
   std::uint64_t column_visits = 0;

@@ -61,7 +61,14 @@ void fill_couplings(std::mt19937_64& random, std::size_t columns, std::size_t ro
 void fill_scales(std::mt19937_64& random, std::vector<layout::Scale>& scales) {
   for (layout::Scale& scale : scales) {
     const float size = 0x1p-6F * (1 + uniform(random));
-    scale = {{size, size / 4 * uniform(random), size / 4 * uniform(random), size, size / 4 * uniform(random), size}};
+    for (float* matrix : {scale.root, scale.diagonal}) {
+      for (int k = 0; k < 6; ++k) {
+        matrix[k] = k == 0 || k == 3 || k == 5 ? size : size / 4 * uniform(random);
+      }
+    }
+    for (float& value : scale.diagonal) {
+      value *= 64;
+    }
   }
 }
 
@@ -90,7 +97,7 @@ ModelData arbitrary_model() {
     fill_scales(random, level.averages);
     const std::size_t rows[] = {up_to[q < 2 ? 0 : q - 2], q < 2 ? 0 : domain(data.levels[q - 1]), domain(level)};
     for (std::size_t partner = 0; partner < 3; ++partner) {
-      for (std::size_t strength = 0; strength < 2; ++strength) {
+      for (std::size_t strength = 0; strength < layout::strengths; ++strength) {
         CouplingsData& couplings = level.couplings[partner][strength];
         if (couplings.begin.empty()) {
           continue;

@@ -13,7 +13,7 @@ StressResult stress(const SyntheticOptions& synthetic, const StressOptions& opti
 
 TEST_CASE("no script makes a body spend more than declared, answer garbage, allocate, lock or enter the kernel") {
   const SyntheticOptions models[] = {{.levels = 1},
-                                     {.levels = 3, .strong_bits = 16, .weak_bits = 16, .epsilon = 0},
+                                     {.levels = 3, .strong_bits = 16, .medium_bits = 16, .weak_bits = 16, .epsilon = 0},
                                      {.levels = 4},
                                      {.levels = 4, .coarsest_constraint_level = 2, .touchable_above = 0.6},
                                      {.levels = 5, .field_layers = 1, .touchable_above = 0.5}};

@@ -32,16 +32,15 @@ int value_of(const CouplingsView& view, std::size_t block, std::size_t k) {
   return static_cast<std::int16_t>(byte(18 * block + 2 * k) | byte(18 * block + 2 * k + 1) << 8);
 }
 
-Eigen::Matrix3d root(const layout::Scale& scale) {
-  const float* r = scale.root;
+Eigen::Matrix3d symmetric(const float (&r)[6]) {
   Eigen::Matrix3d m;
   m << r[0], r[1], r[2], r[1], r[3], r[4], r[2], r[4], r[5];
   return m;
 }
 
 // the stored blocks of `layers` layers, scaled back: columns by rows transposed, that is 3 columns x 3 rows
-MatrixXd decode(const CouplingsView (&layer)[2], std::uint32_t layers, std::uint32_t columns, std::uint32_t rows,
-                const layout::Scale* of_column, const layout::Scale* of_row) {
+MatrixXd decode(const CouplingsView (&layer)[layout::strengths], std::uint32_t layers, std::uint32_t columns,
+                std::uint32_t rows, const layout::Scale* of_column, const layout::Scale* of_row) {
   MatrixXd m = MatrixXd::Zero(3 * columns, 3 * rows);
   for (std::uint32_t s = 0; s < layers; ++s) {
     const CouplingsView& view = layer[s];
@@ -52,7 +51,7 @@ MatrixXd decode(const CouplingsView (&layer)[2], std::uint32_t layers, std::uint
           block(static_cast<Index>(k % 3), static_cast<Index>(k / 3)) = double{view.quantum} * value_of(view, b, k);
         }
         const std::uint32_t i = row_of(view, j, b);
-        m.block<3, 3>(3 * j, 3 * i) += (root(of_row[i]) * block * root(of_column[j])).transpose();
+        m.block<3, 3>(3 * j, 3 * i) += (symmetric(of_row[i].root) * block * symmetric(of_column[j].root)).transpose();
       }
     }
   }
@@ -61,7 +60,7 @@ MatrixXd decode(const CouplingsView (&layer)[2], std::uint32_t layers, std::uint
 
 void add_diagonal(const layout::Scale* scale, MatrixXd& m) {
   for (Index i = 0; i < m.rows() / 3; ++i) {
-    m.block<3, 3>(3 * i, 3 * i) += root(scale[i]) * root(scale[i]);
+    m.block<3, 3>(3 * i, 3 * i) += symmetric(scale[i].root) * symmetric(scale[i].diagonal) * symmetric(scale[i].root);
   }
 }
 
@@ -96,7 +95,7 @@ DenseReference::DenseReference(const ModelView& view) : view_(view), inverse_(vi
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     inverse_[q] = inverse_matrix(view, q);
   }
-  for (const std::uint32_t layers : {1U, 2U}) {
+  for (const std::uint32_t layers : {1U, 2U, 3U}) {
     auto& compliance = compliance_[layers - 1];
     auto& coupled = coupled_[layers - 1];
     coupled.resize(view.levels);
@@ -193,7 +192,8 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
     }
     Index i = 0;
     for (const auto& [row, of_row] : members) {
-      capacitance.block<3, 3>(3 * i++, 3 * j) = reference.compliance(c, 2).block<3, 3>(3 * row, 3 * place);
+      capacitance.block<3, 3>(3 * i++, 3 * j) =
+          reference.compliance(c, layout::strengths).block<3, 3>(3 * row, 3 * place);
     }
     ++j;
   }

@@ -15,7 +15,7 @@ class DenseReference {
  public:
   explicit DenseReference(const ModelView& view);
 
-  /// Between the averages of level c, with 1 or 2 layers of couplings; m/N.
+  /// Between the averages of level c, with 1 to 3 layers of couplings; m/N.
   [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c, std::uint32_t layers) const {
     return compliance_[layers - 1][c];
   }
@@ -28,9 +28,9 @@ class DenseReference {
 
  private:
   const ModelView& view_;
-  std::vector<Eigen::MatrixXd> inverse_;     // T_l^-1
-  std::vector<Eigen::MatrixXd> coupled_[2];  // B'_l: details l, by averages l-2 and details l-1
-  std::vector<Eigen::MatrixXd> compliance_[2];
+  std::vector<Eigen::MatrixXd> inverse_;                     // T_l^-1
+  std::vector<Eigen::MatrixXd> coupled_[layout::strengths];  // B'_l: details l, by averages l-2 and details l-1
+  std::vector<Eigen::MatrixXd> compliance_[layout::strengths];
 };
 
 struct DenseAnswer {
