@@ -1,0 +1,103 @@
+#include "runtime/field.hpp"
+
+#include <cstring>
+
+#include "runtime/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+constexpr std::uint32_t ahead = 2;  // lists whose memory is on its way while one is summed
+
+bool zero(Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0; }
+
+// scales the forces and adds the diagonal blocks
+void scale_forces(const Coefficients& coefficients, const Touched& touched, std::uint32_t field_level, Float4* force,
+                  Float4* sum) {
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    const CoefficientGroup& group = coefficients.group[g];
+    const bool diagonal = Coefficients::has_diagonal(g) && group.level <= field_level;
+    for (std::uint32_t k = 0; k < touched.count[g]; ++k) {
+      const std::uint32_t i = touched.list[g][k];
+      const layout::Scale& scale = group.scale[i - group.begin];
+      force[i] = without_denormals(symmetric_product(scale.root, force[i]));
+      if (diagonal) {
+        sum[i] += symmetric_product(scale.diagonal, force[i]);
+      }
+    }
+  }
+}
+
+void add_couplings(const Coefficients& coefficients, const CouplingSection& section, bool mirrored,
+                   const Touched& touched, const Float4* force, Float4* sum) {
+  const std::uint32_t from = mirrored ? section.row_group : section.column_group;
+  const std::uint32_t to = mirrored ? section.column_group : section.row_group;
+  const std::uint32_t begin = coefficients.group[from].begin;
+  const std::uint32_t* list = touched.list[from];
+  const std::uint32_t count = touched.count[from];
+  Float4* target = sum + coefficients.group[to].begin;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (k + ahead < count) {
+      const std::uint32_t soon = list[k + ahead] - begin;
+      mirrored ? prefetch_mirrored(section, soon) : prefetch_direct(section, soon);
+    }
+    const Float4 f = without_denormals(force[list[k]] * splat(section.factor));
+    if (zero(f)) {
+      continue;
+    }
+    mirrored ? add_mirrored(section, list[k] - begin, f, target) : add_direct(section, list[k] - begin, f, target);
+  }
+}
+
+// scaled back: details and averages of level 0 to the nodes, zero outside the domain and above the field level
+void scale_back(const ModelView& view, const Coefficients& coefficients, std::uint32_t field_level, Float4* sum,
+                Float4* x) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    const CoefficientGroup& group = coefficients.group[Coefficients::details(q)];
+    Float4* to = x + level.node_begin;
+    Float4* from = sum + group.begin;
+    const std::uint32_t kept = q <= field_level ? group.count : 0;
+    for (std::uint32_t i = 0; i < kept; ++i) {
+      to[i] = symmetric_product(group.scale[i].root, from[i]);
+      from[i] = Float4{};
+    }
+    std::memset(to + kept, 0, sizeof(Float4) * (level.counts->node_count - kept));
+  }
+  for (std::uint32_t m = 1; m <= coefficients.last_averages && m <= field_level; ++m) {
+    const CoefficientGroup& group = coefficients.group[Coefficients::averages(m)];
+    for (std::uint32_t i = 0; i < group.count; ++i) {
+      sum[group.begin + i] = symmetric_product(group.scale[i].root, sum[group.begin + i]);
+    }
+  }
+}
+
+}  // namespace
+
+void compute_field(const FieldModel& model, const Touched& touched, std::uint32_t field_level, Float4* force,
+                   Float4* sum, Float4* x) noexcept {
+  const ModelView& view = *model.refinement.view;
+  const Coefficients& coefficients = model.coefficients;
+  transform_forces(model.refinement, coefficients, touched, force);
+  scale_forces(coefficients, touched, field_level, force, sum);
+  for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
+    const CouplingSection& section = model.couplings.section[s];
+    if (in_field(view, section) && section.row_level <= field_level) {
+      add_couplings(coefficients, section, false, touched, force, sum);
+    }
+    if (in_field(view, section) && section.column_level <= field_level) {
+      add_couplings(coefficients, section, true, touched, force, sum);
+    }
+  }
+  clear_forces(touched, force);
+  scale_back(view, coefficients, field_level, sum, x);
+
+  const Float4* averages[layout::max_levels] = {};
+  for (std::uint32_t m = 1; m <= coefficients.last_averages && m <= field_level; ++m) {
+    averages[m] = sum + coefficients.group[Coefficients::averages(m)].begin;
+  }
+  inverse_transform(view, *model.refinement.lifting, field_level, averages, x);
+  std::memset(sum + view.domain_count, 0, sizeof(Float4) * (coefficients.count - view.domain_count));
+}
+
+}  // namespace greenloop
