@@ -19,17 +19,41 @@ struct SomeRows {
   BlockPlace operator[](std::uint32_t n) const { return {index[n], begin + n}; }
 };
 
-// calls visit(list, length) with the blocks of a column
+// the blocks of a column, or of a row
+
+struct EveryColumn {
+  const CouplingsView& view;
+  EveryRow operator[](std::uint32_t j) const { return {view.begin[j]}; }
+  [[nodiscard]] std::uint32_t length(std::uint32_t j) const { return view.begin[j + 1] - view.begin[j]; }
+  void prefetch(std::uint32_t) const {}
+};
+
+template <class Index>
+struct SomeColumns {
+  const CouplingsView& view;
+  SomeRows<Index> operator[](std::uint32_t j) const {
+    return {static_cast<const Index*>(view.index) + view.begin[j], view.begin[j]};
+  }
+  [[nodiscard]] std::uint32_t length(std::uint32_t j) const { return view.begin[j + 1] - view.begin[j]; }
+  void prefetch(std::uint32_t j) const { __builtin_prefetch(static_cast<const Index*>(view.index) + view.begin[j]); }
+};
+
+struct MirroredRows {
+  const CouplingSection& section;
+  const BlockPlace* operator[](std::uint32_t i) const { return section.mirrored + section.mirrored_begin[i]; }
+  [[nodiscard]] std::uint32_t length(std::uint32_t i) const { return section.mirrored_length(i); }
+  void prefetch(std::uint32_t i) const { __builtin_prefetch(section.mirrored + section.mirrored_begin[i]); }
+};
+
+// calls visit(the blocks by columns)
 template <class Visit>
-void with_column(const CouplingsView& view, std::uint32_t column, Visit visit) {
-  const std::uint32_t begin = view.begin[column];
-  const std::uint32_t length = view.begin[column + 1] - begin;
+void with_columns(const CouplingsView& view, Visit visit) {
   if (view.index_bytes == 0) {
-    visit(EveryRow{begin}, length);
+    visit(EveryColumn{view});
   } else if (view.index_bytes == 2) {
-    visit(SomeRows<std::uint16_t>{static_cast<const std::uint16_t*>(view.index) + begin, begin}, length);
+    visit(SomeColumns<std::uint16_t>{view});
   } else {
-    visit(SomeRows<std::uint32_t>{static_cast<const std::uint32_t*>(view.index) + begin, begin}, length);
+    visit(SomeColumns<std::uint32_t>{view});
   }
 }
 
@@ -51,12 +75,32 @@ Block load(const CouplingsView& view, std::uint32_t position) {
   return mirror ? transposed(block) : block;
 }
 
-template <bool mirror, class Stored, class List>
-void add_list(const CouplingsView& view, List list, std::uint32_t length, Float4 force, Float4* sums) {
-  const Float4 f[3] = {splat3(force[0]), splat3(force[1]), splat3(force[2])};
-  for (std::uint32_t n = 0; n < length; ++n) {
-    const BlockPlace place = list[n];
-    sums[place.target] += product(load<mirror, Stored>(view, place.position), f);
+bool zero(Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0; }
+
+template <bool mirror, class Stored, class Lists>
+void add_lists(const CouplingSection& section, const Lists& lists, const SparseGroup& from, Float4* to) {
+  constexpr std::uint32_t ahead = 2;  // lists whose memory is on its way while one is summed
+  const CouplingsView& view = section.view;
+  for (std::uint32_t k = 0; k < from.count; ++k) {
+    if (k + ahead < from.count) {
+      const std::uint32_t soon = from.list[k + ahead] - from.begin;
+      lists.prefetch(soon);
+      if (!mirror) {
+        __builtin_prefetch(view.value + Stored::bytes * std::size_t{view.begin[soon]});
+      }
+    }
+    const Float4 force = without_denormals(from.force[from.list[k]] * splat(section.factor));
+    if (zero(force)) {
+      continue;
+    }
+    const Float4 f[3] = {splat3(force[0]), splat3(force[1]), splat3(force[2])};
+    const std::uint32_t source = from.list[k] - from.begin;
+    const auto list = lists[source];
+    const std::uint32_t length = lists.length(source);
+    for (std::uint32_t n = 0; n < length; ++n) {
+      const BlockPlace place = list[n];
+      to[place.target] += product(load<mirror, Stored>(view, place.position), f);
+    }
   }
 }
 
@@ -71,19 +115,6 @@ std::uint32_t choose(List list, std::uint32_t length, const std::uint32_t* slot,
   return count;
 }
 
-void prefetch_lines(const void* data, std::size_t begin, std::size_t size) {
-  constexpr std::size_t line = 64;
-  const auto* bytes = static_cast<const char*>(data) + begin;
-  for (std::size_t at = 0; at < size; at += line) {
-    __builtin_prefetch(bytes + at);
-  }
-}
-
-std::size_t block_bytes(const CouplingsView& view) {
-  return view.value_bits == 4 ? StoredBlock<4>::bytes
-                              : (view.value_bits == 8 ? StoredBlock<8>::bytes : StoredBlock<16>::bytes);
-}
-
 float widening(const CouplingsView& view) {
   return view.value_bits == 4 ? StoredBlock<4>::widening
                               : (view.value_bits == 8 ? StoredBlock<8>::widening : StoredBlock<16>::widening);
@@ -92,13 +123,13 @@ float widening(const CouplingsView& view) {
 // calls visit(column, row, position) for every block, by columns
 template <class Visit>
 void visit_blocks(const CouplingsView& view, Visit visit) {
-  for (std::uint32_t j = 0; j < view.columns; ++j) {
-    with_column(view, j, [&](auto list, std::uint32_t length) {
-      for (std::uint32_t n = 0; n < length; ++n) {
-        visit(j, list[n].target, list[n].position);
+  with_columns(view, [&](const auto& columns) {
+    for (std::uint32_t j = 0; j < view.columns; ++j) {
+      for (std::uint32_t n = 0; n < columns.length(j); ++n) {
+        visit(j, columns[j][n].target, columns[j][n].position);
       }
-    });
-  }
+    }
+  });
 }
 
 void mirror(const CouplingsView& view, std::uint32_t* begin, BlockPlace* blocks) {
@@ -190,39 +221,23 @@ LongestLists longest_lists(const CouplingSection& section) noexcept {
   return longest;
 }
 
-void add_direct(const CouplingSection& section, std::uint32_t column, Float4 force, Float4* rows) noexcept {
+void add_direct(const CouplingSection& section, const SparseGroup& columns, Float4* rows) noexcept {
   with_values(section.view, [&](auto stored) {
-    with_column(section.view, column, [&](auto list, std::uint32_t length) {
-      add_list<false, decltype(stored)>(section.view, list, length, force, rows);
-    });
+    with_columns(section.view,
+                 [&](const auto& lists) { add_lists<false, decltype(stored)>(section, lists, columns, rows); });
   });
 }
 
-void add_mirrored(const CouplingSection& section, std::uint32_t row, Float4 force, Float4* columns) noexcept {
-  with_values(section.view, [&](auto stored) {
-    add_list<true, decltype(stored)>(section.view, section.mirrored + section.mirrored_begin[row],
-                                     section.mirrored_length(row), force, columns);
-  });
-}
-
-void prefetch_direct(const CouplingSection& section, std::uint32_t column) noexcept {
-  const CouplingsView& view = section.view;
-  const std::size_t begin = view.begin[column];
-  const std::size_t length = section.direct_length(column);
-  prefetch_lines(view.value, block_bytes(view) * begin, block_bytes(view) * length);
-  prefetch_lines(view.index, view.index_bytes * begin, view.index_bytes * length);
-}
-
-void prefetch_mirrored(const CouplingSection& section, std::uint32_t row) noexcept {
-  const std::size_t begin = section.mirrored_begin[row];
-  prefetch_lines(section.mirrored, sizeof(BlockPlace) * begin, sizeof(BlockPlace) * section.mirrored_length(row));
+void add_mirrored(const CouplingSection& section, const SparseGroup& rows, Float4* columns) noexcept {
+  with_values(section.view,
+              [&](auto stored) { add_lists<true, decltype(stored)>(section, MirroredRows{section}, rows, columns); });
 }
 
 std::uint32_t load_slotted(const CouplingSection& section, std::uint32_t column, const std::uint32_t* slot,
                            BlockPlace* places, Block* blocks) noexcept {
   std::uint32_t count = 0;
-  with_column(section.view, column,
-              [&](auto list, std::uint32_t length) { count = choose(list, length, slot, places); });
+  with_columns(section.view,
+               [&](const auto& lists) { count = choose(lists[column], lists.length(column), slot, places); });
   with_values(section.view, [&](auto stored) {
     for (std::uint32_t n = 0; n < count; ++n) {
       blocks[n] = load<false, decltype(stored)>(section.view, places[n].position);

@@ -60,16 +60,20 @@ struct LongestLists {
 };
 [[nodiscard]] LongestLists longest_lists(const CouplingSection& section) noexcept;
 
-/// rows += the blocks of a column times force. rows: [rows of the section]; force: scaled force times section.factor.
-/// For the loop; work: 9 units per block.
-void add_direct(const CouplingSection& section, std::uint32_t column, Float4 force, Float4* rows) noexcept;
+/// Scaled forces on some coefficients of a group.
+struct SparseGroup {
+  const std::uint32_t* list;  ///< [count] coefficients
+  std::uint32_t count;
+  std::uint32_t begin;  ///< the group's first coefficient
+  const Float4* force;  ///< by coefficient
+};
 
-/// columns += the transposed blocks of a row times force; see add_direct.
-void add_mirrored(const CouplingSection& section, std::uint32_t row, Float4 force, Float4* columns) noexcept;
+/// rows += the blocks of the columns with a force, times it. rows: [rows of the section]. For the loop; work: 9 units
+/// per block, 4 per column.
+void add_direct(const CouplingSection& section, const SparseGroup& columns, Float4* rows) noexcept;
 
-/// Asks for the memory that add_direct or add_mirrored will soon read; changes no result. For the loop.
-void prefetch_direct(const CouplingSection& section, std::uint32_t column) noexcept;
-void prefetch_mirrored(const CouplingSection& section, std::uint32_t row) noexcept;
+/// columns += the transposed blocks of the rows with a force, times it.
+void add_mirrored(const CouplingSection& section, const SparseGroup& rows, Float4* columns) noexcept;
 
 /// The blocks of a column in the rows that have a slot (not layout::none), to be multiplied by
 /// section.factor; target: the slot. The others are not decoded. Returns their number. places, blocks: [blocks of the

@@ -7,10 +7,6 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint32_t ahead = 2;  // lists whose memory is on its way while one is summed
-
-bool zero(Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0; }
-
 // scales the forces and adds the diagonal blocks
 void scale_forces(const Coefficients& coefficients, const Touched& touched, std::uint32_t field_level, Float4* force,
                   Float4* sum) {
@@ -25,27 +21,6 @@ void scale_forces(const Coefficients& coefficients, const Touched& touched, std:
         sum[i] += symmetric_product(scale.diagonal, force[i]);
       }
     }
-  }
-}
-
-void add_couplings(const Coefficients& coefficients, const CouplingSection& section, bool mirrored,
-                   const Touched& touched, const Float4* force, Float4* sum) {
-  const std::uint32_t from = mirrored ? section.row_group : section.column_group;
-  const std::uint32_t to = mirrored ? section.column_group : section.row_group;
-  const std::uint32_t begin = coefficients.group[from].begin;
-  const std::uint32_t* list = touched.list[from];
-  const std::uint32_t count = touched.count[from];
-  Float4* target = sum + coefficients.group[to].begin;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    if (k + ahead < count) {
-      const std::uint32_t soon = list[k + ahead] - begin;
-      mirrored ? prefetch_mirrored(section, soon) : prefetch_direct(section, soon);
-    }
-    const Float4 f = without_denormals(force[list[k]] * splat(section.factor));
-    if (zero(f)) {
-      continue;
-    }
-    mirrored ? add_mirrored(section, list[k] - begin, f, target) : add_direct(section, list[k] - begin, f, target);
   }
 }
 
@@ -82,11 +57,15 @@ void compute_field(const FieldModel& model, const Touched& touched, std::uint32_
   scale_forces(coefficients, touched, field_level, force, sum);
   for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
     const CouplingSection& section = model.couplings.section[s];
+    const std::uint32_t columns = section.column_group;
+    const std::uint32_t rows = section.row_group;
+    const std::uint32_t column_begin = coefficients.group[columns].begin;
+    const std::uint32_t row_begin = coefficients.group[rows].begin;
     if (in_field(view, section) && section.row_level <= field_level) {
-      add_couplings(coefficients, section, false, touched, force, sum);
+      add_direct(section, {touched.list[columns], touched.count[columns], column_begin, force}, sum + row_begin);
     }
     if (in_field(view, section) && section.column_level <= field_level) {
-      add_couplings(coefficients, section, true, touched, force, sum);
+      add_mirrored(section, {touched.list[rows], touched.count[rows], row_begin, force}, sum + column_begin);
     }
   }
   clear_forces(touched, force);
