@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "offline/compress/scale.hpp"
 
@@ -32,8 +33,10 @@ double largest(const float* value) {
   return static_cast<double>(most);
 }
 
-// the layer of fewest bits that holds a block
-int layer_of(const float* value, double quantum) {
+// the layer of fewest bits that holds a block, or the strong one
+int layer_of(const float* value, double own_norm, const Encoding& encoding) {
+  if (own_norm >= encoding.field_threshold) return strong;
+  const double quantum = encoding.quantum;
   int layer = layers - 1;
   while (layer > strong && largest(value) >= (largest_value[layer] + 0.5) * quantum) --layer;
   return layer;
@@ -48,7 +51,15 @@ double strong_quantum(const CouplingCandidates& candidates, double quantum) {
   return std::max(quantum, most / largest_value[strong]);
 }
 
-void encode_partner(const CouplingCandidates& candidates, const Encoding& encoding,
+// how much larger a coefficient's own diagonal block is than its scale
+std::vector<double> own_sizes(const std::vector<CoefficientScale>& scales) {
+  std::vector<double> sizes;
+  for (const auto& scale : scales) sizes.push_back(std::sqrt(scale.diagonal().trace() / 3));
+  return sizes;
+}
+
+void encode_partner(const CouplingCandidates& candidates, const std::vector<double>& row_sizes,
+                    const std::vector<double>& column_sizes, const Encoding& encoding,
                     std::array<CouplingsData, layout::strengths>& to) {
   for (int layer = 0; layer < layers; ++layer) {
     const double quantum = layer == strong ? strong_quantum(candidates, encoding.quantum) : encoding.quantum;
@@ -59,7 +70,9 @@ void encode_partner(const CouplingCandidates& candidates, const Encoding& encodi
     for (std::size_t b = candidates.begin[j]; b < candidates.begin[j + 1]; ++b) {
       if (static_cast<double>(candidates.norm[b]) < encoding.threshold) continue;
       const float* value = candidates.value.data() + width * b;
-      CouplingsData& layer = to[layer_of(value, encoding.quantum)];
+      const double own_norm =
+          static_cast<double>(candidates.norm[b]) / (row_sizes[candidates.row[b]] * column_sizes[j]);
+      CouplingsData& layer = to[static_cast<std::size_t>(layer_of(value, own_norm, encoding))];
       const Block block = quantize(value, static_cast<double>(layer.quantum));
       if (std::all_of(block.begin(), block.end(), [](std::int16_t q) { return q == 0; })) continue;
       layer.index.push_back(candidates.row[b]);
@@ -108,10 +121,17 @@ void encode_couplings(const CompliancePyramid& pyramid, const Encoding& encoding
       encode_base(from.partner[same], to.couplings[same][strong]);
       continue;
     }
-    for (std::size_t partner = 0; partner < 3; ++partner) {
-      if (level == 1 && partner == static_cast<std::size_t>(layout::Partner::parents)) continue;
-      encode_partner(from.partner[partner], encoding, to.couplings[partner]);
+    const std::vector<double> own = own_sizes(from.details);
+    const auto averages = static_cast<std::size_t>(layout::Partner::averages);
+    const auto parents = static_cast<std::size_t>(layout::Partner::parents);
+    const auto same = static_cast<std::size_t>(layout::Partner::same);
+    encode_partner(from.partner[averages], own_sizes(pyramid.levels[level > 2 ? level - 2 : 0].averages), own, encoding,
+                   to.couplings[averages]);
+    if (level > 1) {
+      encode_partner(from.partner[parents], own_sizes(pyramid.levels[level - 1].details), own, encoding,
+                     to.couplings[parents]);
     }
+    encode_partner(from.partner[same], own, own, encoding, to.couplings[same]);
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <limits>
 
 #include "formats/writer.hpp"
 #include "offline/compress/compliance_pyramid.hpp"
@@ -12,6 +12,9 @@ namespace greenloop::offline {
 struct Encoding {
   double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
   double quantum = 0;    ///< of scaled values
+  /// Blocks that are larger than this relative to their coefficients' own diagonal blocks are strong whatever bits they
+  /// need: what a field is made of.
+  double field_threshold = std::numeric_limits<double>::infinity();
 };
 
 /// Fills in scales and couplings of every level. `model.levels` must have one entry per level of the pyramid. Work:

@@ -14,28 +14,62 @@ namespace {
 constexpr double quantum_per_threshold = 0.5;
 constexpr int bisections = 7;
 
-}  // namespace
-
-Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
+AlignedBytes encoded(const TrialBench& bench, const Encoding& encoding, ModelView& view) {
   ModelData model = bench.tables;
   encode_couplings(bench.pyramid, encoding, model);
-  const AlignedBytes bytes(encode(model));
-  ModelView view;
+  AlignedBytes bytes(encode(model));
   if (const auto result = verify(bytes.span(), view); !result.ok()) {
     throw std::logic_error(std::string("compression: an encoded model does not verify: ") + result.field);
   }
-  const CompressedCompliance compressed(view, all_layers);
-  Trial trial{.encoding = encoding, .bytes = bytes.size()};
-  trial.blocks = view.level[view.levels - 1].counts->kept_blocks;
-  trial.patch_force = patches.worst_force_error(compressed, compressed.finest());
+  return bytes;
+}
+
+FieldError field_error(const TrialBench& bench, const CompressedCompliance& compressed) {
   FieldError error;
   for (const auto& column : bench.columns) {
     error.add(compressed, compressed.finest(), column.row, column.exact.data(), column.area);
   }
+  return error;
+}
+
+}  // namespace
+
+Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
+  ModelView view;
+  const AlignedBytes bytes = encoded(bench, encoding, view);
+  const CompressedCompliance compressed(view, all_layers);
+  Trial trial{.encoding = encoding, .bytes = bytes.size()};
+  trial.blocks = view.level[view.levels - 1].counts->kept_blocks;
+  trial.patch_force = patches.worst_force_error(compressed, compressed.finest());
+  const FieldError error = field_error(bench, compressed);
   trial.rms = error.rms();
   trial.worst_column = error.worst_column();
   if (bench.step_work) trial.step_work = bench.step_work(bytes.span());
   return trial;
+}
+
+Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accuracy, Encoding encoding,
+                                const Progress& progress) {
+  double fails = 2, meets = 0.01;  // own norms are at most about 1
+  bool found = false;
+  for (int step = 0; step <= bisections; ++step) {
+    Encoding trial = encoding;
+    trial.field_threshold = step == 0 ? meets : std::sqrt(fails * meets);
+    ModelView view;
+    const AlignedBytes bytes = encoded(bench, trial, view);
+    const FieldError error = field_error(bench, CompressedCompliance(view, 1));
+    progress(static_cast<double>(step + 1) / (bisections + 1), "search field threshold");
+    if (error.rms() <= accuracy.rms && error.worst_column() <= accuracy.worst_column) {
+      found = true;
+      meets = trial.field_threshold;
+    } else if (step == 0) {
+      break;
+    } else {
+      fails = trial.field_threshold;
+    }
+  }
+  if (found) encoding.field_threshold = meets;
+  return encoding;
 }
 
 Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy, double floor,

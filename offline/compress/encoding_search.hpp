@@ -49,6 +49,12 @@ struct TrialBench {
 /// Encodes and measures one trial. Work: an encoding, 64 columns a patch and the sample's columns.
 [[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
 
+/// `encoding` with the largest field threshold whose strong couplings alone make a field that meets `accuracy` on the
+/// sample's columns; without one if not even those do that a threshold of 1/100 makes strong. Work: some encodings and
+/// the sample's columns for each.
+[[nodiscard]] Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accuracy, Encoding encoding,
+                                              const Progress& progress);
+
 /// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2. If none
 /// does, the most accurate one. Adds every trial to `trials`.
 [[nodiscard]] Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy,

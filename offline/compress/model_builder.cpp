@@ -233,14 +233,18 @@ BuiltModel build_model(const CompressionInput& input, const Progress& progress) 
     Accuracy aim = input.accuracy;
     aim.patch_force *= safety;
     for (int round = 0; round < 4; ++round) {
-      const Trial chosen = search_encoding(bench, searched, aim, floor, report.trials, part(0.3, 0.7));
+      Trial chosen = search_encoding(bench, searched, aim, floor, report.trials, part(0.3, 0.6));
       if (!chosen.meets(aim)) {
         if (floor > least_floor) break;
         unreachable_accuracy(input.accuracy, chosen);
       }
+      Accuracy field = input.accuracy;
+      field.rms *= 0.95;  // of the sample; all columns are measured below
+      field.worst_column *= 0.7;
+      chosen.encoding = search_field_threshold(bench, field, chosen.encoding, part(0.6, 0.7));
       encode_couplings(pyramid, chosen.encoding, model);
       const AlignedBytes bytes = encoded(model, view);
-      const CompressedCompliance all(view, all_layers), strong(view, 2);
+      const CompressedCompliance all(view, all_layers), strong(view, 1);
       const FinestErrors errors = measure_finest(input, all, strong, part(0.7, 0.8));
       const double force = reference.patches.worst_force_error(all, wavelet.finest());
       const Trial measured{.encoding = chosen.encoding,
@@ -266,10 +270,10 @@ BuiltModel build_model(const CompressionInput& input, const Progress& progress) 
       report.lambda_min = certificate_share * least;
       const bool strong_suffices =
           errors.strong.rms() <= input.accuracy.rms && errors.strong.worst_column() <= input.accuracy.worst_column;
-      report.field_layers = strong_suffices ? 2 : all_layers;
-      const FieldError& field = strong_suffices ? errors.strong : errors.all;
-      report.field_rms_error = field.rms();
-      report.field_column_error = field.worst_column();
+      report.field_layers = strong_suffices ? 1 : all_layers;
+      const FieldError& field_error = strong_suffices ? errors.strong : errors.all;
+      report.field_rms_error = field_error.rms();
+      report.field_column_error = field_error.worst_column();
       report.patches = reference.patches.size();
       for (std::size_t level = model.info.coarsest_constraint_level; level < wavelet.finest(); ++level) {
         report.levels.push_back(measure_coarse(input, wavelet, pyramid, all, level));
