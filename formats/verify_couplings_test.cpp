@@ -27,7 +27,10 @@ struct Place {
 constexpr Place rectangular{}, triangular{2, same}, base{0, same};
 constexpr Place nibbles{2, layout::coupling_index(Partner::parents, Strength::weak)};
 
-ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 3}); }
+ModelMutant valid() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 3}));
+  return ModelMutant(file);
+}
 
 CouplingsHeader& header_of(ModelMutant& mutant, Place place = rectangular) {
   return *mutant.records<CouplingsHeader>(SectionKind::couplings, place.q, place.b);

@@ -25,7 +25,10 @@ constexpr std::uint32_t unknown_kind = 77;
 constexpr std::size_t parents = 1, same = 2;  // Partner
 constexpr std::size_t strong = 0;             // Strength
 
-ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 2}); }
+ModelMutant valid() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 2}));
+  return ModelMutant(file);
+}
 
 void check_accepted(ModelMutant& mutant) {
   const VerifyResult result = mutant.verdict();

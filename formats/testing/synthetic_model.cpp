@@ -66,6 +66,7 @@ std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index 
 
 std::vector<Matrix3d> inverse_roots(const std::vector<layout::Scale>& scales) {
   std::vector<Matrix3d> inverses;
+  inverses.reserve(scales.size());
   for (const layout::Scale& scale : scales) inverses.emplace_back(root_of(scale).inverse());
   return inverses;
 }
