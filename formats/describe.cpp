@@ -54,6 +54,7 @@ constexpr std::array rules{
 };
 
 constexpr std::array partners{"averages", "parents", "same"};
+constexpr std::array layers{"strong", "medium", "weak"};
 
 const RuleText& text_of(VerifyRule rule) {
   return *std::find_if(rules.begin(), rules.end() - 1, [&](const RuleText& text) { return text.rule == rule; });
@@ -86,7 +87,9 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
     case SectionKind::scales:
       return fmt::format("Scales({}, {})", a == 0 ? "averages" : "details", b);
     case SectionKind::couplings:
-      return fmt::format("Couplings({}, {}, {})", a, b < 6 ? partners[b / 2] : "?", b % 2 == 0 ? "strong" : "weak");
+      return fmt::format("Couplings({}, {}, {})", a,
+                         b / layout::strengths < partners.size() ? partners[b / layout::strengths] : "?",
+                         layers[b % layout::strengths]);
   }
   return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);
 }

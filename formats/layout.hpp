@@ -18,6 +18,7 @@
 //       Scales(averages, q-2)                            only q > 2: Scale [domain nodes of K(q-2)]
 //       Scales(averages, 0) or Scales(details, q)        q = 0, or q > 0: Scale [domain nodes of K(0), of M(q)]
 //       Couplings(q, partner, strong) for each partner   q = 0: same; q = 1: averages, same; q > 1: all three
+//       Couplings(q, partner, medium) for each partner   only q > 0
 //       Couplings(q, partner, weak) for each partner     only q > 0
 //
 // `first` is Info::coarsest_constraint_level; levels below it have no Representatives. A touchable node is represented
@@ -32,9 +33,9 @@
 //   U_l = T_l^-1 [ U_{l-1}  B_l^T ;  B_l  A_l ] T_l^-T,   U_L = U,
 // where A_l couples details with details, B_l details of level l with averages of level l-1; the columns of B_l are
 // transformed once more, into averages of level l-2 and details of level l-1. Every such coefficient i has a scale, the
-// symmetric root R_i of its own diagonal block; what is stored of the block (i, j) is R_i^-1 U_ij R_j^-1 in whole
-// quanta, and nothing where it is small. Diagonal blocks of details and of the averages of level 0 are the identity and
-// not stored. See docs/theory.md and docs/compression.md.
+// symmetric root R_i of its conditional compliance (what is left of its diagonal block once its neighbours are held);
+// what is stored of the block (i, j) is R_i^-1 U_ij R_j^-1 in whole quanta, and nothing where it is small. The scaled
+// diagonal blocks stand beside the scales. See docs/theory.md and docs/compression.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -73,11 +74,13 @@ enum class Partner : std::uint16_t {
   same = 2,      ///< those of the level itself, each with the ones before it
 };
 
-/// Couplings are stored in two layers by size: a sum over the strong ones alone is already a good field.
-enum class Strength : std::uint16_t { strong = 0, weak = 1 };
+/// Couplings are stored in three layers by size: a sum over the larger ones alone is already a good field.
+enum class Strength : std::uint16_t { strong = 0, medium = 1, weak = 2 };
+
+inline constexpr std::uint16_t strengths = 3;
 
 constexpr std::uint16_t coupling_index(Partner partner, Strength strength) {
-  return static_cast<std::uint16_t>(2 * static_cast<unsigned>(partner) + static_cast<unsigned>(strength));
+  return static_cast<std::uint16_t>(strengths * static_cast<unsigned>(partner) + static_cast<unsigned>(strength));
 }
 
 struct Header {
@@ -125,7 +128,7 @@ struct Info {
   std::uint64_t step_work;     ///< work units per step the scene asked for
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
-  std::uint32_t field_layers;             ///< 1: the strong couplings meet the field accuracy asked for; 2: both do
+  std::uint32_t field_layers;             ///< layers of couplings, strong ones first, that meet the field's accuracy
   std::uint8_t reserved[148];
 };
 static_assert(sizeof(Info) == 256);
@@ -168,11 +171,12 @@ struct RefinementRecord {
 };
 static_assert(sizeof(RefinementRecord) == 16);
 
-/// The symmetric root R of a coefficient's diagonal block: xx, xy, xz, yy, yz, zz; (m/N)^(1/2). Positive definite.
+/// The scale of a coefficient: two symmetric positive definite matrices xx, xy, xz, yy, yz, zz.
 struct Scale {
-  float root[6];
+  float root[6];      ///< R; (m/N)^(1/2)
+  float diagonal[6];  ///< R^-1 U_ii R^-1; of averages above level 0 it is not used
 };
-static_assert(sizeof(Scale) == 24);
+static_assert(sizeof(Scale) == 48);
 
 /// Sparse 3x3 blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
 ///   begin  u32 [n + 1]     first block of each column

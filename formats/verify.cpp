@@ -38,8 +38,8 @@ class SectionWalk {
     return next(SectionKind::level, q, 0, verify_level) && next(SectionKind::nodes, q, 0, verify_nodes) &&
            (q == 0 ? next(SectionKind::base_triangles, 0, 0, verify_base_triangles)
                    : next(SectionKind::refinement, q, 0, verify_refinement)) &&
-           representatives(q) && scales(q) && couplings(q, Strength::strong) && couplings(q, Strength::weak) &&
-           verify_counts(q, context_);
+           representatives(q) && scales(q) && couplings(q, Strength::strong) && couplings(q, Strength::medium) &&
+           couplings(q, Strength::weak) && verify_counts(q, context_);
   }
 
   // (c, q) for c = first..q, then (q, r) for r = 0..q-1, of the constraint levels that contacts may be resolved on
@@ -62,7 +62,7 @@ class SectionWalk {
   }
 
   bool couplings(std::uint32_t q, Strength strength) {
-    if (q == 0 && strength == Strength::weak) return true;
+    if (q == 0 && strength != Strength::strong) return true;
     return (q == 0 || next(q, Partner::averages, strength)) && (q <= 1 || next(q, Partner::parents, strength)) &&
            next(q, Partner::same, strength);
   }

@@ -41,7 +41,7 @@ struct Expected {
 
   Expected(const Section& section, const ModelView& view) {
     const std::uint32_t q = section.a;
-    const auto partner = static_cast<Partner>(section.b / 2);
+    const auto partner = static_cast<Partner>(section.b / layout::strengths);
     columns = view.level[q].counts->domain_count;
     rows = partner == Partner::same      ? columns
            : partner == Partner::parents ? view.level[q - 1].counts->domain_count
@@ -216,7 +216,7 @@ bool verify_couplings(const Section& section, VerifyContext& context) {
       section.data + header.value_offset};
   if (!verify_blocks(check, view, header, expected)) return false;
   context.kept_blocks += header.block_count;
-  context.view.level[section.a].couplings[section.b / 2][section.b % 2] = view;
+  context.view.level[section.a].couplings[section.b / layout::strengths][section.b % layout::strengths] = view;
   return true;
 }
 

@@ -87,7 +87,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
          require_at_least(check, "max_contacts", 0, info.max_contacts, 1) &&
          require_at_most(check, "coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          require_equal(check, "finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
-         require_enum(check, "field_layers", info.field_layers, 2) &&
+         require_enum(check, "field_layers", info.field_layers, layout::strengths) &&
          check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
                        VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
 }
@@ -304,14 +304,17 @@ bool verify_representatives(const Section& section, VerifyContext& context) {
 namespace {
 
 // Sylvester's criterion; the products of floats are exact or nearly so in double
-bool verify_positive_definite(SectionCheck& check, const Scale& scale, std::uint32_t i) {
-  const double xx = scale.root[0], xy = scale.root[1], xz = scale.root[2];
-  const double yy = scale.root[3], yz = scale.root[4], zz = scale.root[5];
+bool verify_positive_definite(SectionCheck& check, const char* field, const float (&six)[6], std::uint32_t i) {
+  for (const float value : six) {
+    if (!require_finite(check, field, i, value)) return false;
+  }
+  const double xx = six[0], xy = six[1], xz = six[2];
+  const double yy = six[3], yz = six[4], zz = six[5];
   const double minors[] = {
       xx, xx * yy - xy * xy,
       xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)};  // of 1, 2 and 3 rows
   for (const double minor : minors) {
-    if (!check.require(minor > 0, VerifyRule::out_of_range, "root", i, minor, 0)) return false;
+    if (!check.require(minor > 0, VerifyRule::out_of_range, field, i, minor, 0)) return false;
   }
   return true;
 }
@@ -326,10 +329,10 @@ bool verify_scales(const Section& section, VerifyContext& context) {
   const auto* scales = section.as<Scale>();
   if (!require_size(check, section, count, sizeof(Scale))) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
-    for (const float value : scales[i].root) {
-      if (!require_finite(check, "root", i, value)) return false;
+    if (!verify_positive_definite(check, "root", scales[i].root, i) ||
+        !verify_positive_definite(check, "diagonal", scales[i].diagonal, i)) {
+      return false;
     }
-    if (!verify_positive_definite(check, scales[i], i)) return false;
   }
   (details ? level.details : level.averages) = scales;
   context.kept_blocks += count;

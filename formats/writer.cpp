@@ -167,7 +167,7 @@ class SectionList {
     add_scales(q == 0 ? Role::averages : Role::details, q);
     require(q > 0 ? level.averages.empty() || q + 2 < levels() : level.details.empty(),
             fmt::format("levels[{}].{} belongs to no section", q, q > 0 ? "averages" : "details"));
-    for (const Strength strength : {Strength::strong, Strength::weak}) {
+    for (const Strength strength : {Strength::strong, Strength::medium, Strength::weak}) {
       for (const Partner partner : {Partner::averages, Partner::parents, Partner::same}) {
         add_couplings(q, partner, strength);
       }

@@ -28,9 +28,9 @@ struct LevelData {
   std::vector<layout::RefinementRecord> refinement;  ///< empty on level 0
   /// [mesh level][node in that level], every mesh level; empty below the coarsest constraint level
   std::vector<std::vector<std::uint32_t>> representatives;
-  std::vector<layout::Scale> details;                     ///< [domain nodes]; empty on level 0
-  std::vector<layout::Scale> averages;                    ///< [domain nodes of K(q)]; empty above level max(L-2, 0)
-  std::array<std::array<CouplingsData, 2>, 3> couplings;  ///< [layout::Partner][layout::Strength]
+  std::vector<layout::Scale> details;   ///< [domain nodes]; empty on level 0
+  std::vector<layout::Scale> averages;  ///< [domain nodes of K(q)]; empty above level max(L-2, 0)
+  std::array<std::array<CouplingsData, layout::strengths>, 3> couplings;  ///< [layout::Partner][layout::Strength]
 };
 
 /// A whole model before encoding. Offline only.

@@ -9,17 +9,19 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 
-Matrix3d matrix_of(const layout::Scale& scale) {
-  const float* r = scale.root;
-  Matrix3d root;
-  root << r[0], r[1], r[2], r[1], r[3], r[4], r[2], r[4], r[5];
-  return root;
+Matrix3d symmetric(const float (&six)[6]) {
+  Matrix3d matrix;
+  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+  return matrix;
 }
+
+Matrix3d matrix_of(const layout::Scale& scale) { return symmetric(scale.root); }
 
 void add_diagonal(const std::vector<layout::Scale>& scales, Index first, MatrixXd& form) {
   for (Index i = 0; i < static_cast<Index>(scales.size()); ++i) {
     const Matrix3d root = matrix_of(scales[static_cast<std::size_t>(i)]);
-    form.block<3, 3>(3 * (first + i), 3 * (first + i)) += root * root;
+    form.block<3, 3>(3 * (first + i), 3 * (first + i)) +=
+        root * symmetric(scales[static_cast<std::size_t>(i)].diagonal) * root;
   }
 }
 

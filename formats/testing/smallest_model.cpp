@@ -24,7 +24,8 @@ ModelData smallest_model() {
                  {{1, 0, 0}, third_of_triangle, layout::node_domain | layout::node_read},
                  {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
   level.representatives = {{0, layout::none, layout::none}};
-  level.averages.assign(2, {{root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance}});
+  level.averages.assign(2, {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
+                            .diagonal = {1, 0, 0, 1, 0, 1}});
   CouplingsData& couplings = level.couplings[static_cast<std::size_t>(layout::Partner::same)][0];
   couplings.value_bits = 16;
   couplings.quantum = quantum;

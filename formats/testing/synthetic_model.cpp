@@ -45,21 +45,34 @@ MatrixXd exact_compliance(const Sphere& sphere) {
   return compliance;
 }
 
-Matrix3d root_of(const layout::Scale& scale) {
-  const float* r = scale.root;
-  Matrix3d root;
-  root << r[0], r[1], r[2], r[1], r[3], r[4], r[2], r[4], r[5];
-  return root;
+Matrix3d symmetric(const float (&six)[6]) {
+  Matrix3d matrix;
+  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+  return matrix;
+}
+
+void store(const Matrix3d& matrix, float (&six)[6]) {
+  std::size_t k = 0;
+  for (Index r = 0; r < 3; ++r) {
+    for (Index c = r; c < 3; ++c) six[k++] = static_cast<float>(matrix(r, c));
+  }
 }
 
 // Of the coefficients begin .. end-1, whose diagonal blocks stand in `blocks`.
 std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index end) {
+  const Eigen::Vector3d direction(1, -1, 0.5);
   std::vector<layout::Scale> scales;
   for (Index i = begin; i < end; ++i) {
     const Matrix3d block = blocks.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
-    const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(block).operatorSqrt();
-    const auto at = [&](Index r, Index c) { return static_cast<float>(root(r, c)); };
-    scales.push_back({{at(0, 0), at(0, 1), at(0, 2), at(1, 1), at(1, 2), at(2, 2)}});
+    // a conditional compliance as if some neighbour were held along one direction; how many are is the writer's choice
+    const Eigen::Vector3d held = block * direction;
+    const Matrix3d conditional = 0.8 * (block - 0.5 / direction.dot(held) * held * held.transpose());
+    const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(conditional).operatorSqrt();
+    layout::Scale scale;
+    store(root, scale.root);
+    const Matrix3d inverse = symmetric(scale.root).inverse();
+    store(inverse * block * inverse, scale.diagonal);
+    scales.push_back(scale);
   }
   return scales;
 }
@@ -67,7 +80,7 @@ std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index 
 std::vector<Matrix3d> inverse_roots(const std::vector<layout::Scale>& scales) {
   std::vector<Matrix3d> inverses;
   inverses.reserve(scales.size());
-  for (const layout::Scale& scale : scales) inverses.emplace_back(root_of(scale).inverse());
+  for (const layout::Scale& scale : scales) inverses.emplace_back(symmetric(scale.root).inverse());
   return inverses;
 }
 
@@ -112,13 +125,13 @@ class Compression {
 
   void measure(const Sphere& sphere) {
     exact_.push_back(exact_compliance(sphere));
-    for (std::uint32_t layers = 2; layers >= options_.field_layers; --layers) {
+    for (std::uint32_t layers = layout::strengths; layers >= options_.field_layers; --layers) {
       const std::vector<MatrixXd> decoded = decoded_compliances(model_, layers);
       for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
         layout::Level& counts = model_.levels[q].counts;
         counts.field_rms_error = static_cast<float>((decoded[q] - exact_[q]).norm() / exact_[q].norm());
         counts.field_column_error = static_cast<float>(worst_column(decoded[q], exact_[q]));
-        if (layers == 1) continue;
+        if (layers < layout::strengths) continue;
         counts.rms_error = counts.field_rms_error;
         counts.worst_column_error = counts.field_column_error;
       }
@@ -139,6 +152,10 @@ class Compression {
     return worst;
   }
 
+  [[nodiscard]] std::size_t layer_of(double norm) const {
+    return norm >= options_.strong ? 0 : norm >= options_.medium ? 1 : 2;
+  }
+
   void add_couplings(std::uint32_t q, const MatrixXd& form) {
     const auto& own = q == 0 ? model_.levels[0].averages : model_.levels[q].details;
     if (q > 0) add_couplings(q, Partner::averages, model_.levels[q < 2 ? 0 : q - 2].averages, own, 0, form);
@@ -149,7 +166,7 @@ class Compression {
   void add_couplings(std::uint32_t q, Partner partner, const std::vector<layout::Scale>& row_scales,
                      const std::vector<layout::Scale>& column_scales, Index first_row, const MatrixXd& form) {
     const auto rows = inverse_roots(row_scales), columns = inverse_roots(column_scales);
-    ScaledBlocks layers[2];
+    ScaledBlocks layers[layout::strengths];
     for (std::size_t j = 0; j < columns.size(); ++j) {
       for (std::size_t i = 0; i < (partner == Partner::same ? j : rows.size()); ++i) {
         const Index column = 3 * (wavelet_.begin(q) + static_cast<Index>(j));
@@ -157,7 +174,7 @@ class Compression {
         const Matrix3d block = rows[i] * form.block<3, 3>(column, row).transpose() * columns[j];
         const double norm = block.norm() / std::sqrt(3.0);
         if (q > 0 && norm < options_.epsilon) continue;
-        layers[q == 0 || norm >= options_.strong ? 0 : 1].add(static_cast<std::uint32_t>(i), block);
+        layers[q == 0 ? 0 : layer_of(norm)].add(static_cast<std::uint32_t>(i), block);
       }
       for (ScaledBlocks& layer : layers) layer.end_column();
     }
@@ -167,7 +184,8 @@ class Compression {
       stored[0].index.clear();
     } else {
       stored[0] = layers[0].quantised(options_.strong_bits);
-      stored[1] = layers[1].quantised(options_.weak_bits);
+      stored[1] = layers[1].quantised(options_.medium_bits);
+      stored[2] = layers[2].quantised(options_.weak_bits);
     }
   }
 
