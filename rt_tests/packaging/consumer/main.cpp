@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
     return 65;
   }
   const auto& finest = opened.model.view().level[opened.model.level_count() - 1];
+  touched_node = finest.node_begin;
   while ((finest.nodes[touched_node - finest.node_begin].flags & greenloop::layout::node_touchable) == 0) {
     ++touched_node;
   }
