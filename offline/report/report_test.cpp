@@ -250,7 +250,7 @@ TEST_CASE("facts say wavelet, bits, layers and certificate") {
   CHECK(fact(data, "layers the field sums") == "2 of 3");
   CHECK(fact(data, "positive definite") == "none");
   data.info.lambda_min = 2.5e-5;
-  CHECK(fact(data, "positive definite") == "every eigenvalue is above 0.000025\u202fm/N");
+  CHECK(fact(data, "positive definite") == "every eigenvalue is above 2.5e-05\u202fm/N");
   data = synthetic_model({.levels = 1});
   CHECK(fact(data, "wavelet") == "lifted linear");
   CHECK(fact(data, "bits per value, strong to weak") == "16, one level only");
