@@ -50,8 +50,9 @@ double strong_quantum(const CouplingCandidates& candidates, double quantum) {
 
 void encode_partner(const CouplingCandidates& candidates, const Encoding& encoding,
                     std::array<CouplingsData, layout::strengths>& to) {
+  const auto common = static_cast<double>(static_cast<float>(encoding.quantum));  // as the file has it
   for (int layer = 0; layer < layers; ++layer) {
-    const double quantum = layer == strong ? strong_quantum(candidates, encoding.quantum) : encoding.quantum;
+    const double quantum = layer == strong ? strong_quantum(candidates, common) : common;
     to[layer] = {
         .value_bits = bits[layer], .quantum = static_cast<float>(quantum), .begin = {0}, .index = {}, .value = {}};
   }
@@ -59,7 +60,7 @@ void encode_partner(const CouplingCandidates& candidates, const Encoding& encodi
     for (std::size_t b = candidates.begin[j]; b < candidates.begin[j + 1]; ++b) {
       if (static_cast<double>(candidates.norm[b]) < encoding.threshold) continue;
       const float* value = candidates.value.data() + width * b;
-      CouplingsData& layer = to[layer_of(value, encoding.quantum)];
+      CouplingsData& layer = to[layer_of(value, common)];
       const Block block = quantize(value, static_cast<double>(layer.quantum));
       if (std::all_of(block.begin(), block.end(), [](std::int16_t q) { return q == 0; })) continue;
       layer.index.push_back(candidates.row[b]);

@@ -1,9 +1,12 @@
 #include "offline/compress/encoding_search.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/verify.hpp"
 #include "offline/compress/field_error.hpp"
 
@@ -14,19 +17,42 @@ namespace {
 constexpr double quantum_per_threshold = 0.5;
 constexpr int bisections = 7;
 
-}  // namespace
+constexpr double coarse_threshold = 0.005;  // that ranks the patches first
 
-Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
+Encoding encoding_at(double threshold) {
+  return {.threshold = threshold, .quantum = quantum_per_threshold * threshold};
+}
+
+ModelData encoded(const TrialBench& bench, const Encoding& encoding) {
   ModelData model = bench.tables;
   encode_couplings(bench.pyramid, encoding, model);
-  const AlignedBytes bytes(encode(model));
-  ModelView view;
+  return model;
+}
+
+// [patch] minus its error, so that the worst sort first
+std::vector<std::pair<double, std::size_t>> ranked(const TrialBench& bench, const ContactPatches& patches,
+                                                   const std::vector<std::size_t>& which, double threshold) {
+  const EncodedModel model(encoded(bench, encoding_at(threshold)));
+  const CompressedCompliance compressed(model.view, all_layers);
+  std::vector<std::pair<double, std::size_t>> errors;
+  for (const std::size_t p : which) errors.emplace_back(-patches.force_error(compressed, compressed.finest(), p), p);
+  std::sort(errors.begin(), errors.end());
+  return errors;
+}
+
+}  // namespace
+
+EncodedModel::EncodedModel(const ModelData& model) : bytes(encode(model)) {
   if (const auto result = verify(bytes.span(), view); !result.ok()) {
     throw std::logic_error(std::string("compression: an encoded model does not verify: ") + result.field);
   }
-  const CompressedCompliance compressed(view, all_layers);
-  Trial trial{.encoding = encoding, .bytes = bytes.size()};
-  trial.blocks = view.level[view.levels - 1].counts->kept_blocks;
+}
+
+Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
+  const EncodedModel model(encoded(bench, encoding));
+  const CompressedCompliance compressed(model.view, all_layers);
+  Trial trial{.encoding = encoding, .bytes = model.bytes.size()};
+  trial.blocks = model.view.level[model.view.levels - 1].counts->kept_blocks;
   trial.patch_force = patches.worst_force_error(compressed, compressed.finest());
   FieldError error;
   for (const auto& column : bench.columns) {
@@ -34,8 +60,24 @@ Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const
   }
   trial.rms = error.rms();
   trial.worst_column = error.worst_column();
-  if (bench.step_work) trial.step_work = bench.step_work(bytes.span());
+  if (bench.step_work) trial.step_work = bench.step_work(model.bytes.span());
   return trial;
+}
+
+ContactPatches worst_patches(const TrialBench& bench, const ContactPatches& patches, std::size_t count, double floor) {
+  std::vector<std::size_t> worst(patches.size());
+  std::iota(worst.begin(), worst.end(), std::size_t{0});
+  double threshold = std::max(coarse_threshold, floor);
+  while (worst.size() > count) {
+    const auto errors = ranked(bench, patches, worst, threshold);
+    const auto indefinite = static_cast<std::size_t>(
+        std::count_if(errors.begin(), errors.end(), [](const auto& error) { return std::isinf(error.first); }));
+    const bool decided = indefinite <= count || threshold <= floor;
+    worst.clear();
+    for (std::size_t i = 0; i < (decided ? count : indefinite); ++i) worst.push_back(errors[i].second);
+    threshold = std::max(threshold / 4, floor);
+  }
+  return patches.choose(worst);
 }
 
 Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy, double floor,
@@ -45,10 +87,11 @@ Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, co
   for (int step = 0; step <= bisections; ++step) {
     // the floor itself first: if that fails nothing helps
     const double threshold = step == 0 ? floor : std::sqrt(fails * meets);
-    const Encoding encoding{.threshold = threshold, .quantum = quantum_per_threshold * threshold};
-    trials.push_back(try_encoding(bench, patches, encoding));
-    const Trial& trial = trials.back();
-    progress(static_cast<double>(step + 1) / (bisections + 1), "search threshold");
+    const auto made = std::find_if(trials.begin(), trials.end(),
+                                   [&](const Trial& trial) { return trial.encoding.threshold == threshold; });
+    if (made == trials.end()) trials.push_back(try_encoding(bench, patches, encoding_at(threshold)));
+    const Trial trial = made == trials.end() ? trials.back() : *made;
+    if (progress) progress(static_cast<double>(step + 1) / (bisections + 1), "search threshold");
     if (closest.bytes == 0 || trial.patch_force < closest.patch_force) closest = trial;
     if (trial.meets(accuracy)) {
       meets = threshold;
