@@ -138,7 +138,7 @@ TEST_CASE("odd rows have the mesh's parents, and lift by the ratio of integrals"
           ++cut;
         } else {
           REQUIRE(wavelet.nodes()[odd.parent[side]] == parent);
-          const double ratio = wavelet.integrals(level)[odd.row] / (2 * wavelet.integrals(level)[odd.parent[side]]);
+          const double ratio = wavelet.integrals(level)[odd.row] / (2 * wavelet.integrals(level - 1)[odd.parent[side]]);
           CHECK(static_cast<double>(odd.lift[side]) == doctest::Approx(ratio).epsilon(1e-6));
         }
       }
