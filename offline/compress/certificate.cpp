@@ -55,13 +55,13 @@ double estimate_least_eigenvalue(const CompressedCompliance& compressed, const P
     if (last || (k + 1) % steps_between_checks == 0) {
       const double before = estimate;
       estimate = least_ritz_value(diagonal, beside);
-      progress(static_cast<double>(k + 1) / static_cast<double>(steps), "certificate");
+      if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(steps), "certificate");
       if (last || estimate <= 0 || before - estimate < settled * estimate) break;
     }
     beside.push_back(norm);
     basis.col(k + 1) = next / norm;
   }
-  progress(1.0, "certificate");
+  if (progress) progress(1.0, "certificate");
   return estimate;
 }
 
@@ -81,7 +81,7 @@ CertificateCheck check_certificate(const CompressedCompliance& compressed, doubl
       matrix.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) =
           Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * i);
     }
-    if (j % 64 == 0) progress(0.5 * static_cast<double>(j) / static_cast<double>(rows), "assemble");
+    if (progress && j % 64 == 0) progress(0.5 * static_cast<double>(j) / static_cast<double>(rows), "assemble");
   }
   CertificateCheck check{.unknowns = static_cast<std::size_t>(n)};
   const double rounding = static_cast<double>(n + 1) * std::numeric_limits<double>::epsilon() * matrix.trace();
@@ -89,7 +89,7 @@ CertificateCheck check_certificate(const CompressedCompliance& compressed, doubl
   matrix.diagonal().array() -= check.shift;
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(matrix);  // in place
   check.holds = lambda_min > 0 && factor.info() == Eigen::Success;
-  progress(1.0, "factor");
+  if (progress) progress(1.0, "factor");
   return check;
 }
 

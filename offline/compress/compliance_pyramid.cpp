@@ -295,7 +295,7 @@ CompliancePyramid build_pyramid(const LinearWavelet& wavelet, const ColumnSource
       } else {
         reduction.add_odd(wavelet.odds(level)[j - evens], x);
       }
-      if (level == finest && j % stream_columns == 0) {
+      if (progress && level == finest && j % stream_columns == 0) {
         progress(0.9 * static_cast<double>(j) / static_cast<double>(rows), "transform columns");
       }
     }
@@ -316,7 +316,7 @@ CompliancePyramid build_pyramid(const LinearWavelet& wavelet, const ColumnSource
     rescale(own.partner[0], inverse_roots(pyramid.levels[level > 2 ? level - 2 : 0].averages), own_inverses);
     if (level > 1) rescale(own.partner[1], inverse_roots(pyramid.levels[level - 1].details), own_inverses);
   }
-  progress(1.0, "transform columns");
+  if (progress) progress(1.0, "transform columns");
   return pyramid;
 }
 

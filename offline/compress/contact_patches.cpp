@@ -92,14 +92,10 @@ double ContactPatches::worst_force_error(const CompressedCompliance& compressed,
   return worst;
 }
 
-ContactPatches ContactPatches::worst_of(const CompressedCompliance& compressed, std::size_t level,
-                                        std::size_t count) const {
-  std::vector<std::pair<double, std::size_t>> errors;
-  for (std::size_t p = 0; p < patches_.size(); ++p) errors.emplace_back(-force_error(compressed, level, p), p);
-  std::sort(errors.begin(), errors.end());
-  ContactPatches worst;
-  for (std::size_t i = 0; i < std::min(count, errors.size()); ++i) worst.patches_.push_back(patches_[errors[i].second]);
-  return worst;
+ContactPatches ContactPatches::choose(const std::vector<std::size_t>& patches) const {
+  ContactPatches chosen;
+  for (const std::size_t p : patches) chosen.patches_.push_back(patches_[p]);
+  return chosen;
 }
 
 }  // namespace greenloop::offline

@@ -31,9 +31,8 @@ class ContactPatches {
   /// The worst over all patches.
   [[nodiscard]] double worst_force_error(const CompressedCompliance& compressed, std::size_t level) const;
 
-  /// The `count` patches that come out worst, as patches of their own.
-  [[nodiscard]] ContactPatches worst_of(const CompressedCompliance& compressed, std::size_t level,
-                                        std::size_t count) const;
+  /// Some of the patches, by number.
+  [[nodiscard]] ContactPatches choose(const std::vector<std::size_t>& patches) const;
 
  private:
   struct Patch {

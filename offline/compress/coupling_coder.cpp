@@ -33,10 +33,8 @@ double largest(const float* value) {
   return static_cast<double>(most);
 }
 
-// the layer of fewest bits that holds a block, or the strong one
-int layer_of(const float* value, double own_norm, const Encoding& encoding) {
-  if (own_norm >= encoding.field_threshold) return strong;
-  const double quantum = encoding.quantum;
+// the layer of fewest bits that holds a block
+int layer_of(const float* value, double quantum) {
   int layer = layers - 1;
   while (layer > strong && largest(value) >= (largest_value[layer] + 0.5) * quantum) --layer;
   return layer;
@@ -61,8 +59,9 @@ std::vector<double> own_sizes(const std::vector<CoefficientScale>& scales) {
 void encode_partner(const CouplingCandidates& candidates, const std::vector<double>& row_sizes,
                     const std::vector<double>& column_sizes, const Encoding& encoding,
                     std::array<CouplingsData, layout::strengths>& to) {
+  const auto common = static_cast<double>(static_cast<float>(encoding.quantum));  // as the file has it
   for (int layer = 0; layer < layers; ++layer) {
-    const double quantum = layer == strong ? strong_quantum(candidates, encoding.quantum) : encoding.quantum;
+    const double quantum = layer == strong ? strong_quantum(candidates, common) : common;
     to[layer] = {
         .value_bits = bits[layer], .quantum = static_cast<float>(quantum), .begin = {0}, .index = {}, .value = {}};
   }
@@ -72,7 +71,8 @@ void encode_partner(const CouplingCandidates& candidates, const std::vector<doub
       const float* value = candidates.value.data() + width * b;
       const double own_norm =
           static_cast<double>(candidates.norm[b]) / (row_sizes[candidates.row[b]] * column_sizes[j]);
-      CouplingsData& layer = to[static_cast<std::size_t>(layer_of(value, own_norm, encoding))];
+      CouplingsData& layer =
+          to[static_cast<std::size_t>(own_norm >= encoding.field_threshold ? strong : layer_of(value, common))];
       const Block block = quantize(value, static_cast<double>(layer.quantum));
       if (std::all_of(block.begin(), block.end(), [](std::int16_t q) { return q == 0; })) continue;
       layer.index.push_back(candidates.row[b]);

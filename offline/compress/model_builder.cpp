@@ -6,22 +6,20 @@
 #include <stdexcept>
 #include <utility>
 
-#include "formats/aligned_bytes.hpp"
-#include "formats/verify.hpp"
 #include "offline/compress/certificate.hpp"
+#include "offline/compress/exact_sample.hpp"
 #include "offline/compress/field_error.hpp"
 #include "offline/compress/model_tables.hpp"
-#include "offline/compress/representatives.hpp"
 
 namespace greenloop::offline {
 namespace {
 
-constexpr std::size_t most_patches = 160;   // measured
-constexpr std::size_t search_patches = 16;  // of them, the worst ones are searched with
-constexpr std::size_t sample_columns = 64;
+constexpr std::size_t search_patches = 16;  // the worst ones, which encodings are tried with
 constexpr std::size_t stream_columns = 64;  // read at a time
 constexpr double first_floor = 0.0005, least_floor = 1e-5;
-constexpr double first_threshold = 0.005;  // that picks the worst patches
+constexpr std::uint32_t strong_layers = 1;
+constexpr double field_safety = 0.7;       // of the field's errors over strong couplings, searched on a sample
+constexpr int rounds = 4;                  // of search and measurement per pyramid
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
 
@@ -43,66 +41,12 @@ void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
   }
 }
 
-std::vector<Eigen::Vector3d> positions(const CompressionInput& input, const LinearWavelet& wavelet, std::size_t level) {
-  std::vector<Eigen::Vector3d> result;
-  for (std::size_t row = 0; row < wavelet.row_end(level); ++row) {
-    result.push_back(input.mesh.positions[wavelet.nodes()[row]]);
-  }
-  return result;
-}
-
-std::vector<double> blocks_of(const Eigen::MatrixXd& columns, std::size_t j) {
-  std::vector<double> blocks(3 * static_cast<std::size_t>(columns.rows()));
-  for (Eigen::Index i = 0; i < columns.rows() / 3; ++i) {
-    Eigen::Map<Eigen::Matrix3d>(blocks.data() + 9 * i) = columns.block<3, 3>(3 * i, static_cast<Eigen::Index>(3 * j));
-  }
-  return blocks;
-}
-
-// What the search and the measurement compare with: gathered while the columns stream by the first time.
-struct Reference {
-  ContactPatches patches;
-  std::vector<SampleColumn> columns;
-
-  Reference(const CompressionInput& input, const LinearWavelet& wavelet)
-      : patches(positions(input, wavelet, wavelet.finest()), most_patches), wanted_(sampled_rows(wavelet.rows())) {
-    for (const std::size_t row : wanted_) {
-      columns.push_back({.row = row, .area = input.area[wavelet.nodes()[row]], .exact = {}});
-    }
-  }
-
-  void add(const Eigen::MatrixXd& block, std::size_t first) {
-    patches.add(block, first);
-    const std::size_t end = first + static_cast<std::size_t>(block.cols()) / 3;
-    for (auto& column : columns) {
-      if (column.row >= first && column.row < end) column.exact = blocks_of(block, column.row - first);
-    }
-  }
-
- private:
-  static std::vector<std::size_t> sampled_rows(std::size_t rows) {
-    const std::size_t count = std::min(sample_columns, rows);
-    std::vector<std::size_t> sample;
-    for (std::size_t i = 0; i < count; ++i) sample.push_back(i * rows / count);
-    return sample;
-  }
-  std::vector<std::size_t> wanted_;
-};
-
-AlignedBytes encoded(const ModelData& model, ModelView& view) {
-  AlignedBytes bytes(encode(model));
-  if (const auto result = verify(bytes.span(), view); !result.ok()) {
-    throw std::logic_error(std::string("compression: the model does not verify: ") + result.field);
-  }
-  return bytes;
-}
-
 // errors of one level against its exact compliance
 ConstraintLevelReport measure_coarse(const CompressionInput& input, const LinearWavelet& wavelet,
                                      const CompliancePyramid& pyramid, const CompressedCompliance& compressed,
                                      std::size_t level) {
   const DenseCompliance& exact = pyramid.coarse[level];
-  ContactPatches patches(positions(input, wavelet, level), most_patches);
+  ContactPatches patches(row_positions(input.mesh, wavelet, level), ExactSample::most_patches);
   FieldError error;
   Eigen::MatrixXd column(3 * exact.rows(), 3);
   for (std::size_t j = 0; j < exact.rows(); ++j) {
@@ -159,30 +103,6 @@ void store_errors(const CompressionReport& report, ModelData& model) {
   model.info.lambda_min = report.lambda_min;
 }
 
-std::size_t add_representatives(const CompressionInput& input, ModelData& model) {
-  const auto& touchable = input.flags;
-  auto first = static_cast<std::size_t>(input.facts.coarsest_constraint_level);
-  for (std::size_t level = first; level < model.levels.size(); ++level) {
-    const auto all = representatives(input.mesh, touchable, level);
-    const bool none = std::all_of(all.begin(), all.end(), [](std::uint32_t r) { return r == layout::none; });
-    if (none) {
-      first = level + 1;
-      continue;
-    }
-    std::size_t begin = 0;
-    for (const std::size_t end : input.mesh.vertex_end) {
-      model.levels[level].representatives.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                       all.begin() + static_cast<std::ptrdiff_t>(end));
-      begin = end;
-    }
-  }
-  if (first >= model.levels.size()) {
-    throw std::invalid_argument("compression: no node is both free and touchable on constraint level " +
-                                std::to_string(input.facts.coarsest_constraint_level) + " or finer");
-  }
-  return first;
-}
-
 [[noreturn]] void unreachable_accuracy(const Accuracy& wanted, const Trial& best) {
   throw std::runtime_error(
       "compression: rms = " + std::to_string(wanted.rms) + ", worst_column = " + std::to_string(wanted.worst_column) +
@@ -191,107 +111,161 @@ std::size_t add_representatives(const CompressionInput& input, ModelData& model)
       ": ask for larger errors");
 }
 
+// An encoding of the whole model, measured on everything.
+struct Measured {
+  Trial trial;
+  FinestErrors errors;
+  double least_eigenvalue = 0;  // m/N, estimated; only of a trial that meets the accuracy
+};
+
+// One build. Its pyramid is made again with a lower floor if no encoding of the one at hand is accurate enough.
+class Build {
+ public:
+  Build(const CompressionInput& input, const Progress& progress)
+      : input_(input),
+        progress_(progress),
+        wavelet_(input.mesh, input.flags, input.area, input.lifted),
+        sample_(checked(input, wavelet_).mesh, wavelet_, input.area) {
+    model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
+    model_.provenance = input.provenance;
+    model_.info.field_layers = all_layers;
+    add_representatives(input.mesh, input.flags, model_);
+    report_.dense_bytes = 36 * wavelet_.rows() * wavelet_.rows();
+  }
+
+  [[nodiscard]] BuiltModel run() {
+    for (double floor = first_floor; !meets_with(floor); floor /= 4) {
+      if (floor <= least_floor) unreachable_accuracy(input_.accuracy, closest_);
+    }
+    store_errors(report_, model_);
+    if (progress_) progress_(1.0, "done");
+    return {std::move(model_), std::move(report_)};
+  }
+
+ private:
+  static const CompressionInput& checked(const CompressionInput& input, const LinearWavelet& wavelet) {
+    require_fit(input, wavelet);
+    return input;
+  }
+
+  // Reports on a part of the work; what is done again does not lead back.
+  [[nodiscard]] Progress part(double begin, double end) {
+    return [this, begin, end](double fraction, std::string_view stage) {
+      done_ = std::max(done_, begin + (end - begin) * fraction);
+      if (progress_) progress_(done_, stage);
+    };
+  }
+
+  [[nodiscard]] CompliancePyramid transform(double floor) {
+    const ColumnSource columns = [&](std::size_t first, std::size_t count) {
+      Eigen::MatrixXd block = input_.columns(first, count);
+      const bool fits = block.rows() == static_cast<Eigen::Index>(3 * wavelet_.rows());
+      if (floor == first_floor && fits) sample_.add(block, first);
+      return block;
+    };
+    return build_pyramid(wavelet_, columns, floor, part(0, 0.3));
+  }
+
+  // searches and measures until an encoding meets the accuracy on everything; false: none does with this floor
+  [[nodiscard]] bool meets_with(double floor) {
+    const CompliancePyramid pyramid = transform(floor);
+    const TrialBench bench{pyramid, model_, sample_.columns(), input_.step_work};
+    const ContactPatches searched = worst_patches(bench, sample_.patches(), search_patches, floor);
+    Accuracy aim = input_.accuracy;
+    aim.patch_force *= safety;
+    std::vector<Trial> trials;
+    for (int round = 0; round < rounds; ++round) {
+      const std::size_t known = trials.size();
+      Trial chosen = search_encoding(bench, searched, aim, floor, trials, part(0.3, 0.6));
+      report_.trials.insert(report_.trials.end(), trials.begin() + static_cast<std::ptrdiff_t>(known), trials.end());
+      closest_ = chosen;
+      if (!chosen.meets(aim)) return false;
+      const Accuracy field{.rms = field_safety * input_.accuracy.rms,
+                           .worst_column = field_safety * input_.accuracy.worst_column};
+      chosen.encoding = search_field_threshold(bench, field, chosen.encoding, part(0.6, 0.7));
+      encode_couplings(pyramid, chosen.encoding, model_);
+      const EncodedModel encoded(model_);
+      const CompressedCompliance all(encoded.view, all_layers);
+      const Measured measured = measure(encoded, all, chosen);
+      if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
+        describe(measured);
+        describe_levels(pyramid, encoded.view, all, measured.trial);
+        return true;
+      }
+      closest_ = measured.trial;
+      tighten(aim, measured);
+    }
+    return false;
+  }
+
+  [[nodiscard]] Measured measure(const EncodedModel& encoded, const CompressedCompliance& all, const Trial& chosen) {
+    const CompressedCompliance strong(encoded.view, strong_layers);
+    Measured measured{.trial = chosen, .errors = measure_finest(input_, all, strong, part(0.7, 0.8))};
+    measured.trial.bytes = encoded.bytes.size();
+    measured.trial.rms = measured.errors.all.rms();
+    measured.trial.worst_column = measured.errors.all.worst_column();
+    measured.trial.patch_force = sample_.patches().worst_force_error(all, wavelet_.finest());
+    if (measured.trial.meets(input_.accuracy)) {
+      measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.8, 0.9));
+    }
+    return measured;
+  }
+
+  // asks the next search for as much less as this one's choice fell short by
+  void tighten(Accuracy& aim, const Measured& measured) const {
+    const Trial& trial = measured.trial;
+    const Accuracy& wanted = input_.accuracy;
+    if (trial.meets(wanted)) {  // but it is not positive definite
+      aim.patch_force *= 0.5;
+      return;
+    }
+    aim.rms *= std::min(1.0, 0.98 * wanted.rms / trial.rms);
+    aim.worst_column *= std::min(1.0, 0.98 * wanted.worst_column / trial.worst_column);
+    aim.patch_force *= std::min(1.0, 0.97 * wanted.patch_force / trial.patch_force);
+  }
+
+  void describe(const Measured& measured) {
+    const auto& [all, strong] = measured.errors;
+    const bool strong_suffices =
+        strong.rms() <= input_.accuracy.rms && strong.worst_column() <= input_.accuracy.worst_column;
+    const FieldError& field = strong_suffices ? strong : all;
+    report_.encoding = measured.trial.encoding;
+    report_.trials.push_back(measured.trial);
+    report_.lambda_min = certificate_share * measured.least_eigenvalue;
+    report_.field_layers = strong_suffices ? strong_layers : all_layers;
+    report_.field_rms_error = field.rms();
+    report_.field_column_error = field.worst_column();
+    report_.patches = sample_.patches().size();
+  }
+
+  void describe_levels(const CompliancePyramid& pyramid, const ModelView& view, const CompressedCompliance& all,
+                       const Trial& finest) {
+    for (std::size_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
+      report_.levels.push_back(measure_coarse(input_, wavelet_, pyramid, all, level));
+    }
+    report_.levels.push_back({.level = static_cast<std::uint32_t>(wavelet_.finest()),
+                              .nodes = wavelet_.rows(),
+                              .rms_error = finest.rms,
+                              .worst_column_error = finest.worst_column,
+                              .patch_force_error = finest.patch_force});
+    for (auto& level : report_.levels) {
+      level.kept_blocks = view.level[level.level].counts->kept_blocks;
+      level.dense_blocks = view.level[level.level].counts->dense_blocks;
+    }
+  }
+
+  const CompressionInput& input_;
+  const Progress& progress_;
+  LinearWavelet wavelet_;
+  ExactSample sample_;
+  ModelData model_;
+  CompressionReport report_;
+  Trial closest_;  // the last that failed
+  double done_ = 0;
+};
+
 }  // namespace
 
-BuiltModel build_model(const CompressionInput& input, const Progress& progress) {
-  const LinearWavelet wavelet(input.mesh, input.flags, input.area, input.lifted);
-  require_fit(input, wavelet);
-  BuiltModel built{describe_mesh(input.mesh, input.flags, input.area, wavelet, input.facts), {}};
-  auto& [model, report] = built;
-  model.provenance = input.provenance;
-  model.info.field_layers = all_layers;
-  model.info.coarsest_constraint_level = static_cast<std::uint32_t>(add_representatives(input, model));
-  report.dense_bytes = 36 * wavelet.rows() * wavelet.rows();
-
-  const auto part = [&](double begin, double end) -> Progress {
-    return [&progress, begin, end](double fraction, std::string_view stage) {
-      if (progress) progress(begin + (end - begin) * fraction, stage);
-    };
-  };
-  Reference reference(input, wavelet);
-  double floor = first_floor;
-  for (;; floor /= 4) {
-    const CompliancePyramid pyramid = build_pyramid(
-        wavelet,
-        [&](std::size_t first, std::size_t count) {
-          Eigen::MatrixXd block = input.columns(first, count);
-          if (floor == first_floor && block.rows() == static_cast<Eigen::Index>(3 * wavelet.rows())) {
-            reference.add(block, first);
-          }
-          return block;
-        },
-        floor, part(0, 0.3));
-    const TrialBench bench{pyramid, model, reference.columns, input.step_work};
-    ModelView view;
-    ModelData first_guess = model;
-    const double guess = std::max(first_threshold, floor);
-    encode_couplings(pyramid, {.threshold = guess, .quantum = 0.5 * guess}, first_guess);
-    const AlignedBytes guessed = encoded(first_guess, view);
-    ContactPatches searched =
-        reference.patches.worst_of(CompressedCompliance(view, all_layers), wavelet.finest(), search_patches);
-
-    Accuracy aim = input.accuracy;
-    aim.patch_force *= safety;
-    for (int round = 0; round < 4; ++round) {
-      Trial chosen = search_encoding(bench, searched, aim, floor, report.trials, part(0.3, 0.6));
-      if (!chosen.meets(aim)) {
-        if (floor > least_floor) break;
-        unreachable_accuracy(input.accuracy, chosen);
-      }
-      Accuracy field = input.accuracy;
-      field.rms *= 0.95;  // of the sample; all columns are measured below
-      field.worst_column *= 0.7;
-      chosen.encoding = search_field_threshold(bench, field, chosen.encoding, part(0.6, 0.7));
-      encode_couplings(pyramid, chosen.encoding, model);
-      const AlignedBytes bytes = encoded(model, view);
-      const CompressedCompliance all(view, all_layers), strong(view, 1);
-      const FinestErrors errors = measure_finest(input, all, strong, part(0.7, 0.8));
-      const double force = reference.patches.worst_force_error(all, wavelet.finest());
-      const Trial measured{.encoding = chosen.encoding,
-                           .bytes = bytes.span().size(),
-                           .blocks = chosen.blocks,
-                           .rms = errors.all.rms(),
-                           .worst_column = errors.all.worst_column(),
-                           .patch_force = force,
-                           .step_work = chosen.step_work};
-      if (!measured.meets(input.accuracy)) {
-        aim.rms *= std::min(1.0, 0.98 * input.accuracy.rms / measured.rms);
-        aim.worst_column *= std::min(1.0, 0.98 * input.accuracy.worst_column / measured.worst_column);
-        aim.patch_force *= std::min(1.0, 0.97 * input.accuracy.patch_force / measured.patch_force);
-        continue;
-      }
-      const double least = estimate_least_eigenvalue(all, part(0.8, 0.9));
-      if (!(least > 0)) {
-        aim.patch_force *= 0.5;
-        continue;
-      }
-      report.encoding = chosen.encoding;
-      report.trials.push_back(measured);
-      report.lambda_min = certificate_share * least;
-      const bool strong_suffices =
-          errors.strong.rms() <= input.accuracy.rms && errors.strong.worst_column() <= input.accuracy.worst_column;
-      report.field_layers = strong_suffices ? 1 : all_layers;
-      const FieldError& field_error = strong_suffices ? errors.strong : errors.all;
-      report.field_rms_error = field_error.rms();
-      report.field_column_error = field_error.worst_column();
-      report.patches = reference.patches.size();
-      for (std::size_t level = model.info.coarsest_constraint_level; level < wavelet.finest(); ++level) {
-        report.levels.push_back(measure_coarse(input, wavelet, pyramid, all, level));
-      }
-      report.levels.push_back({.level = static_cast<std::uint32_t>(wavelet.finest()),
-                               .nodes = wavelet.rows(),
-                               .rms_error = measured.rms,
-                               .worst_column_error = measured.worst_column,
-                               .patch_force_error = measured.patch_force});
-      for (auto& level : report.levels) {
-        level.kept_blocks = view.level[level.level].counts->kept_blocks;
-        level.dense_blocks = view.level[level.level].counts->dense_blocks;
-      }
-      store_errors(report, model);
-      return built;
-    }
-    if (floor <= least_floor) unreachable_accuracy(input.accuracy, report.trials.back());
-  }
-}
+BuiltModel build_model(const CompressionInput& input, const Progress& progress) { return Build(input, progress).run(); }
 
 }  // namespace greenloop::offline

@@ -1,7 +1,11 @@
 #include "offline/compress/model_tables.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
+
+#include "offline/compress/representatives.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -51,6 +55,28 @@ ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint
     model.levels.push_back(std::move(level));
   }
   return model;
+}
+
+void add_representatives(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, ModelData& model) {
+  const std::uint32_t asked = model.info.coarsest_constraint_level;
+  std::uint32_t& coarsest = model.info.coarsest_constraint_level;
+  for (std::uint32_t level = asked; level < model.levels.size(); ++level) {
+    const auto all = representatives(mesh, flags, level);
+    if (std::all_of(all.begin(), all.end(), [](std::uint32_t r) { return r == layout::none; })) {
+      coarsest = level + 1;
+      continue;
+    }
+    std::size_t begin = 0;
+    for (const std::size_t end : mesh.vertex_end) {
+      model.levels[level].representatives.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                       all.begin() + static_cast<std::ptrdiff_t>(end));
+      begin = end;
+    }
+  }
+  if (coarsest >= model.levels.size()) {
+    throw std::invalid_argument("compression: no node is both free and touchable on constraint level " +
+                                std::to_string(asked) + " or finer");
+  }
 }
 
 }  // namespace greenloop::offline

@@ -17,4 +17,9 @@ namespace greenloop::offline {
                                       const std::vector<double>& area, const LinearWavelet& wavelet,
                                       const layout::Info& facts);
 
+/// Adds the representatives of every constraint level from model.info.coarsest_constraint_level on, and moves that up
+/// to the first level where a touchable node has one. Throws std::invalid_argument if there is none. Work: that of
+/// representatives, per level. Offline only.
+void add_representatives(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, ModelData& model);
+
 }  // namespace greenloop::offline
