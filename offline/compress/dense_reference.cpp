@@ -1,6 +1,5 @@
 #include "offline/compress/dense_reference.hpp"
 
-#include <Eigen/LU>
 #include <cstring>
 #include <stdexcept>
 
@@ -13,10 +12,6 @@ namespace {
 
 Eigen::Index at(std::size_t row) { return static_cast<Eigen::Index>(3 * row); }
 
-void set(Eigen::MatrixXd& matrix, std::size_t row, std::size_t column, double value) {
-  matrix.block<3, 3>(at(row), at(column)) = value * Eigen::Matrix3d::Identity();
-}
-
 Eigen::Matrix3d symmetric(const float (&six)[6]) {
   Eigen::Matrix3d matrix;
   const int place[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
@@ -26,16 +21,39 @@ Eigen::Matrix3d symmetric(const float (&six)[6]) {
   return matrix;
 }
 
-Eigen::MatrixXd roots(const layout::Scale* scales, std::size_t count) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(at(count), at(count));
-  for (std::size_t i = 0; i < count; ++i) matrix.block<3, 3>(at(i), at(i)) = symmetric(scales[i].root);
+// block-diagonal
+Sparse diagonal(const layout::Scale* scales, std::size_t count, const float (layout::Scale::*six)[6]) {
+  Sparse matrix(at(count), at(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Matrix3d block = symmetric(scales[i].*six);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      for (Eigen::Index r = 0; r < 3; ++r) matrix.insert(at(i) + r, at(i) + c) = block(r, c);
+    }
+  }
   return matrix;
 }
 
-Eigen::MatrixXd diagonals(const layout::Scale* scales, std::size_t count) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(at(count), at(count));
-  for (std::size_t i = 0; i < count; ++i) matrix.block<3, 3>(at(i), at(i)) = symmetric(scales[i].diagonal);
-  return matrix;
+Sparse roots(const layout::Scale* scales, std::size_t count) { return diagonal(scales, count, &layout::Scale::root); }
+
+// the two factors of a step, with `sign` 1, or of its inverse, with -1
+struct Factors {
+  Sparse predict, lift;
+};
+Factors factors(const LinearWavelet& wavelet, std::size_t level, double sign) {
+  const Eigen::Index size = at(wavelet.row_end(level));
+  Factors result{Sparse(size, size), Sparse(size, size)};
+  result.predict.setIdentity();
+  result.lift.setIdentity();
+  for (const auto& odd : wavelet.odds(level)) {
+    for (int side = 0; side < 2; ++side) {
+      if (odd.parent[side] == LinearWavelet::no_row) continue;
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        result.predict.coeffRef(at(odd.row) + k, at(odd.parent[side]) + k) = -0.5 * sign;
+        result.lift.coeffRef(at(odd.parent[side]) + k, at(odd.row) + k) = sign * static_cast<double>(odd.lift[side]);
+      }
+    }
+  }
+  return result;
 }
 
 double value_at(const CouplingsView& couplings, std::size_t block, std::size_t k) {
@@ -77,23 +95,21 @@ Eigen::MatrixXd couplings(const LevelView& level, layout::Partner partner, std::
 Eigen::MatrixXd own(const LevelView& level, const layout::Scale* scales, std::uint32_t layers) {
   const std::size_t count = level.counts->domain_count;
   const Eigen::MatrixXd half = couplings(level, layout::Partner::same, layers, count, count);
-  const Eigen::MatrixXd root = roots(scales, count);
-  return root * (diagonals(scales, count) + half + half.transpose()) * root;
+  const Sparse root = roots(scales, count);
+  const Eigen::MatrixXd scaled = half + half.transpose() + diagonal(scales, count, &layout::Scale::diagonal);
+  return root * scaled * root;
 }
 
 }  // namespace
 
-Eigen::MatrixXd forward_step(const LinearWavelet& wavelet, std::size_t level) {
-  const Eigen::Index size = at(wavelet.row_end(level));
-  Eigen::MatrixXd predict = Eigen::MatrixXd::Identity(size, size), lift = predict;
-  for (const auto& odd : wavelet.odds(level)) {
-    for (int side = 0; side < 2; ++side) {
-      if (odd.parent[side] == LinearWavelet::no_row) continue;
-      set(predict, odd.row, odd.parent[side], -0.5);
-      set(lift, odd.parent[side], odd.row, static_cast<double>(odd.lift[side]));
-    }
-  }
+Sparse forward_step(const LinearWavelet& wavelet, std::size_t level) {
+  const auto [predict, lift] = factors(wavelet, level, 1);
   return lift * predict;
+}
+
+Sparse backward_step(const LinearWavelet& wavelet, std::size_t level) {
+  const auto [predict, lift] = factors(wavelet, level, -1);
+  return predict * lift;
 }
 
 NonStandardForm dense_form(const LinearWavelet& wavelet, const Eigen::MatrixXd& compliance) {
@@ -103,13 +119,13 @@ NonStandardForm dense_form(const LinearWavelet& wavelet, const Eigen::MatrixXd& 
                        .crossed = std::vector<Eigen::MatrixXd>(levels)};
   form.averages.back() = compliance;
   for (std::size_t level = wavelet.finest(); level > 0; --level) {
-    const Eigen::MatrixXd step = forward_step(wavelet, level);
+    const Sparse step = forward_step(wavelet, level);
     const Eigen::MatrixXd all = step * form.averages[level] * step.transpose();
     const Eigen::Index evens = at(wavelet.row_end(level - 1)), odds = all.rows() - evens;
     form.averages[level - 1] = all.topLeftCorner(evens, evens);
     form.details[level] = all.bottomRightCorner(odds, odds);
     form.crossed[level] = all.bottomLeftCorner(odds, evens);
-    if (level > 1) form.crossed[level] *= forward_step(wavelet, level - 1).transpose();
+    if (level > 1) form.crossed[level] = form.crossed[level] * forward_step(wavelet, level - 1).transpose();
   }
   return form;
 }
@@ -121,7 +137,7 @@ std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view, std::uint3
     const LevelView& from = view.level[level];
     const std::size_t odds = from.counts->domain_count, evens = wavelet.row_end(level - 1);
     const std::size_t below = level > 1 ? level - 2 : 0, averages = wavelet.row_end(below);
-    const Eigen::MatrixXd root = roots(from.details, odds);
+    const Sparse root = roots(from.details, odds);
     Eigen::MatrixXd crossed(at(odds), at(evens));  // B_l
     crossed.leftCols(at(averages)) = root *
                                      couplings(from, layout::Partner::averages, layers, averages, odds).transpose() *
@@ -130,11 +146,11 @@ std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view, std::uint3
       crossed.rightCols(at(evens - averages)) =
           root * couplings(from, layout::Partner::parents, layers, evens - averages, odds).transpose() *
           roots(view.level[level - 1].details, evens - averages);
-      crossed *= forward_step(wavelet, level - 1).inverse().transpose();
+      crossed = crossed * backward_step(wavelet, level - 1).transpose();
     }
     Eigen::MatrixXd all(at(evens + odds), at(evens + odds));
     all << result.back(), crossed.transpose(), crossed, own(from, from.details, layers);
-    const Eigen::MatrixXd back = forward_step(wavelet, level).inverse();
+    const Sparse back = backward_step(wavelet, level);
     result.emplace_back(back * all * back.transpose());
   }
   return result;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -15,8 +16,13 @@
 
 namespace greenloop::offline::test {
 
+using Sparse = Eigen::SparseMatrix<double>;
+
 /// T_l as a matrix, 3 numbers per row of K(level), from the wavelet's odd nodes by the definition.
-[[nodiscard]] Eigen::MatrixXd forward_step(const LinearWavelet& wavelet, std::size_t level);
+[[nodiscard]] Sparse forward_step(const LinearWavelet& wavelet, std::size_t level);
+
+/// T_l^-1.
+[[nodiscard]] Sparse backward_step(const LinearWavelet& wavelet, std::size_t level);
 
 /// The non-standard form of a compliance by dense products T_l U_l T_l^T, m/N.
 struct NonStandardForm {

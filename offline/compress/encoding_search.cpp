@@ -48,6 +48,15 @@ FieldError field_error(const TrialBench& bench, const CompressedCompliance& comp
   return error;
 }
 
+// made once
+Trial trial_at(const TrialBench& bench, const ContactPatches& patches, double threshold, std::vector<Trial>& trials) {
+  const auto made = std::find_if(trials.begin(), trials.end(),
+                                 [&](const Trial& trial) { return trial.encoding.threshold == threshold; });
+  if (made != trials.end()) return *made;
+  trials.push_back(try_encoding(bench, patches, encoding_at(threshold)));
+  return trials.back();
+}
+
 }  // namespace
 
 EncodedModel::EncodedModel(const ModelData& model) : bytes(encode(model)) {
@@ -115,10 +124,7 @@ Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, co
   for (int step = 0; step <= bisections; ++step) {
     // the floor itself first: if that fails nothing helps
     const double threshold = step == 0 ? floor : std::sqrt(fails * meets);
-    const auto made = std::find_if(trials.begin(), trials.end(),
-                                   [&](const Trial& trial) { return trial.encoding.threshold == threshold; });
-    if (made == trials.end()) trials.push_back(try_encoding(bench, patches, encoding_at(threshold)));
-    const Trial trial = made == trials.end() ? trials.back() : *made;
+    const Trial trial = trial_at(bench, patches, threshold, trials);
     if (progress) progress(static_cast<double>(step + 1) / (bisections + 1), "search threshold");
     if (closest.bytes == 0 || trial.patch_force < closest.patch_force) closest = trial;
     if (trial.meets(accuracy)) {

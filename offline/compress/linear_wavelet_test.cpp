@@ -98,7 +98,7 @@ TEST_CASE("split is the matrix of the definition, and split_forces its inverse t
     const auto wavelet = wavelet_of(free_above(test::blob(2), -0.3), lifted);
     for (std::size_t level = 1; level <= wavelet.finest(); ++level) {
       const std::size_t count = width * wavelet.row_end(level);
-      const Eigen::MatrixXd step = test::forward_step(wavelet, level);
+      const test::Sparse step = test::forward_step(wavelet, level);
       const auto x = noise(count), f = noise(2 * count);
       const Eigen::VectorXd values = Eigen::VectorXd::Map(x.data(), step.cols());
       auto y = x;
