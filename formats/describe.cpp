@@ -87,7 +87,8 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
     case SectionKind::scales:
       return fmt::format("Scales({}, {})", a == 0 ? "averages" : "details", b);
     case SectionKind::couplings:
-      return fmt::format("Couplings({}, {}, {})", a, b / layout::strengths < 3 ? partners[b / layout::strengths] : "?",
+      return fmt::format("Couplings({}, {}, {})", a,
+                         b / layout::strengths < partners.size() ? partners[b / layout::strengths] : "?",
                          layers[b % layout::strengths]);
   }
   return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);

@@ -27,7 +27,10 @@ struct Place {
 constexpr Place rectangular{}, triangular{2, same}, base{0, same};
 constexpr Place nibbles{2, layout::coupling_index(Partner::parents, Strength::weak)};
 
-ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 3}); }
+ModelMutant valid() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 3}));
+  return ModelMutant(file);
+}
 
 CouplingsHeader& header_of(ModelMutant& mutant, Place place = rectangular) {
   return *mutant.records<CouplingsHeader>(SectionKind::couplings, place.q, place.b);
@@ -60,8 +63,8 @@ void check_header(VerifyRule rule, const std::string& field, Change change, Plac
 
 TEST_CASE("verify refuses: couplings of other columns or rows than their place says, whichever it is") {
   for (std::uint32_t q = 0; q < 3; ++q) {
-    for (std::uint16_t b = 0; b < 6; ++b) {
-      if (q == 0 ? b != same : q == 1 && b / 2 == 1) continue;
+    for (std::uint16_t b = 0; b < 3 * layout::strengths; ++b) {
+      if (q == 0 ? b != same : q == 1 && b / layout::strengths == 1) continue;
       check_header(VerifyRule::inconsistent, "columns", [](CouplingsHeader& header) { header.columns += 1; }, {q, b});
       check_header(VerifyRule::inconsistent, "rows", [](CouplingsHeader& header) { header.rows = 0xffffffff; }, {q, b});
     }

@@ -23,7 +23,10 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t all_ones = 0xffffffff;
 
-ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 2}); }
+ModelMutant valid() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 2}));
+  return ModelMutant(file);
+}
 
 template <class Change>
 void check_info(VerifyRule rule, const std::string& field, std::uint64_t index, Change change) {
@@ -56,9 +59,11 @@ void check_parent(std::uint32_t i, VerifyRule rule, const std::string& field, Ch
 template <class Change>
 void check_scale(layout::Role role, std::uint32_t i, VerifyRule rule, Change change) {
   const auto a = static_cast<std::uint32_t>(role);
-  ModelMutant mutant = valid();
-  change(mutant.records<Scale>(SectionKind::scales, a, a)[i].root);
-  check_refused(mutant, rule, SectionKind::scales, a, a, "root", i);
+  ModelMutant root = valid(), diagonal = valid();
+  change(root.records<Scale>(SectionKind::scales, a, a)[i].root);
+  check_refused(root, rule, SectionKind::scales, a, a, "root", i);
+  change(diagonal.records<Scale>(SectionKind::scales, a, a)[i].diagonal);
+  check_refused(diagonal, rule, SectionKind::scales, a, a, "diagonal", i);
 }
 
 void check_representative(std::uint32_t c, std::uint32_t q, std::uint32_t i, VerifyRule rule, std::uint32_t value) {
@@ -322,8 +327,8 @@ TEST_CASE("verify refuses: a representative of a node that cannot be touched") {
 TEST_CASE("verify refuses: scales that are not finite") {
   for (std::uint32_t k = 0; k < 6; ++k) {
     for (const float bad : {NAN, INFINITY, -INFINITY}) {
-      check_scale(layout::Role::averages, 3, VerifyRule::not_finite, [&](float* root) { root[k] = bad; });
-      check_scale(layout::Role::details, 7, VerifyRule::not_finite, [&](float* root) { root[k] = bad; });
+      check_scale(layout::Role::averages, 3, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
+      check_scale(layout::Role::details, 7, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
     }
   }
 }
@@ -333,7 +338,7 @@ TEST_CASE("verify refuses: scales that are not positive definite, by their first
                                    {1, 1, 0, 1, 0, 1}, {1, 0, 0, 1, 0, -1}, {1, 0, 0, 1, 0, 0},
                                    {1, 0, 1, 1, 0, 1}, {1, 0, 0, 1, -1, 1}, {4, 2, 6, 5, 7, 13}};
   for (const auto& bad : not_definite) {
-    const auto set = [&](float* root) { std::copy(std::begin(bad), std::end(bad), root); };
+    const auto set = [&](float* six) { std::copy(std::begin(bad), std::end(bad), six); };
     check_scale(layout::Role::averages, 4, VerifyRule::out_of_range, set);
     check_scale(layout::Role::details, 0, VerifyRule::out_of_range, set);
   }
@@ -341,9 +346,10 @@ TEST_CASE("verify refuses: scales that are not positive definite, by their first
 
 TEST_CASE("verify accepts: any positive definite scale, however small or skewed") {
   const float definite[][6] = {{1e-40F, 0, 0, 1e-40F, 0, 1e-40F}, {1e38F, 0, 0, 1e38F, 0, 1e38F}, {4, 2, 6, 5, 7, 14}};
-  for (const auto& root : definite) {
+  for (const auto& six : definite) {
     ModelMutant mutant = valid();
-    std::copy(std::begin(root), std::end(root), mutant.records<Scale>(SectionKind::scales, 1, 1)[2].root);
+    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1, 1)[2].root);
+    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1, 1)[3].diagonal);
     CHECK(mutant.verdict().ok());
   }
 }

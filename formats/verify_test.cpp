@@ -25,7 +25,10 @@ constexpr std::uint32_t unknown_kind = 77;
 constexpr std::size_t parents = 1, same = 2;  // Partner
 constexpr std::size_t strong = 0;             // Strength
 
-ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 2}); }
+ModelMutant valid() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 2}));
+  return ModelMutant(file);
+}
 
 void check_accepted(ModelMutant& mutant) {
   const VerifyResult result = mutant.verdict();
@@ -97,20 +100,21 @@ TEST_CASE("verify: the view shows every array where it stands") {
     CHECK(level.details == (q == 0 ? nullptr : mutant.records<layout::Scale>(SectionKind::scales, 1, q)));
     CHECK(level.averages == (q > 1 ? nullptr : mutant.records<layout::Scale>(SectionKind::scales, 0, q)));
     for (std::uint16_t partner = 0; partner < 3; ++partner) {
-      for (std::uint16_t strength = 0; strength < 2; ++strength) {
+      for (std::uint16_t strength = 0; strength < layout::strengths; ++strength) {
         const CouplingsView& couplings = level.couplings[partner][strength];
         const bool exists = partner == same ? q > 0 || strength == strong : partner == parents ? q > 1 : q > 0;
-        CAPTURE(section_name(SectionKind::couplings, q, 2 * partner + strength));
+        CAPTURE(section_name(SectionKind::couplings, q, layout::strengths * partner + strength));
         CHECK((couplings.value != nullptr) == exists);
         if (!exists) {
           CHECK(couplings.columns == 0);
           continue;
         }
-        const auto* stored = mutant.records<layout::CouplingsHeader>(SectionKind::couplings, q, 2 * partner + strength);
+        const auto* stored =
+            mutant.records<layout::CouplingsHeader>(SectionKind::couplings, q, layout::strengths * partner + strength);
         const auto* start = reinterpret_cast<const std::byte*>(stored);
         CHECK(couplings.columns == level.counts->domain_count);
         CHECK(couplings.rows == stored->rows);
-        CHECK(couplings.value_bits == (q == 0 ? 16 : strength == strong ? 8 : 4));
+        CHECK(couplings.value_bits == (q == 0 ? 16u : strength < 2 ? 8u : 4u));
         CHECK(couplings.quantum == stored->quantum);
         CHECK(reinterpret_cast<const std::byte*>(couplings.begin) == start + stored->begin_offset);
         CHECK(couplings.index == (q == 0 ? nullptr : start + stored->index_offset));
@@ -126,28 +130,33 @@ TEST_CASE("verify: the view shows every array where it stands") {
   CHECK(view.domain_count == domain);
 }
 
-TEST_CASE("verify accepts: 4, 8 and 16 bits in either layer, one or both layers for the field, both wavelets") {
+TEST_CASE("verify accepts: 4, 8 and 16 bits in any layer, one to three layers for the field, both wavelets") {
   for (const std::uint32_t strong_bits : {4u, 8u, 16u}) {
     for (const std::uint32_t weak_bits : {4u, 8u, 16u}) {
+      const std::uint32_t medium_bits = weak_bits == 16 ? 4u : 16u;
       ModelMutant mutant(SyntheticOptions{.levels = 3,
                                           .strong_bits = strong_bits,
+                                          .medium_bits = medium_bits,
                                           .weak_bits = weak_bits,
-                                          .field_layers = weak_bits == 4 ? 1u : 2u,
+                                          .field_layers = weak_bits == 4   ? 1u
+                                                          : weak_bits == 8 ? 2u
+                                                                           : 3u,
                                           .lifted = weak_bits != 8});
       check_accepted(mutant);
       CHECK(mutant.view().level[2].couplings[same][0].value_bits == strong_bits);
-      CHECK(mutant.view().level[2].couplings[same][1].value_bits == weak_bits);
+      CHECK(mutant.view().level[2].couplings[same][1].value_bits == medium_bits);
+      CHECK(mutant.view().level[2].couplings[same][2].value_bits == weak_bits);
     }
   }
 }
 
-TEST_CASE("verify accepts: no weak couplings, no strong ones") {
-  for (const double strong_above : {0.0, 10.0}) {
-    ModelMutant mutant(SyntheticOptions{.levels = 3, .strong = strong_above});
+TEST_CASE("verify accepts: couplings that are all strong, all medium, all weak") {
+  for (const std::size_t layer : {0u, 1u, 2u}) {
+    ModelMutant mutant(
+        SyntheticOptions{.levels = 3, .strong = layer == 0 ? 0.0 : 10.0, .medium = layer == 1 ? 0.0 : 10.0});
     check_accepted(mutant);
     const auto& couplings = mutant.view().level[2].couplings[same];
-    CHECK((couplings[0].begin[couplings[0].columns] == 0) == (strong_above > 1));
-    CHECK((couplings[1].begin[couplings[1].columns] == 0) == (strong_above < 1));
+    for (const std::size_t s : {0u, 1u, 2u}) CHECK((couplings[s].begin[couplings[s].columns] > 0) == (s == layer));
   }
 }
 

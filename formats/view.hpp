@@ -30,8 +30,7 @@ struct LevelView {
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
   const layout::Scale* details = nullptr;                ///< scales of the details [domain nodes]; null on level 0
   const layout::Scale* averages = nullptr;  ///< of the averages [domain nodes of K(q)]; null above level max(L-2, 0)
-  CouplingsView couplings[3]
-                         [layout::strengths];  ///< [Partner][Strength]; no columns where the file has no such section
+  CouplingsView couplings[3][layout::strengths];  ///< [Partner][Strength]; no columns where there is no such section
 };
 
 /// A verified model file, in place: pointers into the caller's bytes, which must outlive it and stay unchanged.

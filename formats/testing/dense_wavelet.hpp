@@ -56,10 +56,12 @@ class DenseWavelet {
 std::vector<Eigen::MatrixXd> to_non_standard_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> compliance);
 
 /// The compliance (m/N) between the averages of level `c` that a model stands for, with its first `layers` layers of
-/// couplings (1: strong; 2: strong and weak): 3x3 blocks over the domain nodes of K(c). Work: as above.
-[[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c, std::uint32_t layers = 2);
+/// couplings (1: the strong ones; 3: all): 3x3 blocks over the domain nodes of K(c). Work: as above.
+[[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c,
+                                                 std::uint32_t layers = layout::strengths);
 
 /// The same for every level 0 .. levels-1.
-[[nodiscard]] std::vector<Eigen::MatrixXd> decoded_compliances(const ModelData& model, std::uint32_t layers = 2);
+[[nodiscard]] std::vector<Eigen::MatrixXd> decoded_compliances(const ModelData& model,
+                                                               std::uint32_t layers = layout::strengths);
 
 }  // namespace greenloop

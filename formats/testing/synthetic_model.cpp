@@ -45,25 +45,34 @@ MatrixXd exact_compliance(const Sphere& sphere) {
   return compliance;
 }
 
-Matrix3d root_of(const layout::Scale& scale) {
-  const float* r = scale.root;
-  Matrix3d root;
-  root << r[0], r[1], r[2], r[1], r[3], r[4], r[2], r[4], r[5];
-  return root;
+Matrix3d symmetric(const float (&six)[6]) {
+  Matrix3d matrix;
+  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+  return matrix;
+}
+
+void store(const Matrix3d& matrix, float (&six)[6]) {
+  std::size_t k = 0;
+  for (Index r = 0; r < 3; ++r) {
+    for (Index c = r; c < 3; ++c) six[k++] = static_cast<float>(matrix(r, c));
+  }
 }
 
 // Of the coefficients begin .. end-1, whose diagonal blocks stand in `blocks`.
 std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index end) {
+  const Eigen::Vector3d direction(1, -1, 0.5);
   std::vector<layout::Scale> scales;
   for (Index i = begin; i < end; ++i) {
     const Matrix3d block = blocks.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
-    // a conditional compliance must be smaller than the diagonal block; how much is the writer's choice
-    constexpr double share = 0.8;
-    const Matrix3d root = share * Eigen::SelfAdjointEigenSolver<Matrix3d>(block).operatorSqrt();
-    const auto at = [&](Index r, Index c) { return static_cast<float>(root(r, c)); };
-    const auto diagonal = static_cast<float>(1 / (share * share));
-    scales.push_back({.root = {at(0, 0), at(0, 1), at(0, 2), at(1, 1), at(1, 2), at(2, 2)},
-                      .diagonal = {diagonal, 0, 0, diagonal, 0, diagonal}});
+    // a conditional compliance as if some neighbour were held along one direction; how many are is the writer's choice
+    const Eigen::Vector3d held = block * direction;
+    const Matrix3d conditional = 0.8 * (block - 0.5 / direction.dot(held) * held * held.transpose());
+    const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(conditional).operatorSqrt();
+    layout::Scale scale;
+    store(root, scale.root);
+    const Matrix3d inverse = symmetric(scale.root).inverse();
+    store(inverse * block * inverse, scale.diagonal);
+    scales.push_back(scale);
   }
   return scales;
 }
@@ -71,7 +80,7 @@ std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index 
 std::vector<Matrix3d> inverse_roots(const std::vector<layout::Scale>& scales) {
   std::vector<Matrix3d> inverses;
   inverses.reserve(scales.size());
-  for (const layout::Scale& scale : scales) inverses.emplace_back(root_of(scale).inverse());
+  for (const layout::Scale& scale : scales) inverses.emplace_back(symmetric(scale.root).inverse());
   return inverses;
 }
 

@@ -68,7 +68,9 @@ class Walk {
 
   bool scales(std::uint32_t q) const {
     const LevelView& level = view_.level[q];
-    const auto right = [](const layout::Scale& scale) { return scale.root[0] > 0 && std::isfinite(scale.root[5]); };
+    const auto right = [](const layout::Scale& scale) {
+      return scale.root[0] > 0 && scale.diagonal[0] > 0 && std::isfinite(scale.root[5] + scale.diagonal[5]);
+    };
     const bool has_averages = q == 0 || q + 2 < view_.levels;
     if ((level.averages != nullptr) != has_averages || (level.details != nullptr) != (q > 0)) return false;
     if (has_averages && (!array(level.averages, domain_of_mesh(q)) || !all(level.averages, domain_of_mesh(q), right))) {
@@ -88,7 +90,7 @@ class Walk {
   bool all_couplings(std::uint32_t q) const {
     const std::uint32_t rows[] = {domain_of_mesh(q < 2 ? 0 : q - 2), q < 2 ? 0 : domain(q - 1), domain(q)};
     for (std::size_t partner = 0; partner < 3; ++partner) {
-      for (std::size_t strength = 0; strength < 2; ++strength) {
+      for (std::size_t strength = 0; strength < layout::strengths; ++strength) {
         const CouplingsView& couplings = view_.level[q].couplings[partner][strength];
         const bool exists = partner == 2 ? q > 0 || strength == 0 : partner == 1 ? q > 1 : q > 0;
         if (!exists && couplings.value == nullptr && couplings.columns == 0) continue;
