@@ -71,7 +71,7 @@ class Mutator {
 TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
   MESSAGE("seed ", seed, ", ", mutations, " mutations");
   Mutator mutator({encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
-                   encode(synthetic_model({.levels = 3})),
+                   encode(synthetic_model({.levels = 3, .epsilon = 0.2})),
                    encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .strong_bits = 16}))});
   int accepted = 0;
   std::array<int, 64> refused{};

@@ -64,38 +64,41 @@ void add_diagonal(const layout::Scale* scale, MatrixXd& m) {
   }
 }
 
-// T_q^-1 from its definition: lifting undone, then predicted
-MatrixXd inverse_matrix(const ModelView& view, std::uint32_t q) {
+}  // namespace
+
+Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q) {
   const LevelView& level = view.level[q];
-  const Index n = domain_up_to(view, q);
-  MatrixXd lift = MatrixXd::Identity(n, n);
-  MatrixXd predict = MatrixXd::Identity(n, n);
+  const Index n = 3 * domain_up_to(view, q);
+  std::vector<Eigen::Triplet<double>> lift;
+  std::vector<Eigen::Triplet<double>> predict;
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     const Index odd = level.domain_begin + i;
     for (std::uint32_t side = 0; side < 2; ++side) {
       const std::uint32_t parent = level.refinement[i].parent[side];
-      if (in_domain(view, parent)) {
-        lift(domain_place(view, parent), odd) -= double{level.refinement[i].lift[side]};
-        predict(odd, domain_place(view, parent)) += 0.5;
+      for (Index r = 0; in_domain(view, parent) && r < 3; ++r) {
+        const Index even = Index{3} * domain_place(view, parent) + r;
+        lift.emplace_back(even, 3 * odd + r, -double{level.refinement[i].lift[side]});
+        predict.emplace_back(3 * odd + r, even, 0.5);
       }
     }
   }
-  const MatrixXd scalar = predict * lift;
-  MatrixXd blocks = MatrixXd::Zero(3 * n, 3 * n);
-  for (Index r = 0; r < 3; ++r) {
-    blocks(Eigen::seqN(r, n, 3), Eigen::seqN(r, n, 3)) = scalar;
+  for (Index i = 0; i < n; ++i) {
+    lift.emplace_back(i, i, 1);
+    predict.emplace_back(i, i, 1);
   }
-  return blocks;
+  Eigen::SparseMatrix<double> undo_lifting(n, n);
+  Eigen::SparseMatrix<double> interpolate(n, n);
+  undo_lifting.setFromTriplets(lift.begin(), lift.end());
+  interpolate.setFromTriplets(predict.begin(), predict.end());
+  return interpolate * undo_lifting;
 }
-
-}  // namespace
 
 DenseReference::DenseReference(const ModelView& view) : view_(view), inverse_(view.levels) {
   const auto domain = [&view](std::uint32_t q) { return view.level[q].counts->domain_count; };
   for (std::uint32_t q = 1; q < view.levels; ++q) {
-    inverse_[q] = inverse_matrix(view, q);
+    inverse_[q] = inverse_step(view, q);
   }
-  for (const std::uint32_t layers : {1U, 2U, 3U}) {
+  for (std::uint32_t layers = 1; layers <= layout::strengths; ++layers) {
     auto& compliance = compliance_[layers - 1];
     auto& coupled = coupled_[layers - 1];
     coupled.resize(view.levels);
@@ -115,14 +118,15 @@ DenseReference::DenseReference(const ModelView& view) : view_(view), inverse_(vi
         const LevelView& parents = view.level[q - 1];
         coupled[q].rightCols(3 * domain(q - 1)) =
             decode(level.couplings[1], layers, domain(q), domain(q - 1), level.details, parents.details);
-        b = coupled[q] * inverse_[q - 1].transpose();
+        b = (inverse_[q - 1] * coupled[q].transpose()).transpose();
       }
       const MatrixXd lower = decode(level.couplings[2], layers, domain(q), domain(q), level.details, level.details);
       MatrixXd a = lower + lower.transpose();
       add_diagonal(level.details, a);
       MatrixXd form(inverse_[q].rows(), inverse_[q].cols());
       form << compliance[q - 1], b.transpose(), b, a;
-      compliance.push_back(inverse_[q] * form * inverse_[q].transpose());
+      // symmetric: columns and rows may change places
+      compliance.push_back(inverse_[q] * MatrixXd(inverse_[q] * form).transpose());
     }
   }
 }
@@ -135,8 +139,8 @@ MatrixXd DenseReference::field(std::uint32_t c, std::uint32_t layers) const {
     MatrixXd form = MatrixXd::Zero(x.rows() + details, columns);
     form.topRows(x.rows()) = x;
     if (q == c + 1) {
-      form.bottomRows(details) =
-          q > 1 ? MatrixXd(coupled_[layers - 1][q] * inverse_[q - 1].transpose()) : coupled_[layers - 1][q];
+      form.bottomRows(details) = q > 1 ? MatrixXd((inverse_[q - 1] * coupled_[layers - 1][q].transpose()).transpose())
+                                       : coupled_[layers - 1][q];
     } else if (q == c + 2) {
       form.bottomRows(details) = coupled_[layers - 1][q].leftCols(columns);
     }

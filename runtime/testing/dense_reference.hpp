@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,10 @@
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop {
+
+/// T_q^-1 by its definition: from the averages of level q-1 and the details of level q to the averages of level q,
+/// three rows and columns a domain node.
+[[nodiscard]] Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q);
 
 /// The compliances that a file stands for, as dense matrices in double precision by the definition in
 /// formats/layout.hpp: 3 rows and columns per domain node, by place in the domain. For tests: plain and slow.
@@ -23,12 +28,10 @@ class DenseReference {
   [[nodiscard]] Eigen::MatrixXd field(std::uint32_t c, std::uint32_t layers) const;
   /// The averages of level q of displacements of the domain.
   [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;
-  /// One inverse step of level q, dense, 3 |K(q)| squared: from averages and details.
-  [[nodiscard]] const Eigen::MatrixXd& inverse_step(std::uint32_t q) const { return inverse_[q]; }
 
  private:
   const ModelView& view_;
-  std::vector<Eigen::MatrixXd> inverse_;                     // T_l^-1
+  std::vector<Eigen::SparseMatrix<double>> inverse_;         // T_l^-1
   std::vector<Eigen::MatrixXd> coupled_[layout::strengths];  // B'_l: details l, by averages l-2 and details l-1
   std::vector<Eigen::MatrixXd> compliance_[layout::strengths];
 };
