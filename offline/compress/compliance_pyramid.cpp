@@ -137,6 +137,7 @@ class LevelReduction {
       result_.details.emplace_back(diagonal_[i], conditional[i], "detail", i);
     }
     std::vector<Eigen::Matrix3d> change;
+    change.reserve(diagonal_.size());
     for (std::size_t i = 0; i < diagonal_.size(); ++i) {
       change.push_back(result_.details[i].inverse() * own_scales_[i].root());
     }
@@ -218,6 +219,7 @@ class LevelReduction {
 
 std::vector<Eigen::Matrix3d> inverse_roots(const std::vector<CoefficientScale>& scales) {
   std::vector<Eigen::Matrix3d> inverses;
+  inverses.reserve(scales.size());
   for (const auto& scale : scales) inverses.push_back(scale.inverse());
   return inverses;
 }
@@ -225,6 +227,7 @@ std::vector<Eigen::Matrix3d> inverse_roots(const std::vector<CoefficientScale>& 
 std::vector<CoefficientScale> average_scales(const DenseCompliance& compliance) {
   const auto conditional = conditional_compliance(compliance);
   std::vector<CoefficientScale> scales;
+  scales.reserve(compliance.rows());
   for (std::size_t i = 0; i < compliance.rows(); ++i) {
     scales.emplace_back(compliance.block(i, i), conditional[i], "average", i);
   }

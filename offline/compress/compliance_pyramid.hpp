@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -41,9 +42,9 @@ struct CouplingCandidates {
 /// Coifman and Rokhlin 1991), without what is too small to matter.
 struct CompliancePyramid {
   struct Level {
-    std::vector<CoefficientScale> details;   ///< level 0: empty
-    std::vector<CoefficientScale> averages;  ///< empty above level max(L-2, 0)
-    CouplingCandidates partner[3];           ///< by layout::Partner
+    std::vector<CoefficientScale> details;      ///< level 0: empty
+    std::vector<CoefficientScale> averages;     ///< empty above level max(L-2, 0)
+    std::array<CouplingCandidates, 3> partner;  ///< by layout::Partner
   };
   std::vector<Level> levels;
   std::vector<DenseCompliance> coarse;  ///< exact compliance between the averages of level q, q = 0..L-1

@@ -131,8 +131,8 @@ void CompressedCompliance::apply(std::size_t level, std::size_t columns, const d
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
       const Link& link = links_[at];
       if (needs_level_[link.other] > level) continue;
-      multiply(block_.data() + 9 * link.block, link.transposed, columns, scaled.data(),
-               sum.data() + link.other * width);
+      multiply(block_.data() + std::size_t{9} * link.block, link.transposed, columns, scaled.data(),
+               sum.data() + std::size_t{link.other} * width);
     }
   }
 

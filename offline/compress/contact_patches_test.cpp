@@ -27,6 +27,7 @@ const Case& given() {
 std::vector<Eigen::Vector3d> positions(std::size_t level) {
   const auto& body = given().body;
   std::vector<Eigen::Vector3d> result;
+  result.reserve(given().compressed.rows(level));
   for (std::size_t row = 0; row < given().compressed.rows(level); ++row) {
     result.push_back(body.mesh.positions[body.column_nodes[row]]);
   }

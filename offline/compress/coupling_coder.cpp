@@ -104,6 +104,7 @@ void encode_base(const CouplingCandidates& candidates, CouplingsData& data) {
 
 std::vector<layout::Scale> stored(const std::vector<CoefficientScale>& scales) {
   std::vector<layout::Scale> result;
+  result.reserve(scales.size());
   for (const auto& scale : scales) result.push_back(scale.stored());
   return result;
 }

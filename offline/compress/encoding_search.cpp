@@ -35,6 +35,7 @@ std::vector<std::pair<double, std::size_t>> ranked(const TrialBench& bench, cons
   const EncodedModel model(encoded(bench, encoding_at(threshold)));
   const CompressedCompliance compressed(model.view, all_layers);
   std::vector<std::pair<double, std::size_t>> errors;
+  errors.reserve(which.size());
   for (const std::size_t p : which) errors.emplace_back(-patches.force_error(compressed, compressed.finest(), p), p);
   std::sort(errors.begin(), errors.end());
   return errors;

@@ -83,6 +83,7 @@ TEST_CASE("the worst patches are those with the largest errors") {
   const CompressedCompliance compressed(file.view, all_layers);
   CHECK(worst.worst_force_error(compressed, 2) == patches.worst_force_error(compressed, 2));
   std::vector<double> errors;
+  errors.reserve(patches.size());
   for (std::size_t p = 0; p < patches.size(); ++p) errors.push_back(patches.force_error(compressed, 2, p));
   std::sort(errors.rbegin(), errors.rend());
   for (std::size_t p = 0; p < 5; ++p) CHECK(worst.force_error(compressed, 2, p) > 0.8 * errors[4]);

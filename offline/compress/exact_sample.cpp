@@ -7,6 +7,7 @@ namespace greenloop::offline {
 std::vector<Eigen::Vector3d> row_positions(const SemiRegularMesh& mesh, const LinearWavelet& wavelet,
                                            std::size_t level) {
   std::vector<Eigen::Vector3d> result;
+  result.reserve(wavelet.row_end(level));
   for (std::size_t row = 0; row < wavelet.row_end(level); ++row) {
     result.push_back(mesh.positions[wavelet.nodes()[row]]);
   }

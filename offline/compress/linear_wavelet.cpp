@@ -100,6 +100,7 @@ void LinearWavelet::find_parents(const SemiRegularMesh& mesh, const std::vector<
 void LinearWavelet::integrate(const std::vector<double>& area) {
   integrals_.resize(row_end_.size());
   std::vector<double> integral;
+  integral.reserve(nodes_.size());
   for (const std::size_t node : nodes_) integral.push_back(area[node]);
   integrals_.back() = integral;
   for (std::size_t level = finest(); level > 0; --level) {

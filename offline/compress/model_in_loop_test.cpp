@@ -25,6 +25,7 @@ struct Patch {
 Patch patch_around(const test::Body& body, std::size_t seed) {
   const Eigen::Vector3d centre = body.mesh.positions[body.column_nodes[seed]];
   std::vector<std::pair<double, std::size_t>> nearest;
+  nearest.reserve(body.column_nodes.size());
   for (std::size_t j = 0; j < body.column_nodes.size(); ++j) {
     nearest.emplace_back((body.mesh.positions[body.column_nodes[j]] - centre).squaredNorm(), j);
   }
