@@ -104,7 +104,8 @@ TEST_CASE("given the neighbours, when there are more: between that given all and
 
 TEST_CASE("the strongest neighbours count") {
   // coefficient 0 is coupled to 30 others, strongly to the last 24 only
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(3 * 31, 3 * 31);
+  constexpr Eigen::Index size = 93;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size);
   for (Eigen::Index j = 1; j < 31; ++j) {
     const double coupling = j < 7 ? 0.05 : 0.15;
     for (Eigen::Index k = 0; k < 3; ++k) matrix(k, 3 * j + k) = matrix(3 * j + k, k) = coupling;
