@@ -129,6 +129,9 @@ DenseReference::DenseReference(const ModelView& view) : view_(view), inverse_(vi
       compliance.push_back(inverse_[q] * MatrixXd(inverse_[q] * form).transpose());
     }
   }
+  for (std::uint32_t c = 0; c < view.levels; ++c) {
+    field_.push_back(field(c, view.info->field_layers));
+  }
 }
 
 MatrixXd DenseReference::field(std::uint32_t c, std::uint32_t layers) const {
@@ -185,7 +188,7 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
   MatrixXd capacitance(3 * n, 3 * n);
   MatrixXd used(Index{3} * view.domain_count, 3 * n);
   Eigen::VectorXd prescribed = Eigen::VectorXd::Zero(3 * n);
-  const MatrixXd field = reference.field(c, view.info->field_layers);
+  const MatrixXd& field = reference.field(c);
   Index j = 0;
   for (const auto& [place, of_place] : members) {
     used.middleCols<3>(3 * j) = field.middleCols<3>(3 * place);

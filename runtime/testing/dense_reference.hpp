@@ -26,6 +26,8 @@ class DenseReference {
   }
   /// Displacement of the domain per force of level c, as far as the file knows: 3 domain by 3 |K(c)|.
   [[nodiscard]] Eigen::MatrixXd field(std::uint32_t c, std::uint32_t layers) const;
+  /// The same with the layers that the file asks for.
+  [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
   /// The averages of level q of displacements of the domain.
   [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;
 
@@ -34,6 +36,7 @@ class DenseReference {
   std::vector<Eigen::SparseMatrix<double>> inverse_;         // T_l^-1
   std::vector<Eigen::MatrixXd> coupled_[layout::strengths];  // B'_l: details l, by averages l-2 and details l-1
   std::vector<Eigen::MatrixXd> compliance_[layout::strengths];
+  std::vector<Eigen::MatrixXd> field_;
 };
 
 struct DenseAnswer {
