@@ -13,20 +13,29 @@
 //       Nodes(q)                                         NodeRecord [node_count(q)]: M(q), domain nodes first
 //       BaseTriangles                                    only q = 0: u32 [3 * base_triangle_count]
 //       Refinement(q)                                    only q > 0: RefinementRecord [node_count(q)]
-//       Columns(q)                                       ColumnRecord [column_count(q)]: the GFs of constraint level q
-//       Representatives(c, q) for c = 0..q               u32 [node_count(q)]: column of level c that stands for a node
+//       Representatives(c, q) for c = first..q           u32 [node_count(q)]: node of K(c) that stands for a node
 //       Representatives(q, r) for r = 0..q-1             u32 [node_count(r)]
-//       Blocks(c, q)          for c = 0..q               wavelet coefficients: columns of level c, rows of level q
-//       Blocks(q, r)          for r = 0..q-1
+//       Scales(averages, q-2)                            only q > 2: Scale [domain nodes of K(q-2)]
+//       Scales(averages, 0) or Scales(details, q)        q = 0, or q > 0: Scale [domain nodes of K(0), of M(q)]
+//       Couplings(q, partner, strong) for each partner   q = 0: same; q = 1: averages, same; q > 1: all three
+//       Couplings(q, partner, medium) for each partner   only q > 0
+//       Couplings(q, partner, weak) for each partner     only q > 0
 //
-// A constraint level without columns has none of Columns, Representatives and Blocks.
+// `first` is Info::coarsest_constraint_level; levels below it have no Representatives. A touchable node is represented
+// on constraint level c by a domain node of K(c), by itself if it is one; any other node by `none`.
 // So the first sections of a file, cut after any level, are again a valid and coarser model once the header says so.
 // A node is named by its place in the file: coarse to fine, and within a level the *domain* (nodes whose displacement
 // is stored: free and needed by the scene, closed under free parents) comes first. All other nodes do not move or are
 // not read; their displacement is zero.
 //
-// The columns of constraint level c are displacements per unit force spread over the hat function of a vertex of that
-// level (m/N): block (i, j) maps a force at column j to wavelet coefficient i. See docs/theory.md.
+// The compliance U of the domain nodes (m/N) in two-sided wavelet coordinates, in non-standard form. With the averages
+// and details that the forward transform finds on level l (lift, then predict, backwards),
+//   U_l = T_l^-1 [ U_{l-1}  B_l^T ;  B_l  A_l ] T_l^-T,   U_L = U,
+// where A_l couples details with details, B_l details of level l with averages of level l-1; the columns of B_l are
+// transformed once more, into averages of level l-2 and details of level l-1. Every such coefficient i has a scale, the
+// symmetric root R_i of its conditional compliance (what is left of its diagonal block once its neighbours are held);
+// what is stored of the block (i, j) is R_i^-1 U_ij R_j^-1 in whole quanta, and nothing where it is small. The scaled
+// diagonal blocks stand beside the scales. See docs/theory.md and docs/compression.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -35,11 +44,11 @@ namespace greenloop::layout {
 
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
-inline constexpr std::uint16_t version_major = 1;
+inline constexpr std::uint16_t version_major = 2;
 inline constexpr std::uint16_t version_minor = 0;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
-inline constexpr std::uint32_t none = 0xffffffff;  ///< no parent, no column
+inline constexpr std::uint32_t none = 0xffffffff;  ///< no representative
 
 /// What a section holds. `a`, `b` of its entry: the indices in parentheses, else 0.
 enum class SectionKind : std::uint32_t {
@@ -49,10 +58,30 @@ enum class SectionKind : std::uint32_t {
   nodes = 4,            ///< (q) NodeRecord[]
   base_triangles = 5,   ///< u32[3 * count]
   refinement = 6,       ///< (q) RefinementRecord[]
-  columns = 7,          ///< (c) ColumnRecord[]
   representatives = 8,  ///< (c, q) u32[]
-  blocks = 9,           ///< (c, r) BlocksHeader and its arrays
+  scales = 10,          ///< (Role, level) Scale[]
+  couplings = 11,       ///< (q, coupling_index(partner, strength)) CouplingsHeader and its arrays
 };
+
+/// What a wavelet coefficient stands for.
+enum class Role : std::uint16_t { averages = 0, details = 1 };
+
+/// With which coefficients the coefficients of a level are coupled. The level's own are its details, or the averages if
+/// it is level 0.
+enum class Partner : std::uint16_t {
+  averages = 0,  ///< the averages of level q-2, or of level 0 if q = 1
+  parents = 1,   ///< the details of level q-1
+  same = 2,      ///< those of the level itself, each with the ones before it
+};
+
+/// Couplings are stored in three layers by size: a sum over the larger ones alone is already a good field.
+enum class Strength : std::uint16_t { strong = 0, medium = 1, weak = 2 };
+
+inline constexpr std::uint16_t strengths = 3;
+
+constexpr std::uint16_t coupling_index(Partner partner, Strength strength) {
+  return static_cast<std::uint16_t>(strengths * static_cast<unsigned>(partner) + static_cast<unsigned>(strength));
+}
 
 struct Header {
   char magic[8];
@@ -80,7 +109,7 @@ struct SectionEntry {
 static_assert(sizeof(SectionEntry) == 32);
 
 enum class Problem : std::uint32_t { elastostatic = 1 };
-enum class Wavelet : std::uint32_t { lifted_linear = 1 };
+enum class Wavelet : std::uint32_t { lifted_linear = 1, linear = 2 };
 
 struct Info {
   std::uint32_t problem;       ///< Problem
@@ -89,8 +118,9 @@ struct Info {
   std::uint32_t levels;        ///< mesh levels of the complete model, L + 1
   double young;                ///< Pa
   double poisson;              ///< -
-  double epsilon;              ///< block threshold at the finest level, relative to each column's largest block
+  double threshold;            ///< scaled blocks below this Frobenius norm over root 3 were dropped
   double store_asymmetry;      ///< largest relative asymmetry of the exact compliance
+  double lambda_min;           ///< m/N: certified below the least eigenvalue of U; 0: no certificate
   float box_min[3];            ///< m
   float box_max[3];            ///< m
   float rate;                  ///< Hz: the loop the scene asked for
@@ -98,22 +128,26 @@ struct Info {
   std::uint64_t step_work;     ///< work units per step the scene asked for
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
-  std::uint8_t reserved[160];
+  std::uint32_t field_layers;             ///< layers of couplings, strong ones first, that meet the field's accuracy
+  std::uint8_t reserved[148];
 };
 static_assert(sizeof(Info) == 256);
 
-/// The model cut off after this level; errors against the exact compliance, over all columns of constraint level q.
+/// The model cut off after this level: the compliance between the averages of level q, which are the forces and the
+/// displacements of constraint level q. Errors against the exact one, all relative.
 struct Level {
   std::uint32_t node_count;           ///< |M(q)|
   std::uint32_t domain_count;         ///< domain nodes of M(q): the first ones
-  std::uint32_t column_count;         ///< columns of constraint level q; 0 below Info::coarsest_constraint_level
   std::uint32_t base_triangle_count;  ///< q = 0 only, else 0
-  std::uint64_t kept_blocks;          ///< blocks of constraint level q, rows of every level of the complete model
-  std::uint64_t dense_blocks;         ///< columns of constraint level q times domain nodes of the complete model
-  float rms_error;                    ///< ||Xi^ - Xi||_F / ||Xi||_F, traction form
-  float worst_column_error;           ///< max_j ||Xi^_j - Xi_j||_inf / ||Xi_j||_inf, block-wise Frobenius
-  float force_error;                  ///< worst relative error of the total force of a sampled patch held at this level
-  std::uint32_t reserved[5];
+  std::uint32_t reserved0;
+  std::uint64_t kept_blocks;   ///< 3x3 blocks stored in levels 0..q: scales and couplings
+  std::uint64_t dense_blocks;  ///< domain nodes of K(q), squared
+  float rms_error;             ///< ||U^ - U||_F / ||U||_F, all couplings
+  float worst_column_error;    ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius, all couplings
+  float patch_force_error;     ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
+  float field_rms_error;       ///< rms_error with Info::field_layers layers
+  float field_column_error;    ///< worst_column_error with Info::field_layers layers
+  std::uint32_t reserved[3];
 };
 static_assert(sizeof(Level) == 64);
 
@@ -133,35 +167,42 @@ static_assert(sizeof(NodeRecord) == 20);
 
 struct RefinementRecord {
   std::uint32_t parent[2];  ///< ends of the edge it halves, nodes of coarser levels
-  float lift[2];            ///< lifting weights towards the parents; 0 towards parents outside the domain
+  float lift[2];            ///< lifting weights towards the parents; 0 towards those outside the domain; 0 if unlifted
 };
 static_assert(sizeof(RefinementRecord) == 16);
 
-struct ColumnRecord {
-  std::uint32_t node;  ///< centre of the hat, a domain node of K(c); increasing along the section
-  float area;          ///< m^2, the integral of the hat of level c over the free boundary
+/// The scale of a coefficient: two symmetric positive definite matrices xx, xy, xz, yy, yz, zz.
+struct Scale {
+  float root[6];      ///< R; (m/N)^(1/2)
+  float diagonal[6];  ///< R^-1 U_ii R^-1; of averages above level 0 it is not used
 };
-static_assert(sizeof(ColumnRecord) == 8);
+static_assert(sizeof(Scale) == 48);
 
-/// Block-sparse columns. With n = columns, m = block_count, and arrays at 64-byte multiples within the section:
+/// Sparse 3x3 blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
 ///   begin  u32 [n + 1]     first block of each column
-///   scale  f32 [n]         m/N per quantum, >= 0
-///   index  u16|u32 [m]     row within the level's domain nodes, increasing within a column; absent if index_bytes = 0
-///   value  i8|i16 [9 m]    blocks by columns: value[9 b + 3 c + r] = displacement r per force c; then >= 16 zero bytes
-/// Each array starts at the first multiple of 64 after the one before it; no value is -128 (i8) or -32768 (i16).
-/// index_bytes = 0: every column keeps every row (begin[j] = j * rows), index_offset = 0.
-struct BlocksHeader {
+///   index  u16|u32 [m]     row, increasing within a column; absent if index_bytes = 0
+///   value  [m]             blocks, then >= 16 zero bytes; element k = 3 c + r of a block: scaled displacement r of the
+///                          row per scaled force c of the column, in quanta
+///            value_bits 4  5 bytes a block: element k is nibble k, low nibble first, -7..7; the tenth nibble is 0
+///            value_bits 8  9 bytes a block, -127..127
+///            value_bits 16 18 bytes a block, -32767..32767
+/// Columns are the coefficients of the level, rows those of the partner, both by their place among the domain nodes of
+/// M(l) (details) or K(l) (averages). Partner::same: rows lie before their column, and the block of the other half is
+/// the transpose. Every array starts at the first multiple of 64 after the one before it.
+/// index_bytes = 0 (level 0, in 16 bits; no other): column j keeps every row 0..j-1, begin[j] = j (j - 1) / 2,
+/// index_offset = 0.
+struct CouplingsHeader {
   std::uint32_t columns;
-  std::uint32_t rows;         ///< Level::domain_count of level r
-  std::uint32_t value_bytes;  ///< 1 or 2
+  std::uint32_t rows;
+  std::uint32_t value_bits;   ///< 4, 8 or 16
   std::uint32_t index_bytes;  ///< 0, 2 or 4
   std::uint64_t block_count;
   std::uint64_t begin_offset;  ///< from the start of the section, as are the others
-  std::uint64_t scale_offset;
   std::uint64_t index_offset;
   std::uint64_t value_offset;
-  std::uint64_t reserved;
+  float quantum;  ///< of scaled values, in [0, 1]
+  std::uint32_t reserved[3];
 };
-static_assert(sizeof(BlocksHeader) == 64);
+static_assert(sizeof(CouplingsHeader) == 64);
 
 }  // namespace greenloop::layout

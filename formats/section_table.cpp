@@ -14,8 +14,19 @@ using layout::SectionKind;
 constexpr Section whole_file{};
 
 bool is_known(std::uint32_t kind) {
-  return kind >= static_cast<std::uint32_t>(SectionKind::info) &&
-         kind <= static_cast<std::uint32_t>(SectionKind::blocks);
+  switch (static_cast<SectionKind>(kind)) {
+    case SectionKind::info:
+    case SectionKind::provenance:
+    case SectionKind::level:
+    case SectionKind::nodes:
+    case SectionKind::base_triangles:
+    case SectionKind::refinement:
+    case SectionKind::representatives:
+    case SectionKind::scales:
+    case SectionKind::couplings:
+      return true;
+  }
+  return false;
 }
 
 bool is_same(const SectionEntry& entry, SectionKind kind, std::uint32_t a, std::uint32_t b) {
@@ -91,7 +102,7 @@ bool SectionTable::check_entry(std::uint32_t i, std::uint64_t end_of_previous, V
     return refuse_entry(result, rule, entry, field, i, static_cast<double>(value), static_cast<double>(limit));
   };
   if (reserved_is_zero()) {
-    const auto last_kind = static_cast<std::uint32_t>(SectionKind::blocks);
+    const auto last_kind = static_cast<std::uint32_t>(SectionKind::couplings);
     if (!is_known(entry.kind)) return refuse(VerifyRule::bad_enum, "section.kind", entry.kind, last_kind);
     if (entry.reserved != 0) return refuse(VerifyRule::reserved_not_zero, "section.reserved", entry.reserved, 0);
   }

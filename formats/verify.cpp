@@ -6,7 +6,10 @@
 namespace greenloop {
 namespace {
 
+using layout::Partner;
+using layout::Role;
 using layout::SectionKind;
+using layout::Strength;
 
 // The sections of a file in the one order layout.hpp allows.
 class SectionWalk {
@@ -20,7 +23,7 @@ class SectionWalk {
     for (std::uint32_t q = 0; q < table_.header().levels; ++q) {
       if (!level(q)) return false;
     }
-    return table_.finish(context_.result) && verify_counts(context_);
+    return table_.finish(context_.result);
   }
 
  private:
@@ -35,23 +38,37 @@ class SectionWalk {
     return next(SectionKind::level, q, 0, verify_level) && next(SectionKind::nodes, q, 0, verify_nodes) &&
            (q == 0 ? next(SectionKind::base_triangles, 0, 0, verify_base_triangles)
                    : next(SectionKind::refinement, q, 0, verify_refinement)) &&
-           (!has_columns(q) || next(SectionKind::columns, q, 0, verify_columns)) &&
-           per_constraint_level(q, SectionKind::representatives, verify_representatives) &&
-           per_constraint_level(q, SectionKind::blocks, verify_blocks);
+           representatives(q) && scales(q) && couplings(q, Strength::strong) && couplings(q, Strength::medium) &&
+           couplings(q, Strength::weak) && verify_counts(q, context_);
   }
 
-  // (c, q) for c = 0..q, then (q, r) for r = 0..q-1, of the constraint levels that have columns
-  bool per_constraint_level(std::uint32_t q, SectionKind kind, Verify verify) {
-    for (std::uint32_t c = 0; c <= q; ++c) {
-      if (has_columns(c) && !next(kind, c, q, verify)) return false;
+  // (c, q) for c = first..q, then (q, r) for r = 0..q-1, of the constraint levels that contacts may be resolved on
+  bool representatives(std::uint32_t q) {
+    const std::uint32_t first = context_.view.info->coarsest_constraint_level;
+    for (std::uint32_t c = first; c <= q; ++c) {
+      if (!next(SectionKind::representatives, c, q, verify_representatives)) return false;
     }
-    for (std::uint32_t r = 0; r < q && has_columns(q); ++r) {
-      if (!next(kind, q, r, verify)) return false;
+    for (std::uint32_t r = 0; r < q && q >= first; ++r) {
+      if (!next(SectionKind::representatives, q, r, verify_representatives)) return false;
     }
     return true;
   }
 
-  [[nodiscard]] bool has_columns(std::uint32_t c) const { return context_.view.level[c].counts->column_count > 0; }
+  bool scales(std::uint32_t q) {
+    return (q <= 2 || next(Role::averages, q - 2)) && (q == 0 ? next(Role::averages, 0) : next(Role::details, q));
+  }
+  bool next(Role role, std::uint32_t q) {
+    return next(SectionKind::scales, static_cast<std::uint32_t>(role), q, verify_scales);
+  }
+
+  bool couplings(std::uint32_t q, Strength strength) {
+    if (q == 0 && strength != Strength::strong) return true;
+    return (q == 0 || next(q, Partner::averages, strength)) && (q <= 1 || next(q, Partner::parents, strength)) &&
+           next(q, Partner::same, strength);
+  }
+  bool next(std::uint32_t q, Partner partner, Strength strength) {
+    return next(SectionKind::couplings, q, layout::coupling_index(partner, strength), verify_couplings);
+  }
 
   SectionTable& table_;
   VerifyContext& context_;

@@ -6,9 +6,9 @@
 namespace greenloop {
 namespace {
 
-using layout::ColumnRecord;
 using layout::NodeRecord;
 using layout::RefinementRecord;
+using layout::Scale;
 
 constexpr std::uint32_t known_flags =
     layout::node_domain | layout::node_touchable | layout::node_fixed | layout::node_read;
@@ -41,8 +41,9 @@ bool require_equal(SectionCheck& check, const char* field, std::uint64_t index, 
   return check.require(value == limit, VerifyRule::inconsistent, field, index, value, limit);
 }
 
-bool require_enum(SectionCheck& check, const char* field, std::uint32_t value, std::uint32_t only) {
-  return check.require(value == only, VerifyRule::bad_enum, field, 0, value, only);
+// enumerations whose values are 1 .. last
+bool require_enum(SectionCheck& check, const char* field, std::uint32_t value, std::uint32_t last) {
+  return check.require(value >= 1 && value <= last, VerifyRule::bad_enum, field, 0, value, last);
 }
 
 bool has_flag(const NodeRecord& node, layout::NodeFlag flag) { return (node.flags & flag) != 0; }
@@ -73,18 +74,20 @@ bool verify_info(const Section& section, VerifyContext& context) {
   const std::uint32_t present = context.view.header->levels;
   context.view.info = &info;
   return require_enum(check, "problem", info.problem, static_cast<std::uint32_t>(layout::Problem::elastostatic)) &&
-         require_enum(check, "wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::lifted_linear)) &&
+         require_enum(check, "wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::linear)) &&
          require_equal(check, "components", 0, info.components, 3) &&
          require_at_most(check, "levels", 0, info.levels, layout::max_levels) &&
          check.require(info.levels >= present, VerifyRule::inconsistent, "levels", 0, info.levels, present) &&
          require_above(check, "young", 0, info.young, 0) && require_above(check, "poisson", 0, info.poisson, -1) &&
          check.require(info.poisson < 0.5, VerifyRule::out_of_range, "poisson", 0, info.poisson, 0.5) &&
-         require_at_least(check, "epsilon", 0, info.epsilon, 0) &&
-         require_at_least(check, "store_asymmetry", 0, info.store_asymmetry, 0) && verify_box(check, info) &&
+         require_at_least(check, "threshold", 0, info.threshold, 0) &&
+         require_at_least(check, "store_asymmetry", 0, info.store_asymmetry, 0) &&
+         require_at_least(check, "lambda_min", 0, info.lambda_min, 0) && verify_box(check, info) &&
          require_above(check, "rate", 0, info.rate, 0) &&
          require_at_least(check, "max_contacts", 0, info.max_contacts, 1) &&
          require_at_most(check, "coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          require_equal(check, "finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
+         require_enum(check, "field_layers", info.field_layers, layout::strengths) &&
          check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
                        VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
 }
@@ -124,41 +127,49 @@ bool verify_provenance(const Section& section, VerifyContext& context) {
 namespace {
 
 bool verify_level_counts(SectionCheck& check, const layout::Level& counts, const Section& section,
-                         const VerifyContext& context) {
-  const ModelView& view = context.view;
+                         const ModelView& view) {
   const std::uint64_t nodes = std::uint64_t{view.node_count} + counts.node_count;
-  const std::uint32_t domain = view.domain_count + std::min(counts.domain_count, counts.node_count);
+  const std::uint64_t domain = std::uint64_t{view.domain_count} + counts.domain_count;
   const bool constrained = section.a >= view.info->coarsest_constraint_level;
   return require_at_least(check, "node_count", 0, counts.node_count, 1) &&
          check.require(nodes < layout::none, VerifyRule::out_of_range, "node_count", 0, static_cast<double>(nodes),
                        layout::none - 1.0) &&
          require_at_most(check, "domain_count", 0, counts.domain_count, counts.node_count) &&
-         check.require((counts.column_count > 0) == constrained, VerifyRule::inconsistent, "column_count", 0,
-                       counts.column_count, constrained ? 1 : 0) &&
-         require_at_most(check, "column_count", 0, counts.column_count, domain) &&
+         check.require(domain > 0 || !constrained, VerifyRule::inconsistent, "domain_count", 0, counts.domain_count,
+                       1) &&
          check.require((counts.base_triangle_count > 0) == (section.a == 0), VerifyRule::inconsistent,
-                       "base_triangle_count", 0, counts.base_triangle_count, section.a == 0 ? 1 : 0);
+                       "base_triangle_count", 0, counts.base_triangle_count, section.a == 0 ? 1 : 0) &&
+         check.require(counts.dense_blocks == domain * domain, VerifyRule::inconsistent, "dense_blocks", 0,
+                       static_cast<double>(counts.dense_blocks), static_cast<double>(domain * domain));
+}
+
+bool verify_level_errors(SectionCheck& check, const layout::Level& counts) {
+  return require_at_least(check, "rms_error", 0, counts.rms_error, 0) &&
+         require_at_least(check, "worst_column_error", 0, counts.worst_column_error, 0) &&
+         require_at_least(check, "patch_force_error", 0, counts.patch_force_error, 0) &&
+         require_at_least(check, "field_rms_error", 0, counts.field_rms_error, 0) &&
+         require_at_least(check, "field_column_error", 0, counts.field_column_error, 0);
 }
 
 }  // namespace
+
+std::uint32_t domain_of_mesh(const ModelView& view, std::uint32_t q) {
+  return view.level[q].domain_begin + view.level[q].counts->domain_count;
+}
 
 bool verify_level(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   if (!require_size(check, section, 1, sizeof(layout::Level))) return false;
   const auto& counts = *section.as<layout::Level>();
-  LevelView& level = context.view.level[section.a];
-  if (!verify_level_counts(check, counts, section, context) ||
-      !check.require(counts.kept_blocks <= counts.dense_blocks, VerifyRule::out_of_range, "kept_blocks", 0,
-                     static_cast<double>(counts.kept_blocks), static_cast<double>(counts.dense_blocks)) ||
-      !require_at_least(check, "rms_error", 0, counts.rms_error, 0) ||
-      !require_at_least(check, "worst_column_error", 0, counts.worst_column_error, 0) ||
-      !require_at_least(check, "force_error", 0, counts.force_error, 0) ||
-      !check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(counts.reserved))),
-                     VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
+  const bool unused = counts.reserved0 == 0 && all_zero(std::as_bytes(std::span(counts.reserved)));
+  if (!verify_level_counts(check, counts, section, context.view) || !verify_level_errors(check, counts) ||
+      !check.require(!context.reserved_is_zero || unused, VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
     return false;
   }
+  LevelView& level = context.view.level[section.a];
   level.counts = &counts;
   level.node_begin = context.view.node_count;
+  level.domain_begin = context.view.domain_count;
   context.view.node_count += counts.node_count;
   context.view.domain_count += counts.domain_count;
   context.view.levels = section.a + 1u;
@@ -231,8 +242,9 @@ bool verify_parent(SectionCheck& check, const ModelView& view, const RefinementR
   }
   const NodeRecord& parent = node_at(view, record.parent[k]);
   const bool parent_in_domain = has_flag(parent, layout::node_domain);
-  return check.require(parent_in_domain || record.lift[k] == 0, VerifyRule::inconsistent, "lift", i, record.lift[k],
-                       0) &&
+  const bool lifted = view.info->wavelet == static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
+  return check.require((lifted && parent_in_domain) || record.lift[k] == 0, VerifyRule::inconsistent, "lift", i,
+                       record.lift[k], 0) &&
          check.require(!in_domain || parent_in_domain || has_flag(parent, layout::node_fixed), VerifyRule::inconsistent,
                        "parent", i, record.parent[k], layout::none);
 }
@@ -258,86 +270,81 @@ bool verify_refinement(const Section& section, VerifyContext& context) {
   return true;
 }
 
-bool verify_columns(const Section& section, VerifyContext& context) {
-  SectionCheck check(section, context.result);
-  const ModelView& view = context.view;
-  LevelView& level = context.view.level[section.a];
-  const auto* columns = section.as<ColumnRecord>();
-  if (!require_size(check, section, level.counts->column_count, sizeof(ColumnRecord))) return false;
-  for (std::uint32_t j = 0; j < level.counts->column_count; ++j) {
-    const std::uint32_t node = columns[j].node;
-    if (!require_at_most(check, "node", j, node, view.node_count - 1.0) ||
-        !check.require(j == 0 || node > columns[j - 1].node, VerifyRule::not_increasing, "node", j, node,
-                       j == 0 ? 0 : columns[j - 1].node) ||
-        !check.require(has_flag(node_at(view, node), layout::node_domain), VerifyRule::inconsistent, "node", j, node,
-                       layout::node_domain) ||
-        !require_above(check, "area", j, columns[j].area, 0)) {
-      return false;
-    }
-  }
-  level.columns = columns;
-  return true;
-}
-
 namespace {
 
-// a node that is the centre of a column is represented by that column
-bool verify_own_columns(SectionCheck& check, const LevelView& constraint, const LevelView& level,
-                        const std::uint32_t* column_of) {
-  const ColumnRecord* end = constraint.columns + constraint.counts->column_count;
-  const auto before = [](const ColumnRecord& column, std::uint32_t node) { return column.node < node; };
-  const ColumnRecord* own = std::lower_bound(constraint.columns, end, level.node_begin, before);
-  for (; own != end && own->node - level.node_begin < level.counts->node_count; ++own) {
-    const std::uint32_t i = own->node - level.node_begin;
-    const auto j = static_cast<std::uint32_t>(own - constraint.columns);
-    if (!require_equal(check, "column", i, column_of[i], j)) return false;
+// who stands on constraint level c for node i of level q
+bool verify_representative(SectionCheck& check, const ModelView& view, std::uint32_t c, std::uint32_t q,
+                           std::uint32_t i, std::uint32_t representative) {
+  const NodeRecord& node = view.level[q].nodes[i];
+  if (!has_flag(node, layout::node_touchable)) {
+    return require_equal(check, "node", i, representative, layout::none);
   }
-  return true;
+  // a node of K(c) stands for itself
+  if (q <= c) return require_equal(check, "node", i, representative, view.level[q].node_begin + i);
+  const std::uint32_t end = view.level[c].node_begin + view.level[c].counts->node_count;
+  return require_at_most(check, "node", i, representative, end - 1.0) &&
+         check.require(has_flag(node_at(view, representative), layout::node_domain), VerifyRule::inconsistent, "node",
+                       i, representative, layout::none);
 }
 
 }  // namespace
 
 bool verify_representatives(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  const LevelView& constraint = context.view.level[section.a];
-  const LevelView& level = context.view.level[section.b];
-  const auto* column_of = section.as<std::uint32_t>();
-  if (!require_size(check, section, level.counts->node_count, sizeof(std::uint32_t))) return false;
-  for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-    const bool needed = has_flag(level.nodes[i], layout::node_touchable);
-    if (!check.require(column_of[i] < constraint.counts->column_count || column_of[i] == layout::none,
-                       VerifyRule::out_of_range, "column", i, column_of[i], constraint.counts->column_count - 1.0) ||
-        !check.require(!needed || column_of[i] != layout::none, VerifyRule::inconsistent, "column", i, column_of[i],
-                       constraint.counts->column_count - 1.0)) {
-      return false;
-    }
+  const std::uint32_t node_count = context.view.level[section.b].counts->node_count;
+  const auto* representatives = section.as<std::uint32_t>();
+  if (!require_size(check, section, node_count, sizeof(std::uint32_t))) return false;
+  for (std::uint32_t i = 0; i < node_count; ++i) {
+    if (!verify_representative(check, context.view, section.a, section.b, i, representatives[i])) return false;
   }
-  context.view.representatives[section.a][section.b] = column_of;
-  return verify_own_columns(check, constraint, level, column_of);
+  context.view.representatives[section.a][section.b] = representatives;
+  return true;
 }
 
-bool verify_counts(VerifyContext& context) {
-  const ModelView& view = context.view;
-  const bool complete = view.levels == view.info->levels;
-  std::uint64_t rows = complete ? view.domain_count : 0;  // of the complete model; 0: not known yet
-  for (std::uint32_t c = 0; c < view.levels; ++c) {
-    const layout::Level& counts = *view.level[c].counts;
-    const Section section{layout::SectionKind::level, static_cast<std::uint16_t>(c), 0, nullptr, 0};
-    SectionCheck check(section, context.result);
-    const std::uint64_t present = context.present_blocks[c];
-    const auto kept = static_cast<double>(counts.kept_blocks);
-    if (!check.require(complete ? counts.kept_blocks == present : counts.kept_blocks >= present,
-                       VerifyRule::inconsistent, "kept_blocks", 0, kept, static_cast<double>(present))) {
-      return false;
-    }
-    if (rows == 0 && counts.column_count > 0) rows = counts.dense_blocks / counts.column_count;
-    const std::uint64_t dense = counts.column_count * std::max<std::uint64_t>(rows, view.domain_count);
-    if (!check.require(counts.dense_blocks == dense, VerifyRule::inconsistent, "dense_blocks", 0,
-                       static_cast<double>(counts.dense_blocks), static_cast<double>(dense))) {
+namespace {
+
+// Sylvester's criterion; the products of floats are exact or nearly so in double
+bool verify_positive_definite(SectionCheck& check, const char* field, const float (&six)[6], std::uint32_t i) {
+  for (const float value : six) {
+    if (!require_finite(check, field, i, value)) return false;
+  }
+  const double xx = six[0], xy = six[1], xz = six[2];
+  const double yy = six[3], yz = six[4], zz = six[5];
+  const double minors[] = {
+      xx, xx * yy - xy * xy,
+      xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)};  // of 1, 2 and 3 rows
+  for (const double minor : minors) {
+    if (!check.require(minor > 0, VerifyRule::out_of_range, field, i, minor, 0)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool verify_scales(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  LevelView& level = context.view.level[section.b];
+  const bool details = section.a == static_cast<std::uint16_t>(layout::Role::details);
+  const std::uint32_t count = details ? level.counts->domain_count : domain_of_mesh(context.view, section.b);
+  const auto* scales = section.as<Scale>();
+  if (!require_size(check, section, count, sizeof(Scale))) return false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!verify_positive_definite(check, "root", scales[i].root, i) ||
+        !verify_positive_definite(check, "diagonal", scales[i].diagonal, i)) {
       return false;
     }
   }
+  (details ? level.details : level.averages) = scales;
+  context.kept_blocks += count;
   return true;
+}
+
+bool verify_counts(std::uint32_t q, VerifyContext& context) {
+  const layout::Level& counts = *context.view.level[q].counts;
+  const Section section{layout::SectionKind::level, static_cast<std::uint16_t>(q), 0, nullptr, 0};
+  SectionCheck check(section, context.result);
+  return check.require(counts.kept_blocks == context.kept_blocks, VerifyRule::inconsistent, "kept_blocks", 0,
+                       static_cast<double>(counts.kept_blocks), static_cast<double>(context.kept_blocks));
 }
 
 }  // namespace greenloop

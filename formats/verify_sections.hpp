@@ -12,8 +12,8 @@ namespace greenloop {
 struct VerifyContext {
   ModelView& view;
   VerifyResult& result;
-  bool reserved_is_zero;                                  ///< false if a newer minor version wrote the file
-  std::uint64_t present_blocks[layout::max_levels] = {};  ///< of each constraint level, in the sections seen so far
+  bool reserved_is_zero;          ///< false if a newer minor version wrote the file
+  std::uint64_t kept_blocks = 0;  ///< scales and coupling blocks in the sections seen so far
 };
 
 bool verify_info(const Section& section, VerifyContext& context);
@@ -22,11 +22,14 @@ bool verify_level(const Section& section, VerifyContext& context);
 bool verify_nodes(const Section& section, VerifyContext& context);
 bool verify_base_triangles(const Section& section, VerifyContext& context);
 bool verify_refinement(const Section& section, VerifyContext& context);
-bool verify_columns(const Section& section, VerifyContext& context);
 bool verify_representatives(const Section& section, VerifyContext& context);
-bool verify_blocks(const Section& section, VerifyContext& context);
+bool verify_scales(const Section& section, VerifyContext& context);
+bool verify_couplings(const Section& section, VerifyContext& context);
 
-/// After the last section: the counts in every Level agree with what the sections hold.
-bool verify_counts(VerifyContext& context);
+/// Domain nodes of K(q), the level's own included; Level(q) must have been seen.
+[[nodiscard]] std::uint32_t domain_of_mesh(const ModelView& view, std::uint32_t q);
+
+/// After the last section of level q: Level(q) counts what the sections up to here hold.
+bool verify_counts(std::uint32_t q, VerifyContext& context);
 
 }  // namespace greenloop

@@ -1,4 +1,4 @@
-// What Info, Provenance, Level, Nodes, BaseTriangles, Refinement, Columns and Representatives must not say.
+// What Info, Provenance, Level, Nodes, BaseTriangles, Refinement, Representatives and Scales must not say.
 
 #include <doctest/doctest.h>
 
@@ -12,18 +12,21 @@
 namespace greenloop {
 namespace {
 
-using layout::ColumnRecord;
 using layout::Info;
 using layout::Level;
 using layout::NodeRecord;
 using layout::RefinementRecord;
+using layout::Scale;
 using layout::SectionKind;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t all_ones = 0xffffffff;
 
-ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 2}); }
+ModelMutant valid() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 2}));
+  return ModelMutant(file);
+}
 
 template <class Change>
 void check_info(VerifyRule rule, const std::string& field, std::uint64_t index, Change change) {
@@ -54,19 +57,29 @@ void check_parent(std::uint32_t i, VerifyRule rule, const std::string& field, Ch
 }
 
 template <class Change>
-void check_column(std::uint32_t j, VerifyRule rule, const std::string& field, Change change) {
+void check_scale(layout::Role role, std::uint32_t i, VerifyRule rule, Change change) {
+  const auto a = static_cast<std::uint32_t>(role);
+  ModelMutant root = valid(), diagonal = valid();
+  change(root.records<Scale>(SectionKind::scales, a, a)[i].root);
+  check_refused(root, rule, SectionKind::scales, a, a, "root", i);
+  change(diagonal.records<Scale>(SectionKind::scales, a, a)[i].diagonal);
+  check_refused(diagonal, rule, SectionKind::scales, a, a, "diagonal", i);
+}
+
+void check_representative(std::uint32_t c, std::uint32_t q, std::uint32_t i, VerifyRule rule, std::uint32_t value) {
   ModelMutant mutant = valid();
-  change(mutant.records<ColumnRecord>(SectionKind::columns, 1)[j]);
-  check_refused(mutant, rule, SectionKind::columns, 1, 0, field, j);
+  mutant.records<std::uint32_t>(SectionKind::representatives, c, q)[i] = value;
+  check_refused(mutant, rule, SectionKind::representatives, c, q, "node", i);
 }
 
 TEST_CASE("verify refuses: sections whose size does not follow from the counts") {
   const struct {
     SectionKind kind;
     std::uint32_t a, b;
-  } sized[] = {{SectionKind::info, 0, 0},           {SectionKind::level, 0, 0},      {SectionKind::nodes, 1, 0},
-               {SectionKind::base_triangles, 0, 0}, {SectionKind::refinement, 1, 0}, {SectionKind::columns, 0, 0},
-               {SectionKind::representatives, 0, 1}};
+  } sized[] = {{SectionKind::info, 0, 0},       {SectionKind::level, 0, 0},
+               {SectionKind::nodes, 1, 0},      {SectionKind::base_triangles, 0, 0},
+               {SectionKind::refinement, 1, 0}, {SectionKind::representatives, 0, 1},
+               {SectionKind::scales, 0, 0},     {SectionKind::scales, 1, 1}};
   for (const auto& section : sized) {
     for (const int change : {-4, 4}) {
       ModelMutant mutant = valid();
@@ -83,7 +96,8 @@ TEST_CASE("verify refuses: sections whose size does not follow from the counts")
 TEST_CASE("verify refuses: an unknown problem or wavelet") {
   check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 2; });
   check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 0; });
-  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 2; });
+  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 3; });
+  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 0; });
 }
 
 TEST_CASE("verify refuses: other than three components") {
@@ -108,11 +122,13 @@ TEST_CASE("verify refuses: impossible material constants") {
   }
 }
 
-TEST_CASE("verify refuses: a threshold or an asymmetry that is negative or not finite") {
-  check_info(VerifyRule::out_of_range, "epsilon", 0, [](Info& info) { info.epsilon = -1e-9; });
-  check_info(VerifyRule::not_finite, "epsilon", 0, [](Info& info) { info.epsilon = nan; });
+TEST_CASE("verify refuses: a threshold, an asymmetry or an eigenvalue that is negative or not finite") {
+  check_info(VerifyRule::out_of_range, "threshold", 0, [](Info& info) { info.threshold = -1e-9; });
+  check_info(VerifyRule::not_finite, "threshold", 0, [](Info& info) { info.threshold = nan; });
   check_info(VerifyRule::out_of_range, "store_asymmetry", 0, [](Info& info) { info.store_asymmetry = -1e-9; });
   check_info(VerifyRule::not_finite, "store_asymmetry", 0, [](Info& info) { info.store_asymmetry = nan; });
+  check_info(VerifyRule::out_of_range, "lambda_min", 0, [](Info& info) { info.lambda_min = -1e-30; });
+  check_info(VerifyRule::not_finite, "lambda_min", 0, [](Info& info) { info.lambda_min = infinity; });
 }
 
 TEST_CASE("verify refuses: a box that is inside out or not finite") {
@@ -136,9 +152,16 @@ TEST_CASE("verify refuses: constraint levels outside the file's levels") {
   }
 }
 
+TEST_CASE("verify refuses: other than one to three layers for the field") {
+  for (const std::uint32_t layers : {0u, 4u}) {
+    check_info(VerifyRule::bad_enum, "field_layers", 0, [&](Info& info) { info.field_layers = layers; });
+  }
+}
+
 TEST_CASE("verify refuses: reserved bytes of Info and Level in use") {
-  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[159] = 1; });
-  check_level(1, VerifyRule::reserved_not_zero, "reserved", [](Level& level) { level.reserved[4] = 1; });
+  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[147] = 1; });
+  check_level(1, VerifyRule::reserved_not_zero, "reserved", [](Level& level) { level.reserved[2] = 1; });
+  check_level(0, VerifyRule::reserved_not_zero, "reserved", [](Level& level) { level.reserved0 = 1; });
 }
 
 TEST_CASE("verify refuses: provenance that is not UTF-8, or holds a zero byte") {
@@ -168,13 +191,8 @@ TEST_CASE("verify refuses: more domain nodes than nodes") {
   check_level(1, VerifyRule::out_of_range, "domain_count", [](Level& level) { level.domain_count = 13; });
 }
 
-TEST_CASE("verify refuses: columns where there must be none, none where there must be, more than the domain") {
-  check_level(0, VerifyRule::inconsistent, "column_count", [](Level& level) { level.column_count = 0; });
-  check_level(1, VerifyRule::inconsistent, "column_count", [](Level& level) { level.column_count = 0; });
-  check_level(1, VerifyRule::out_of_range, "column_count", [](Level& level) { level.column_count = all_ones; });
-  ModelMutant mutant(SyntheticOptions{.levels = 2, .coarsest_constraint_level = 1});
-  mutant.records<Level>(SectionKind::level, 0)->column_count = 1;
-  check_refused(mutant, VerifyRule::inconsistent, SectionKind::level, 0, 0, "column_count", 0);
+TEST_CASE("verify refuses: a constraint level without domain nodes") {
+  check_level(0, VerifyRule::inconsistent, "domain_count", [](Level& level) { level.domain_count = 0; });
 }
 
 TEST_CASE("verify refuses: base triangles on a finer level, none on the coarsest") {
@@ -182,33 +200,20 @@ TEST_CASE("verify refuses: base triangles on a finer level, none on the coarsest
   check_level(1, VerifyRule::inconsistent, "base_triangle_count", [](Level& level) { level.base_triangle_count = 8; });
 }
 
-TEST_CASE("verify refuses: block counts that the sections do not bear out") {
-  check_level(1, VerifyRule::out_of_range, "kept_blocks",
-              [](Level& level) { level.kept_blocks = level.dense_blocks + 1; });
-  check_level(1, VerifyRule::inconsistent, "kept_blocks", [](Level& level) { level.kept_blocks -= 1; });
-  check_level(0, VerifyRule::inconsistent, "dense_blocks", [](Level& level) { level.dense_blocks += 1; });
-  check_level(0, VerifyRule::inconsistent, "dense_blocks",
-              [](Level& level) { level.dense_blocks += level.column_count; });
-}
-
-TEST_CASE("verify refuses: a cut file that claims fewer blocks than it holds, or a complete model of two sizes") {
-  const auto cut = truncate_to_level(encode(synthetic_model({.levels = 3})), 1);
-  ModelMutant fewer(cut);
-  Level& kept = *fewer.records<Level>(SectionKind::level, 1);
-  kept.kept_blocks = 100;
-  CHECK(kept.kept_blocks < fewer.records<layout::BlocksHeader>(SectionKind::blocks, 1, 0)->block_count +
-                               fewer.records<layout::BlocksHeader>(SectionKind::blocks, 1, 1)->block_count);
-  check_refused(fewer, VerifyRule::inconsistent, SectionKind::level, 1, 0, "kept_blocks", 0);
-
-  ModelMutant two(cut);
-  Level& dense = *two.records<Level>(SectionKind::level, 1);
-  dense.dense_blocks += dense.column_count;
-  check_refused(two, VerifyRule::inconsistent, SectionKind::level, 1, 0, "dense_blocks", 0);
-
-  ModelMutant small(cut);
-  Level& rows = *small.records<Level>(SectionKind::level, 0);
-  rows.kept_blocks = rows.dense_blocks = std::uint64_t{12} * rows.column_count;
-  check_refused(small, VerifyRule::inconsistent, SectionKind::level, 0, 0, "dense_blocks", 0);
+TEST_CASE("verify refuses: block counts that the sections do not bear out, on any level, in whole and cut files") {
+  const auto whole = encode(synthetic_model({.levels = 3}));
+  for (const std::uint32_t last : {1u, 2u}) {
+    for (std::uint32_t q = 0; q <= last; ++q) {
+      for (const int change : {-1, 1}) {
+        ModelMutant kept(truncate_to_level(whole, last));
+        kept.records<Level>(SectionKind::level, q)->kept_blocks += change;
+        check_refused(kept, VerifyRule::inconsistent, SectionKind::level, q, 0, "kept_blocks", 0);
+        ModelMutant dense(truncate_to_level(whole, last));
+        dense.records<Level>(SectionKind::level, q)->dense_blocks += change;
+        check_refused(dense, VerifyRule::inconsistent, SectionKind::level, q, 0, "dense_blocks", 0);
+      }
+    }
+  }
 }
 
 TEST_CASE("verify refuses: measured errors that are negative or not finite") {
@@ -216,8 +221,12 @@ TEST_CASE("verify refuses: measured errors that are negative or not finite") {
   check_level(0, VerifyRule::not_finite, "rms_error", [](Level& level) { level.rms_error = NAN; });
   check_level(1, VerifyRule::out_of_range, "worst_column_error", [](Level& level) { level.worst_column_error = -1; });
   check_level(1, VerifyRule::not_finite, "worst_column_error", [](Level& level) { level.worst_column_error = NAN; });
-  check_level(1, VerifyRule::out_of_range, "force_error", [](Level& level) { level.force_error = -1; });
-  check_level(1, VerifyRule::not_finite, "force_error", [](Level& level) { level.force_error = INFINITY; });
+  check_level(1, VerifyRule::out_of_range, "patch_force_error", [](Level& level) { level.patch_force_error = -1; });
+  check_level(1, VerifyRule::not_finite, "patch_force_error", [](Level& level) { level.patch_force_error = INFINITY; });
+  check_level(0, VerifyRule::out_of_range, "field_rms_error", [](Level& level) { level.field_rms_error = -1; });
+  check_level(0, VerifyRule::not_finite, "field_rms_error", [](Level& level) { level.field_rms_error = NAN; });
+  check_level(1, VerifyRule::out_of_range, "field_column_error", [](Level& level) { level.field_column_error = -1; });
+  check_level(1, VerifyRule::not_finite, "field_column_error", [](Level& level) { level.field_column_error = NAN; });
 }
 
 TEST_CASE("verify refuses: node positions that are not finite or outside the box") {
@@ -283,42 +292,66 @@ TEST_CASE("verify refuses: lifting weights that are not finite, or towards a par
   });
 }
 
-TEST_CASE("verify refuses: columns at nodes that are absent, of finer levels, outside the domain, or out of order") {
-  check_column(12, VerifyRule::out_of_range, "node", [](ColumnRecord& column) { column.node = 18; });
-  check_column(12, VerifyRule::inconsistent, "node", [](ColumnRecord& column) { column.node = 17; });
-  check_column(5, VerifyRule::not_increasing, "node", [](ColumnRecord& column) { column.node = 3; });
-  check_column(5, VerifyRule::not_increasing, "node", [](ColumnRecord& column) { column.node = 4; });
-  ModelMutant coarse = valid();
-  coarse.records<ColumnRecord>(SectionKind::columns, 0)[4].node = 6;
-  check_refused(coarse, VerifyRule::out_of_range, SectionKind::columns, 0, 0, "node", 4);
+TEST_CASE("verify refuses: lifting weights where the wavelet is not lifted, accepts it without") {
+  ModelMutant mutant(SyntheticOptions{.levels = 2, .lifted = false});
+  CHECK(mutant.verdict().ok());
+  mutant.records<RefinementRecord>(SectionKind::refinement, 1)[1].lift[0] = 0.125F;
+  check_refused(mutant, VerifyRule::inconsistent, SectionKind::refinement, 1, 0, "lift", 1);
 }
 
-TEST_CASE("verify refuses: column areas that are not positive and finite") {
-  check_column(3, VerifyRule::out_of_range, "area", [](ColumnRecord& column) { column.area = 0; });
-  check_column(3, VerifyRule::not_finite, "area", [](ColumnRecord& column) { column.area = NAN; });
-}
-
-TEST_CASE("verify refuses: a node represented by a column that is absent") {
-  ModelMutant mutant = valid();
-  mutant.records<std::uint32_t>(SectionKind::representatives, 0, 1)[9] = 5;
-  check_refused(mutant, VerifyRule::out_of_range, SectionKind::representatives, 0, 1, "column", 9);
+// file indices: 0..4 the domain of level 0, 5 fixed; 6..13 the domain of level 1, 14..17 fixed
+TEST_CASE("verify refuses: a representative that is not a node of the constraint level, or not in its domain") {
+  check_representative(0, 1, 2, VerifyRule::out_of_range, 6);
+  check_representative(0, 1, 2, VerifyRule::out_of_range, layout::none - 1);
+  check_representative(0, 1, 2, VerifyRule::inconsistent, 5);
 }
 
 TEST_CASE("verify refuses: a touchable node without representative, on any constraint level") {
-  for (const std::uint32_t c : {0u, 1u}) {
-    for (const std::uint32_t q : {0u, 1u}) {
-      ModelMutant mutant = valid();
-      REQUIRE((mutant.records<NodeRecord>(SectionKind::nodes, q)[2].flags & layout::node_touchable) != 0);
-      mutant.records<std::uint32_t>(SectionKind::representatives, c, q)[2] = layout::none;
-      check_refused(mutant, VerifyRule::inconsistent, SectionKind::representatives, c, q, "column", 2);
+  check_representative(0, 0, 2, VerifyRule::inconsistent, layout::none);
+  check_representative(0, 1, 2, VerifyRule::out_of_range, layout::none);
+  check_representative(1, 0, 2, VerifyRule::inconsistent, layout::none);
+  check_representative(1, 1, 2, VerifyRule::inconsistent, layout::none);
+}
+
+TEST_CASE("verify refuses: a node of the constraint level that another stands for") {
+  check_representative(0, 0, 2, VerifyRule::inconsistent, 3);
+  check_representative(1, 0, 2, VerifyRule::inconsistent, 8);
+  check_representative(1, 1, 2, VerifyRule::inconsistent, 7);
+}
+
+TEST_CASE("verify refuses: a representative of a node that cannot be touched") {
+  check_representative(0, 0, 5, VerifyRule::inconsistent, 0);
+  check_representative(0, 1, 9, VerifyRule::inconsistent, 5);
+}
+
+TEST_CASE("verify refuses: scales that are not finite") {
+  for (std::uint32_t k = 0; k < 6; ++k) {
+    for (const float bad : {NAN, INFINITY, -INFINITY}) {
+      check_scale(layout::Role::averages, 3, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
+      check_scale(layout::Role::details, 7, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
     }
   }
 }
 
-TEST_CASE("verify refuses: a column's own node represented by another column") {
-  ModelMutant mutant = valid();
-  mutant.records<std::uint32_t>(SectionKind::representatives, 1, 1)[3] = 0;
-  check_refused(mutant, VerifyRule::inconsistent, SectionKind::representatives, 1, 1, "column", 3);
+TEST_CASE("verify refuses: scales that are not positive definite, by their first, second or third minor") {
+  const float not_definite[][6] = {{0, 0, 0, 1, 0, 1}, {-1, 0, 0, 1, 0, 1}, {1, 0, 0, -1, 0, 1},
+                                   {1, 1, 0, 1, 0, 1}, {1, 0, 0, 1, 0, -1}, {1, 0, 0, 1, 0, 0},
+                                   {1, 0, 1, 1, 0, 1}, {1, 0, 0, 1, -1, 1}, {4, 2, 6, 5, 7, 13}};
+  for (const auto& bad : not_definite) {
+    const auto set = [&](float* six) { std::copy(std::begin(bad), std::end(bad), six); };
+    check_scale(layout::Role::averages, 4, VerifyRule::out_of_range, set);
+    check_scale(layout::Role::details, 0, VerifyRule::out_of_range, set);
+  }
+}
+
+TEST_CASE("verify accepts: any positive definite scale, however small or skewed") {
+  const float definite[][6] = {{1e-40F, 0, 0, 1e-40F, 0, 1e-40F}, {1e38F, 0, 0, 1e38F, 0, 1e38F}, {4, 2, 6, 5, 7, 14}};
+  for (const auto& six : definite) {
+    ModelMutant mutant = valid();
+    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1, 1)[2].root);
+    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1, 1)[3].diagonal);
+    CHECK(mutant.verdict().ok());
+  }
 }
 
 }  // namespace

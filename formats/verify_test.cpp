@@ -1,5 +1,5 @@
 // The header, the section table, and files that must be accepted. One test per rule; see also verify_sections_test.cpp
-// and verify_blocks_test.cpp.
+// and verify_couplings_test.cpp.
 
 #include "formats/verify.hpp"
 
@@ -12,6 +12,7 @@
 
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/refusal.hpp"
+#include "formats/testing/smallest_model.hpp"
 
 namespace greenloop {
 namespace {
@@ -21,8 +22,13 @@ using layout::SectionKind;
 
 constexpr SectionKind header = {};
 constexpr std::uint32_t unknown_kind = 77;
+constexpr std::size_t parents = 1, same = 2;  // Partner
+constexpr std::size_t strong = 0;             // Strength
 
-ModelMutant valid() { return ModelMutant(SyntheticOptions{.levels = 2}); }
+ModelMutant valid() {
+  static const std::vector<std::byte> file = encode(synthetic_model({.levels = 2}));
+  return ModelMutant(file);
+}
 
 void check_accepted(ModelMutant& mutant) {
   const VerifyResult result = mutant.verdict();
@@ -47,37 +53,126 @@ TEST_CASE("verify accepts: every size of the synthetic model") {
   }
 }
 
-TEST_CASE("verify accepts: one level and one column") {
-  ModelMutant mutant(SyntheticOptions{.levels = 1, .touchable_above = 1});
+TEST_CASE("verify accepts: one triangle with one free node") {
+  ModelData data = smallest_model();
+  LevelData& level = data.levels[0];
+  level.nodes[1].flags = layout::node_fixed;
+  level.averages.pop_back();
+  CouplingsData& couplings = level.couplings[same][strong];
+  couplings.begin = {0, 0};
+  couplings.value.clear();
+  ModelMutant mutant(encode(data));
   check_accepted(mutant);
-  CHECK(mutant.view().level[0].counts->column_count == 1);
+  CHECK(mutant.view().domain_count == 1);
+  CHECK(mutant.view().level[0].couplings[same][strong].begin[1] == 0);
 }
 
-TEST_CASE("verify accepts: 16-bit values, dense blocks, both") {
-  for (const std::uint32_t value_bytes : {1u, 2u}) {
-    for (const bool dense : {false, true}) {
-      ModelMutant mutant(SyntheticOptions{.levels = 3, .value_bytes = value_bytes, .dense = dense});
+TEST_CASE("verify accepts: levels without domain nodes") {
+  ModelData data = smallest_model();
+  LevelData none_moves;
+  none_moves.nodes = {{{0.5F, 0, 0}, 0.125F, layout::node_fixed}};
+  none_moves.refinement = {{{0, 1}, {0, 0}}};
+  none_moves.representatives = {{0, layout::none, layout::none}, {layout::none}};
+  for (auto& partner : none_moves.couplings) {
+    if (&partner == &none_moves.couplings[parents]) continue;
+    for (CouplingsData& couplings : partner) couplings.begin = {0};
+  }
+  data.levels[0].representatives.push_back({layout::none});
+  data.levels.push_back(none_moves);
+  ModelMutant mutant(encode(data));
+  check_accepted(mutant);
+  CHECK(mutant.view().domain_count == 2);
+}
+
+TEST_CASE("verify: the view shows every array where it stands") {
+  ModelMutant mutant(SyntheticOptions{.levels = 4, .coarsest_constraint_level = 1});
+  check_accepted(mutant);
+  const ModelView& view = mutant.view();
+  std::uint32_t nodes = 0, domain = 0;
+  for (std::uint32_t q = 0; q < 4; ++q) {
+    const LevelView& level = view.level[q];
+    CHECK(level.counts == mutant.records<layout::Level>(SectionKind::level, q));
+    CHECK(level.nodes == mutant.records<layout::NodeRecord>(SectionKind::nodes, q));
+    CHECK(level.node_begin == nodes);
+    CHECK(level.domain_begin == domain);
+    nodes += level.counts->node_count;
+    domain += level.counts->domain_count;
+    CHECK(level.details == (q == 0 ? nullptr : mutant.records<layout::Scale>(SectionKind::scales, 1, q)));
+    CHECK(level.averages == (q > 1 ? nullptr : mutant.records<layout::Scale>(SectionKind::scales, 0, q)));
+    for (std::uint16_t partner = 0; partner < 3; ++partner) {
+      for (std::uint16_t strength = 0; strength < layout::strengths; ++strength) {
+        const CouplingsView& couplings = level.couplings[partner][strength];
+        const bool exists = partner == same ? q > 0 || strength == strong : partner == parents ? q > 1 : q > 0;
+        CAPTURE(section_name(SectionKind::couplings, q, layout::strengths * partner + strength));
+        CHECK((couplings.value != nullptr) == exists);
+        if (!exists) {
+          CHECK(couplings.columns == 0);
+          continue;
+        }
+        const auto* stored =
+            mutant.records<layout::CouplingsHeader>(SectionKind::couplings, q, layout::strengths * partner + strength);
+        const auto* start = reinterpret_cast<const std::byte*>(stored);
+        CHECK(couplings.columns == level.counts->domain_count);
+        CHECK(couplings.rows == stored->rows);
+        CHECK(couplings.value_bits == (q == 0 ? 16u : strength < 2 ? 8u : 4u));
+        CHECK(couplings.quantum == stored->quantum);
+        CHECK(reinterpret_cast<const std::byte*>(couplings.begin) == start + stored->begin_offset);
+        CHECK(couplings.index == (q == 0 ? nullptr : start + stored->index_offset));
+        CHECK(couplings.value == start + stored->value_offset);
+      }
+    }
+    for (std::uint32_t c = 0; c < 4; ++c) {
+      CHECK(view.representatives[c][q] ==
+            (c == 0 ? nullptr : mutant.records<std::uint32_t>(SectionKind::representatives, c, q)));
+    }
+  }
+  CHECK(view.node_count == nodes);
+  CHECK(view.domain_count == domain);
+}
+
+TEST_CASE("verify accepts: 4, 8 and 16 bits in any layer, one to three layers for the field, both wavelets") {
+  for (const std::uint32_t strong_bits : {4u, 8u, 16u}) {
+    for (const std::uint32_t weak_bits : {4u, 8u, 16u}) {
+      const std::uint32_t medium_bits = weak_bits == 16 ? 4u : 16u;
+      ModelMutant mutant(SyntheticOptions{.levels = 3,
+                                          .strong_bits = strong_bits,
+                                          .medium_bits = medium_bits,
+                                          .weak_bits = weak_bits,
+                                          .field_layers = weak_bits == 4   ? 1u
+                                                          : weak_bits == 8 ? 2u
+                                                                           : 3u,
+                                          .lifted = weak_bits != 8});
       check_accepted(mutant);
-      const BlocksView& blocks = mutant.view().blocks[2][1];
-      CHECK(blocks.value_bytes == value_bytes);
-      CHECK((blocks.index == nullptr) == dense);
+      CHECK(mutant.view().level[2].couplings[same][0].value_bits == strong_bits);
+      CHECK(mutant.view().level[2].couplings[same][1].value_bits == medium_bits);
+      CHECK(mutant.view().level[2].couplings[same][2].value_bits == weak_bits);
     }
   }
 }
 
-TEST_CASE("verify accepts: columns only on the finest level") {
+TEST_CASE("verify accepts: couplings that are all strong, all medium, all weak") {
+  for (const std::size_t layer : {0u, 1u, 2u}) {
+    ModelMutant mutant(
+        SyntheticOptions{.levels = 3, .strong = layer == 0 ? 0.0 : 10.0, .medium = layer == 1 ? 0.0 : 10.0});
+    check_accepted(mutant);
+    const auto& couplings = mutant.view().level[2].couplings[same];
+    for (const std::size_t s : {0u, 1u, 2u}) CHECK((couplings[s].begin[couplings[s].columns] > 0) == (s == layer));
+  }
+}
+
+TEST_CASE("verify accepts: constraints only on the finest level") {
   ModelMutant mutant(SyntheticOptions{.levels = 3, .coarsest_constraint_level = 2});
   check_accepted(mutant);
-  CHECK(mutant.view().level[1].columns == nullptr);
-  CHECK(mutant.view().blocks[2][0].columns == 41);
+  CHECK(mutant.view().representatives[1][0] == nullptr);
+  CHECK(mutant.view().representatives[2][0] != nullptr);
 }
 
 TEST_CASE("verify accepts: 4-byte indices where 2 would do") {
   ModelMutant mutant = valid();
   mutant.rebuild([](std::vector<SectionCopy>& sections) {
     for (SectionCopy& section : sections) {
-      if (!section.is(SectionKind::blocks, 1, 1)) continue;
-      layout::BlocksHeader blocks;
+      if (!section.is(SectionKind::couplings, 1, layout::coupling_index(layout::Partner::same, {}))) continue;
+      layout::CouplingsHeader blocks;
       std::memcpy(&blocks, section.bytes.data(), sizeof(blocks));
       const auto* narrow = reinterpret_cast<const std::uint16_t*>(section.bytes.data() + blocks.index_offset);
       const std::vector<std::uint32_t> wide(narrow, narrow + blocks.block_count);
@@ -93,7 +188,7 @@ TEST_CASE("verify accepts: 4-byte indices where 2 would do") {
     }
   });
   check_accepted(mutant);
-  CHECK(mutant.view().blocks[1][1].index_bytes == 4);
+  CHECK(mutant.view().level[1].couplings[same][strong].index_bytes == 4);
 }
 
 TEST_CASE("verify accepts: no provenance, and provenance in any language") {
@@ -233,15 +328,15 @@ TEST_CASE("verify refuses: more sections than fit in the file") {
 TEST_CASE("verify refuses: a section that starts or ends past the end, also where the sum wraps around") {
   for (const std::uint64_t offset : {std::uint64_t{1} << 40, ~std::uint64_t{63}}) {
     ModelMutant mutant = valid();
-    const std::uint32_t place = mutant.place(SectionKind::columns, 1);
+    const std::uint32_t place = mutant.place(SectionKind::scales, 1, 1);
     mutant.table()[place].offset = offset;
-    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::columns, 1, 0, "section.offset", place);
+    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::scales, 1, 1, "section.offset", place);
   }
   for (const std::uint64_t bytes : {std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     ModelMutant mutant = valid();
-    const std::uint32_t place = mutant.place(SectionKind::columns, 1);
+    const std::uint32_t place = mutant.place(SectionKind::scales, 1, 1);
     mutant.table()[place].bytes = bytes;
-    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::columns, 1, 0, "section.bytes", place);
+    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::scales, 1, 1, "section.bytes", place);
   }
 }
 
@@ -306,6 +401,12 @@ TEST_CASE("verify refuses: an unknown section that is not of a newer minor versi
   mutant.rebuild([](std::vector<SectionCopy>& sections) { sections.push_back(unknown_section()); });
   check_refused(mutant, VerifyRule::bad_enum, static_cast<SectionKind>(unknown_kind), 0, 0, "section.kind",
                 mutant.table().size() - 1);
+  for (const std::uint32_t retired : {0u, 7u, 9u}) {
+    mutant.table().back().kind = retired;
+    const VerifyResult result = mutant.verdict();
+    CHECK(result.rule == VerifyRule::bad_enum);
+    CHECK(result.field == std::string("section.kind"));
+  }
 }
 
 TEST_CASE("verify refuses: a damaged unknown section of a newer minor version") {

@@ -8,16 +8,16 @@
 
 namespace greenloop {
 
-/// Blocks(c, r) in place: columns of constraint level c, wavelet rows of mesh level r. See layout::BlocksHeader.
-struct BlocksView {
+/// Couplings(q, partner, strength) in place: see layout::CouplingsHeader.
+struct CouplingsView {
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
-  std::uint32_t value_bytes = 0;
+  std::uint32_t value_bits = 0;
   std::uint32_t index_bytes = 0;
+  float quantum = 0;
   const std::uint32_t* begin = nullptr;  ///< [columns + 1]
-  const float* scale = nullptr;          ///< [columns], m/N per quantum
   const void* index = nullptr;           ///< u16 or u32 by index_bytes; null if dense
-  const void* value = nullptr;           ///< i8 or i16 by value_bytes
+  const std::byte* value = nullptr;      ///< by value_bits
 };
 
 /// One level of the mesh, in place.
@@ -25,9 +25,12 @@ struct LevelView {
   const layout::Level* counts = nullptr;
   std::uint32_t node_begin =
       0;  ///< file index of its first node; its domain is [node_begin, node_begin + domain_count)
+  std::uint32_t domain_begin = 0;  ///< domain nodes of all coarser levels
   const layout::NodeRecord* nodes = nullptr;
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
-  const layout::ColumnRecord* columns = nullptr;         ///< GFs of the constraint level of the same number
+  const layout::Scale* details = nullptr;                ///< scales of the details [domain nodes]; null on level 0
+  const layout::Scale* averages = nullptr;  ///< of the averages [domain nodes of K(q)]; null above level max(L-2, 0)
+  CouplingsView couplings[3][layout::strengths];  ///< [Partner][Strength]; no columns where there is no such section
 };
 
 /// A verified model file, in place: pointers into the caller's bytes, which must outlive it and stay unchanged.
@@ -41,7 +44,6 @@ struct ModelView {
   std::uint32_t domain_count = 0;  ///< over all levels present
   const std::uint32_t* base_triangles = nullptr;
   LevelView level[layout::max_levels];
-  BlocksView blocks[layout::max_levels][layout::max_levels];                     ///< [constraint level][row level]
   const std::uint32_t* representatives[layout::max_levels][layout::max_levels];  ///< [constraint level][mesh level]
 };
 

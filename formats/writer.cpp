@@ -18,9 +18,12 @@
 namespace greenloop {
 namespace {
 
-using layout::BlocksHeader;
+using layout::CouplingsHeader;
+using layout::Partner;
+using layout::Role;
 using layout::SectionEntry;
 using layout::SectionKind;
+using layout::Strength;
 using Bytes = std::vector<std::byte>;
 
 constexpr std::size_t tail_bytes = 16;
@@ -60,28 +63,48 @@ Bytes narrowed(const std::vector<From>& values, const std::string& what) {
   return bytes;
 }
 
-Bytes encode_blocks(const BlocksData& data, std::uint32_t columns, std::uint32_t rows, const std::string& name) {
+// two elements a byte, the low nibble first; ten nibbles a block, the last one zero
+Bytes nibbles(const std::vector<std::int16_t>& values, const std::string& what) {
+  Bytes bytes(values.size() / 9 * 5);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    require(values[i] >= -7 && values[i] <= 7, fmt::format("{}[{}] = {} does not fit in 4 bits", what, i, values[i]));
+    const std::size_t element = i % 9;
+    bytes[i / 9 * 5 + element / 2] |= static_cast<std::byte>((values[i] & 15) << (4 * (element % 2)));
+  }
+  return bytes;
+}
+
+Bytes encode_values(const CouplingsData& data, const std::string& what) {
+  switch (data.value_bits) {
+    case 4:
+      return nibbles(data.value, what);
+    case 8:
+      return narrowed<std::int8_t>(data.value, what);
+    default:
+      return bytes_of(data.value);
+  }
+}
+
+Bytes encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows, bool dense,
+                       const std::string& name) {
   require_size(name + ".begin", data.begin.size(), columns + std::size_t{1});
-  require_size(name + ".scale", data.scale.size(), columns);
-  require(data.value_bytes == 1 || data.value_bytes == 2,
-          fmt::format("{}.value_bytes = {}, expected 1 or 2", name, data.value_bytes));
+  require(data.value_bits == 4 || data.value_bits == 8 || data.value_bits == 16,
+          fmt::format("{}.value_bits = {}, expected 4, 8 or 16", name, data.value_bits));
   const std::size_t blocks = data.begin.back();
-  require_size(name + ".index", data.index.size(), data.dense ? 0 : blocks);
+  require_size(name + ".index", data.index.size(), dense ? 0 : blocks);
   require_size(name + ".value", data.value.size(), 9 * blocks);
 
-  BlocksHeader header{};
+  CouplingsHeader header{};
   header.columns = columns;
   header.rows = rows;
-  header.value_bytes = data.value_bytes;
-  header.index_bytes = data.dense ? 0 : rows <= 65536 ? 2 : 4;
+  header.value_bits = data.value_bits;
+  header.index_bytes = dense ? 0 : rows <= 65536 ? 2 : 4;
   header.block_count = blocks;
+  header.quantum = data.quantum;
 
-  Bytes bytes(sizeof(BlocksHeader));
+  Bytes bytes(sizeof(CouplingsHeader));
   header.begin_offset = bytes.size();
   append(bytes, bytes_of(data.begin));
-  pad(bytes);
-  header.scale_offset = bytes.size();
-  append(bytes, bytes_of(data.scale));
   pad(bytes);
   if (header.index_bytes != 0) {
     header.index_offset = bytes.size();
@@ -90,7 +113,7 @@ Bytes encode_blocks(const BlocksData& data, std::uint32_t columns, std::uint32_t
     pad(bytes);
   }
   header.value_offset = bytes.size();
-  append(bytes, data.value_bytes == 1 ? narrowed<std::int8_t>(data.value, name + ".value") : bytes_of(data.value));
+  append(bytes, encode_values(data, name + ".value"));
   bytes.resize(bytes.size() + tail_bytes);
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes;
@@ -115,54 +138,90 @@ class SectionList {
  private:
   [[nodiscard]] std::uint32_t levels() const { return static_cast<std::uint32_t>(model_.levels.size()); }
 
-  void add(SectionKind kind, std::uint32_t a, std::uint32_t b, Bytes bytes) {
+  static SectionBytes section(SectionKind kind, std::uint32_t a, std::uint32_t b, Bytes bytes) {
     SectionEntry entry{};
     entry.kind = static_cast<std::uint32_t>(kind);
     entry.a = static_cast<std::uint16_t>(a);
     entry.b = static_cast<std::uint16_t>(b);
     entry.bytes = bytes.size();
     entry.crc = crc32c(bytes);
-    sections_.push_back({entry, std::move(bytes)});
+    return {entry, std::move(bytes)};
+  }
+  void add(SectionKind kind, std::uint32_t a, std::uint32_t b, Bytes bytes) {
+    sections_.push_back(section(kind, a, b, std::move(bytes)));
   }
 
   void add_level(std::uint32_t q) {
     const LevelData& level = model_.levels[q];
-    add(SectionKind::level, q, 0, bytes_of_one(completed_counts(q)));
+    const std::size_t place = sections_.size();
+    add(SectionKind::level, q, 0, {});
     add(SectionKind::nodes, q, 0, bytes_of(level.nodes));
     if (q == 0) add(SectionKind::base_triangles, 0, 0, bytes_of(model_.base_triangles));
     if (q > 0) {
       require_size(fmt::format("levels[{}].refinement", q), level.refinement.size(), level.nodes.size());
       add(SectionKind::refinement, q, 0, bytes_of(level.refinement));
     }
-    if (!level.columns.empty()) add(SectionKind::columns, q, 0, bytes_of(level.columns));
     for (std::uint32_t c = 0; c <= q; ++c) add_representatives(c, q);
     for (std::uint32_t r = 0; r < q; ++r) add_representatives(q, r);
-    for (std::uint32_t c = 0; c <= q; ++c) add_blocks(c, q);
-    for (std::uint32_t r = 0; r < q; ++r) add_blocks(q, r);
+    if (q > 2) add_scales(Role::averages, q - 2);
+    add_scales(q == 0 ? Role::averages : Role::details, q);
+    require(q > 0 ? level.averages.empty() || q + 2 < levels() : level.details.empty(),
+            fmt::format("levels[{}].{} belongs to no section", q, q > 0 ? "averages" : "details"));
+    for (const Strength strength : {Strength::strong, Strength::medium, Strength::weak}) {
+      for (const Partner partner : {Partner::averages, Partner::parents, Partner::same}) {
+        add_couplings(q, partner, strength);
+      }
+    }
+    sections_[place] = section(SectionKind::level, q, 0, bytes_of_one(completed_counts(q)));  // now they are known
   }
 
   void add_representatives(std::uint32_t c, std::uint32_t q) {
     const LevelData& constraint = model_.levels[c];
-    if (constraint.columns.empty()) return;
+    if (c < model_.info.coarsest_constraint_level) {
+      return require_size(fmt::format("levels[{}].representatives", c), constraint.representatives.size(), 0);
+    }
     require_size(fmt::format("levels[{}].representatives", c), constraint.representatives.size(), levels());
     require_size(fmt::format("levels[{}].representatives[{}]", c, q), constraint.representatives[q].size(),
                  model_.levels[q].nodes.size());
     add(SectionKind::representatives, c, q, bytes_of(constraint.representatives[q]));
   }
 
-  void add_blocks(std::uint32_t c, std::uint32_t r) {
-    const LevelData& constraint = model_.levels[c];
-    if (constraint.columns.empty()) return;
-    require_size(fmt::format("levels[{}].blocks", c), constraint.blocks.size(), levels());
-    add(SectionKind::blocks, c, r,
-        encode_blocks(constraint.blocks[r], static_cast<std::uint32_t>(constraint.columns.size()), domain_count(r),
-                      section_name(SectionKind::blocks, c, r)));
+  void add_scales(Role role, std::uint32_t q) {
+    const bool details = role == Role::details;
+    const auto& scales = details ? model_.levels[q].details : model_.levels[q].averages;
+    require_size(fmt::format("levels[{}].{}", q, details ? "details" : "averages"), scales.size(),
+                 details ? domain_count(q) : domain_of_mesh(q));
+    add(SectionKind::scales, static_cast<std::uint32_t>(role), q, bytes_of(scales));
+    kept_blocks_ += scales.size();
+  }
+
+  void add_couplings(std::uint32_t q, Partner partner, Strength strength) {
+    const CouplingsData& data =
+        model_.levels[q].couplings[static_cast<std::size_t>(partner)][static_cast<std::size_t>(strength)];
+    const std::uint16_t b = layout::coupling_index(partner, strength);
+    const std::string name = section_name(SectionKind::couplings, q, b);
+    const bool exists = partner == Partner::same      ? q > 0 || strength == Strength::strong
+                        : partner == Partner::parents ? q > 1
+                                                      : q > 0;
+    if (!exists) return require_size(name + ".begin", data.begin.size(), 0);
+    const std::uint32_t rows = partner == Partner::same      ? domain_count(q)
+                               : partner == Partner::parents ? domain_count(q - 1)
+                                                             : domain_of_mesh(q < 2 ? 0 : q - 2);
+    add(SectionKind::couplings, q, b, encode_couplings(data, domain_count(q), rows, q == 0, name));
+    kept_blocks_ += data.begin.back();
   }
 
   [[nodiscard]] std::uint32_t domain_count(std::uint32_t q) const {
     const auto& nodes = model_.levels[q].nodes;
     return static_cast<std::uint32_t>(std::count_if(
         nodes.begin(), nodes.end(), [](const auto& node) { return (node.flags & layout::node_domain) != 0; }));
+  }
+
+  // of K(q)
+  [[nodiscard]] std::uint32_t domain_of_mesh(std::uint32_t q) const {
+    std::uint32_t count = 0;
+    for (std::uint32_t r = 0; r <= q; ++r) count += domain_count(r);
+    return count;
   }
 
   [[nodiscard]] layout::Info completed_info() const {
@@ -188,18 +247,15 @@ class SectionList {
     layout::Level counts = level.counts;
     counts.node_count = static_cast<std::uint32_t>(level.nodes.size());
     counts.domain_count = domain_count(q);
-    counts.column_count = static_cast<std::uint32_t>(level.columns.size());
     counts.base_triangle_count = q == 0 ? static_cast<std::uint32_t>(model_.base_triangles.size() / 3) : 0;
-    counts.kept_blocks = 0;
-    for (const BlocksData& blocks : level.blocks) counts.kept_blocks += blocks.begin.empty() ? 0 : blocks.begin.back();
-    std::uint64_t rows = 0;
-    for (std::uint32_t r = 0; r < levels(); ++r) rows += domain_count(r);
-    counts.dense_blocks = level.columns.size() * rows;
+    counts.kept_blocks = kept_blocks_;
+    counts.dense_blocks = std::uint64_t{domain_of_mesh(q)} * domain_of_mesh(q);
     return counts;
   }
 
   const ModelData& model_;
   std::vector<SectionBytes> sections_;
+  std::uint64_t kept_blocks_ = 0;  // in the sections so far
 };
 
 // header with both checksums; the table and the length must already stand in `file`

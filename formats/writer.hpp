@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,13 +12,12 @@
 
 namespace greenloop {
 
-/// Blocks(c, r) before encoding; see layout::BlocksHeader.
-struct BlocksData {
-  std::uint32_t value_bytes = 1;     ///< 1: values in -127..127, 2: -32767..32767
-  bool dense = false;                ///< every column keeps every row; `index` stays empty
-  std::vector<std::uint32_t> begin;  ///< columns + 1
-  std::vector<float> scale;          ///< columns
-  std::vector<std::uint32_t> index;  ///< rows within the level's domain; stored in 2 bytes where they fit
+/// Couplings of one level, partner and strength before encoding; see layout::CouplingsHeader.
+struct CouplingsData {
+  std::uint32_t value_bits = 8;  ///< 4, 8 or 16
+  float quantum = 0;
+  std::vector<std::uint32_t> begin;  ///< columns + 1; empty where the file has no such section
+  std::vector<std::uint32_t> index;  ///< rows; stored in 2 bytes where they fit; empty on level 0, which keeps all
   std::vector<std::int16_t> value;   ///< 9 per block, by columns
 };
 
@@ -26,10 +26,11 @@ struct LevelData {
   layout::Level counts{};
   std::vector<layout::NodeRecord> nodes;
   std::vector<layout::RefinementRecord> refinement;  ///< empty on level 0
-  std::vector<layout::ColumnRecord> columns;         ///< GFs of this constraint level; may be empty
-  std::vector<std::vector<std::uint32_t>>
-      representatives;             ///< [mesh level][node in that level], every mesh level; empty without columns
-  std::vector<BlocksData> blocks;  ///< [row level], every mesh level; empty without columns
+  /// [mesh level][node in that level], every mesh level; empty below the coarsest constraint level
+  std::vector<std::vector<std::uint32_t>> representatives;
+  std::vector<layout::Scale> details;   ///< [domain nodes]; empty on level 0
+  std::vector<layout::Scale> averages;  ///< [domain nodes of K(q)]; empty above level max(L-2, 0)
+  std::array<std::array<CouplingsData, layout::strengths>, 3> couplings;  ///< [layout::Partner][layout::Strength]
 };
 
 /// A whole model before encoding. Offline only.
@@ -42,7 +43,7 @@ struct ModelData {
 
 /// The bytes of a model file: deterministic, complete, checksummed. Throws std::invalid_argument naming the field that
 /// does not fit. Filled in from the vectors, whatever stands there: Info::levels, finest_constraint_level and the box;
-/// Level's node, domain, column, triangle, kept and dense counts. The result has passed verify.
+/// Level's node, domain, triangle, kept and dense counts. The result has passed verify.
 [[nodiscard]] std::vector<std::byte> encode(const ModelData& model);
 
 /// The same model cut off after level q: a prefix with its header rewritten. Throws std::invalid_argument if q is not

@@ -3,10 +3,15 @@
 #include <cfloat>
 #include <new>
 
-#include "runtime/lu.hpp"
+#include "runtime/cholesky.hpp"
+#include "runtime/domain.hpp"
 
 namespace greenloop {
 namespace {
+
+double magnitude(double value) { return value < 0 ? -value : value; }
+
+double larger(double a, double b) { return a > b ? a : b; }
 
 // largest factor between coefficients and node values, intermediate sums included
 double transform_growth(const ModelView& view, const Lifting& lifting) {
@@ -18,43 +23,141 @@ double transform_growth(const ModelView& view, const Lifting& lifting) {
       double sum = 0;
       for (std::uint32_t n = begin[e]; n < begin[e + 1]; ++n) {
         for (const float lift : lifting.neighbours[level][n].lift) {
-          sum += lift < 0 ? -lift : lift;
+          sum += magnitude(double{lift});
         }
       }
-      most = sum > most ? sum : most;
+      most = larger(most, sum);
     }
-    growth += most + 1;
+    // values of the level before, its averages, and the details
+    growth += 2 * (most + 1);
   }
   return 2 * growth;
 }
 
-double largest_coefficient(const ModelView& view) {
-  double largest = 0;
-  for (std::uint32_t c = 0; c < view.levels; ++c) {
-    for (std::uint32_t r = 0; r < view.levels && view.level[c].counts->column_count > 0; ++r) {
-      const BlocksView& blocks = view.blocks[c][r];
-      const double most = blocks.value_bytes == 1 ? 128 : 32768;
-      for (std::uint32_t j = 0; j < blocks.columns; ++j) {
-        largest = most * blocks.scale[j] > largest ? most * blocks.scale[j] : largest;
+// largest factor between nodal forces, whose sum no level exceeds, and force coefficients
+double force_growth(const ModelView& view) {
+  double most = 0;
+  for (std::uint32_t level = 1; level < view.levels; ++level) {
+    for (std::uint32_t i = 0; i < view.level[level].counts->domain_count; ++i) {
+      const float* lift = view.level[level].refinement[i].lift;
+      most = larger(most, magnitude(double{lift[0]}) + magnitude(double{lift[1]}));
+    }
+  }
+  return 1 + most;
+}
+
+// magnitudes within a part of the scales
+template <class Part>
+double largest_scale(const Coefficients& coefficients, Part part) {
+  double largest = 1;
+  for (const CoefficientGroup& group : coefficients.group) {
+    for (std::uint32_t i = 0; i < group.count; ++i) {
+      for (const float value : group.scale[i].*part) {
+        largest = larger(largest, magnitude(double{value}));
       }
     }
   }
   return largest;
 }
 
-float largest_force_sum(const ModelView& view, const Lifting& lifting) {
-  const double per_newton = transform_growth(view, lifting) * largest_coefficient(view);
-  const double limit = FLT_MAX / 4.0 / (per_newton > 1 ? per_newton : 1);
-  return static_cast<float>(limit);
+// largest value of a block
+double largest_value(const Coefficients& coefficients, const Couplings& couplings) {
+  double largest = largest_scale(coefficients, &layout::Scale::diagonal);
+  for (std::uint32_t s = 0; s < couplings.count; ++s) {
+    const CouplingsView& view = couplings.section[s].view;
+    const double most = view.value_bits == 4 ? 8 : (view.value_bits == 8 ? 128 : 32768);
+    largest = larger(largest, most * view.quantum);
+  }
+  return largest;
 }
 
-// exact lengths of the functionals that requirement.hpp only bounds
-void measure_functionals(const ModelView& view, Body& body, std::uint32_t* const* functional_size) {
-  for (std::uint32_t c = 0; c < view.levels; ++c) {
-    const LevelView& level = view.level[c];
-    for (std::uint32_t j = 0; j < level.counts->column_count; ++j) {
-      functional_size[c][j] =
-          point_functional(view, body.lifting, level.columns[j].node, body.capacitance.coefficients);
+float largest_force_sum(const ModelView& view, const Body& body) {
+  const double root = 3 * largest_scale(body.coefficients, &layout::Scale::root);
+  // a coefficient gets at most one block, or one and its other half, from any other
+  const double sums = 6.0 * body.coefficients.count * largest_value(body.coefficients, body.couplings);
+  const double per_newton = transform_growth(view, body.lifting) * root * sums * root * force_growth(view);
+  return static_cast<float>(FLT_MAX / 4.0 / per_newton);
+}
+
+// what is written once, at the start
+struct Tables {
+  std::uint32_t* begin[layout::max_levels] = {};
+  OddNeighbours* neighbours[layout::max_levels] = {};
+  ColumnCost* cost[layout::max_levels] = {};
+  DomainParents* parents = nullptr;
+  std::uint8_t* mesh_level = nullptr;
+};
+
+void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    if (q > 0) {
+      tables.begin[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
+      tables.neighbours[q] = arena.take<OddNeighbours>(sizes.lifting_records[q]);
+    }
+    if (q >= view.info->coarsest_constraint_level) {
+      tables.cost[q] = arena.take<ColumnCost>(domain_up_to(view, q));
+    }
+  }
+  tables.parents = arena.take<DomainParents>(view.domain_count);
+  tables.mesh_level = arena.take<std::uint8_t>(view.domain_count);
+}
+
+void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, ContactSet& set) {
+  set.column = arena.take<std::uint32_t>(contacts);
+  set.sorting = arena.take<std::uint32_t>(contacts);
+  set.members = arena.take<std::uint32_t>(contacts);
+  set.place = arena.take<std::uint32_t>(contacts);
+  set.place_of_column = arena.take<std::uint32_t>(view.domain_count);
+}
+
+void carve_capacitance(Arena& arena, const BodySizes& sizes, CapacitanceScratch& scratch) {
+  scratch.touched.carve(arena, sizes.coefficients);
+  const std::uint64_t entries = sizes.set_columns * sizes.functional;
+  const std::uint64_t slots = entries < sizes.coefficients.count ? entries : sizes.coefficients.count;
+  const std::uint64_t batch =
+      sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch;
+  scratch.coefficients = arena.take<PointCoefficient>(entries);
+  scratch.begin = arena.take<std::uint32_t>(sizes.set_columns + std::uint64_t{1});
+  scratch.column = arena.take<SlotColumn>(entries);
+  scratch.slot_begin = arena.take<std::uint32_t>(slots + 1);
+  scratch.batch_begin = arena.take<std::uint32_t>(slots);
+  scratch.batch_end = arena.take<std::uint32_t>(slots);
+  scratch.slot = arena.take<std::uint32_t>(sizes.coefficients.count);
+  scratch.root = arena.take<Block>(slots);
+  scratch.sum = arena.take<Block>(slots * batch);
+  scratch.places = arena.take<BlockPlace>(sizes.longest_list + std::uint64_t{1});
+  scratch.blocks = arena.take<Block>(sizes.longest_list + std::uint64_t{1});
+}
+
+void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
+  carve_tables(arena, view, sizes, tables);
+  body.couplings = place_couplings(arena, view);
+  body.facts = arena.take<NodeFacts>(view.node_count);
+  carve_set(arena, view, sizes.counts.max_contacts, body.set);
+  body.touched.carve(arena, sizes.coefficients);
+  carve_capacitance(arena, sizes, body.capacitance);
+  body.column_force = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
+  body.force = arena.take_zeroed<Float4>(sizes.coefficients.count);
+  body.sum = arena.take_zeroed<Float4>(sizes.coefficients.count);
+  body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
+}
+
+void fill_tables(const ModelView& view, const Tables& tables, Body& body) {
+  for (std::uint32_t q = 1; q < view.levels; ++q) {
+    list_odd_neighbours(view, q, tables.begin[q], tables.neighbours[q]);
+  }
+  list_parents(view, tables.parents, tables.mesh_level);
+  list_node_facts(view, body.facts);
+  for (std::uint32_t j = 0; j < view.domain_count; ++j) {
+    body.set.place_of_column[j] = layout::none;
+  }
+  for (std::uint32_t j = 0; j < body.coefficients.count; ++j) {
+    body.capacitance.slot[j] = layout::none;
+  }
+  const CapacitanceModel model{body.refinement, body.coefficients, body.couplings};
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    for (std::uint32_t place = 0; place < domain_up_to(view, c); ++place) {
+      tables.cost[c][place] = column_cost(model, c, place, body.touched);
     }
   }
 }
@@ -62,50 +165,28 @@ void measure_functionals(const ModelView& view, Body& body, std::uint32_t* const
 }  // namespace
 
 Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept {
+  Tables tables;
   auto* memory = arena.take<Body>(1);
-  Body body;
-  std::uint32_t* begin[layout::max_levels] = {};
-  OddNeighbours* neighbours[layout::max_levels] = {};
-  std::uint32_t* functional_size[layout::max_levels] = {};
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    if (q > 0) {
-      begin[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
-      neighbours[q] = arena.take<OddNeighbours>(sizes.lifting_records[q]);
-    }
-    functional_size[q] = arena.take<std::uint32_t>(view.level[q].counts->column_count);
-    body.lifting.begin[q] = begin[q];
-    body.lifting.neighbours[q] = neighbours[q];
-    body.functional_size[q] = functional_size[q];
-  }
-  body.facts = arena.take<NodeFacts>(view.node_count);
-  body.set.column = arena.take<std::uint32_t>(sizes.set_columns);
-  body.set.sorting = arena.take<std::uint32_t>(sizes.set_columns);
-  body.set.members = arena.take<std::uint32_t>(sizes.set_columns);
-  body.set.place = arena.take<std::uint32_t>(sizes.counts.max_contacts);
-  body.set.place_of_column = arena.take<std::uint32_t>(sizes.level_columns);
-  body.capacitance.blocks = arena.take_zeroed<Block>(view.node_count);
-  body.capacitance.coefficients =
-      arena.take<PointCoefficient>(std::uint64_t{sizes.set_columns} * sizes.longest_functional);
-  body.capacitance.begin = arena.take<std::uint32_t>(sizes.set_columns + std::uint64_t{1});
-  body.force = arena.take<Float4>(lu_padded(3 * sizes.set_columns) / 4);
-  body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
   if (memory == nullptr) {
+    Body counted;
+    carve(arena, view, sizes, counted, tables);
     return nullptr;
   }
-
-  for (std::uint32_t q = 1; q < view.levels; ++q) {
-    list_odd_neighbours(view, q, begin[q], neighbours[q]);
-  }
-  list_node_facts(view, body.facts);
-  for (std::uint32_t j = 0; j < sizes.level_columns; ++j) {
-    body.set.place_of_column[j] = layout::none;
-  }
-  measure_functionals(view, body, functional_size);
+  Body& body = *new (memory) Body;
+  carve(arena, view, sizes, body, tables);
   body.view = &view;
   body.counts = sizes.counts;
-  body.force_limit = largest_force_sum(view, body.lifting);
+  body.coefficients = sizes.coefficients;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    body.lifting.begin[q] = tables.begin[q];
+    body.lifting.neighbours[q] = tables.neighbours[q];
+    body.cost[q] = tables.cost[q];
+  }
+  body.refinement = {&view, &body.lifting, tables.parents, tables.mesh_level};
+  fill_tables(view, tables, body);
+  body.force_limit = largest_force_sum(view, body);
   body.last_red_zone = arena.last_red_zone();
-  return new (memory) Body(body);
+  return &body;
 }
 
 }  // namespace greenloop

@@ -1,17 +1,167 @@
 #include "runtime/capacitance.hpp"
 
 #include <cstddef>
+#include <cstring>
 
-#include "runtime/lu.hpp"
+#include "runtime/cholesky.hpp"
 
 namespace greenloop {
 namespace {
 
-Block apply(const PointCoefficient* begin, const PointCoefficient* end, const Block* blocks) {
+Block times(Float4 factor, const Block& block) {
+  return {{factor * block.column[0], factor * block.column[1], factor * block.column[2]}};
+}
+
+Block times(const Block& a, const Block& b) {
+  Block result;
+  for (std::uint32_t c = 0; c < 3; ++c) {
+    const Float4 splats[3] = {splat(b.column[c][0]), splat(b.column[c][1]), splat(b.column[c][2])};
+    result.column[c] = product(a, splats);
+  }
+  return result;
+}
+
+// gives every coefficient that the set touches a slot; returns their number
+std::uint32_t assign_slots(const Coefficients& coefficients, const Touched& touched, CapacitanceScratch& scratch) {
+  std::uint32_t slots = 0;
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    const CoefficientGroup& group = coefficients.group[g];
+    for (std::uint32_t k = 0; in_capacitance(g, touched.constraint_level) && k < touched.count[g]; ++k) {
+      const std::uint32_t coefficient = touched.list[g][k];
+      scratch.slot[coefficient] = slots;
+      scratch.root[slots++] = symmetric_block(group.scale[coefficient - group.begin].root);
+    }
+  }
+  return slots;
+}
+
+void release_slots(const Touched& touched, CapacitanceScratch& scratch) {
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    for (std::uint32_t k = 0; k < touched.count[g]; ++k) {
+      scratch.slot[touched.list[g][k]] = layout::none;
+    }
+  }
+}
+
+// the functional of the node at `place`, from `begin`; returns its end
+std::uint32_t write_functional(const CapacitanceModel& model, std::uint32_t c, std::uint32_t place, std::uint32_t begin,
+                               CapacitanceScratch& scratch, Float4* force) {
+  Touched& touched = scratch.touched;
+  touch(model.refinement, model.coefficients, c, &place, 1, touched);
+  force[place] = splat3(1.0F);
+  transform_forces(model.refinement, model.coefficients, touched, force);
+  std::uint32_t end = begin;
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    for (std::uint32_t k = 0; in_capacitance(g, c) && k < touched.count[g]; ++k) {
+      const std::uint32_t coefficient = touched.list[g][k];
+      scratch.coefficients[end++] = {scratch.slot[coefficient], force[coefficient][0]};
+    }
+  }
+  clear_forces(touched, force);
+  clear(touched);
+  return end;
+}
+
+// the functionals' weights by slots
+void list_slot_columns(std::uint32_t columns, std::uint32_t slots, CapacitanceScratch& scratch) {
+  std::uint32_t* begin = scratch.slot_begin;
+  std::memset(begin, 0, sizeof(std::uint32_t) * (slots + std::size_t{1}));
+  for (std::uint32_t k = 0; k < scratch.begin[columns]; ++k) {
+    ++begin[scratch.coefficients[k].slot];
+  }
+  std::uint32_t end = 0;
+  for (std::uint32_t s = 0; s < slots; ++s) {
+    const std::uint32_t count = begin[s];
+    begin[s] = scratch.batch_end[s] = end;
+    end += count;
+  }
+  begin[slots] = end;
+  for (std::uint32_t i = 0; i < columns; ++i) {
+    for (std::uint32_t k = scratch.begin[i]; k < scratch.begin[i + 1]; ++k) {
+      const PointCoefficient& at = scratch.coefficients[k];
+      scratch.column[scratch.batch_end[at.slot]++] = {i, at.weight};
+    }
+  }
+  for (std::uint32_t s = 0; s < slots; ++s) {
+    scratch.batch_end[s] = begin[s];
+  }
+}
+
+// some columns of the matrix, and the sums of their slots
+struct Batch {
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+void begin_batch(const Batch& batch, std::uint32_t slots, CapacitanceScratch& scratch) {
+  for (std::uint32_t s = 0; s < slots; ++s) {
+    std::uint32_t end = scratch.batch_end[s];
+    scratch.batch_begin[s] = end;
+    while (end < scratch.slot_begin[s + 1] && scratch.column[end].column < batch.first + batch.count) {
+      ++end;
+    }
+    scratch.batch_end[s] = end;
+  }
+  std::memset(scratch.sum, 0, sizeof(Block) * slots * batch.count);
+}
+
+// sums of slot `to` += a block times the unit forces in slot `from`, in the columns that some row at or below the
+// diagonal asks slot `to` for
+void add_block(const Batch& batch, const Block& block, std::uint32_t from, std::uint32_t to,
+               CapacitanceScratch& scratch) {
+  const std::uint32_t last = scratch.column[scratch.slot_begin[to + 1] - 1].column;
+  Block* sums = scratch.sum + std::size_t{to} * batch.count;
+  for (std::uint32_t k = scratch.batch_begin[from]; k < scratch.batch_end[from]; ++k) {
+    const SlotColumn at = scratch.column[k];
+    if (at.column > last) {
+      break;
+    }
+    Block& sum = sums[at.column - batch.first];
+    const Float4 weight = splat(at.weight);
+    sum.column[0] += weight * block.column[0];
+    sum.column[1] += weight * block.column[1];
+    sum.column[2] += weight * block.column[2];
+  }
+}
+
+void add_diagonal(const Coefficients& coefficients, const Touched& touched, const Batch& batch,
+                  CapacitanceScratch& scratch) {
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    const CoefficientGroup& group = coefficients.group[g];
+    for (std::uint32_t k = 0; Coefficients::has_diagonal(g) && k < touched.count[g]; ++k) {
+      const std::uint32_t coefficient = touched.list[g][k];
+      const std::uint32_t slot = scratch.slot[coefficient];
+      const Block diagonal = symmetric_block(group.scale[coefficient - group.begin].diagonal);
+      add_block(batch, times(scratch.root[slot], times(diagonal, scratch.root[slot])), slot, slot, scratch);
+    }
+  }
+}
+
+// every stored block between two slots, in both directions
+void add_couplings(const CapacitanceModel& model, const CouplingSection& section, const Touched& touched,
+                   const Batch& batch, CapacitanceScratch& scratch) {
+  const std::uint32_t begin = model.coefficients.group[section.column_group].begin;
+  const std::uint32_t* row_slot = scratch.slot + model.coefficients.group[section.row_group].begin;
+  const std::uint32_t* list = touched.list[section.column_group];
+  for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
+    const std::uint32_t slot = scratch.slot[list[k]];
+    const std::uint32_t count = load_slotted(section, list[k] - begin, row_slot, scratch.places, scratch.blocks);
+    const Block root = times(splat(section.factor), scratch.root[slot]);
+    for (std::uint32_t n = 0; n < count; ++n) {
+      const std::uint32_t row = scratch.places[n].target;
+      const Block block = times(scratch.root[row], times(scratch.blocks[n], root));
+      add_block(batch, block, slot, row, scratch);
+      add_block(batch, transposed(block), row, slot, scratch);
+    }
+  }
+}
+
+Block apply(const CapacitanceScratch& scratch, const Batch& batch, std::uint32_t i, std::uint32_t j) {
   Block sum{};
-  for (const PointCoefficient* at = begin; at != end; ++at) {
-    const Block& block = blocks[at->node];
-    const Float4 weight = splat(at->weight);
+  for (std::uint32_t k = scratch.begin[i]; k < scratch.begin[i + 1]; ++k) {
+    const PointCoefficient& at = scratch.coefficients[k];
+    const Block& block = scratch.sum[std::size_t{at.slot} * batch.count + (j - batch.first)];
+    const Float4 weight = splat(at.weight);
     sum.column[0] += weight * block.column[0];
     sum.column[1] += weight * block.column[1];
     sum.column[2] += weight * block.column[2];
@@ -28,27 +178,63 @@ void store(const Block& block, std::size_t stride, float* a) {
   }
 }
 
+// sections beyond the constraint level have neither forces nor functionals
+bool in_reach(const CouplingSection& section, std::uint32_t c) { return section.column_level <= c; }
+
 }  // namespace
 
-void assemble_capacitance(const ModelView& view, const Lifting& lifting, const ContactSet& set,
-                          CapacitanceScratch& scratch, Float4* a) noexcept {
-  const std::size_t stride = lu_padded(3 * set.columns);
-  const layout::ColumnRecord* columns = view.level[set.level].columns;
+ColumnCost column_cost(const CapacitanceModel& model, std::uint32_t c, std::uint32_t place, Touched& touched) noexcept {
+  touch(model.refinement, model.coefficients, c, &place, 1, touched);
+  ColumnCost cost;
+  cost.visits = static_cast<std::uint32_t>(touched.visits);
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    cost.coefficients += in_capacitance(g, c) ? touched.count[g] : 0;
+  }
+  for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
+    const CouplingSection& section = model.couplings.section[s];
+    if (!in_reach(section, c)) {
+      continue;
+    }
+    const std::uint32_t column_begin = model.coefficients.group[section.column_group].begin;
+    const std::uint32_t row_begin = model.coefficients.group[section.row_group].begin;
+    for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
+      cost.blocks += section.direct_length(touched.list[section.column_group][k] - column_begin);
+    }
+    for (std::uint32_t k = 0; k < touched.count[section.row_group]; ++k) {
+      cost.blocks += section.mirrored_length(touched.list[section.row_group][k] - row_begin);
+    }
+  }
+  clear(touched);
+  return cost;
+}
+
+void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
+                          CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept {
+  const std::size_t stride = padded_order(3 * set.columns);
+  const std::uint32_t slots = assign_slots(model.coefficients, touched, scratch);
   scratch.begin[0] = 0;
   for (std::uint32_t i = 0; i < set.columns; ++i) {
-    PointCoefficient* functional = scratch.coefficients + scratch.begin[i];
-    scratch.begin[i + 1] = scratch.begin[i] + point_functional(view, lifting, columns[set.column[i]].node, functional);
+    scratch.begin[i + 1] = write_functional(model, set.level, set.column[i], scratch.begin[i], scratch, force);
   }
-  for (std::uint32_t j = 0; j < set.columns; ++j) {
-    scatter_column(view, set.level, set.column[j], scratch.blocks);
-    float* column = reinterpret_cast<float*>(a) + std::size_t{3} * j * stride;
-    for (std::uint32_t i = 0; i < set.columns; ++i) {
-      const PointCoefficient* begin = scratch.coefficients + scratch.begin[i];
-      const PointCoefficient* end = scratch.coefficients + scratch.begin[i + 1];
-      store(apply(begin, end, scratch.blocks), stride, column + std::size_t{3} * i);
+  list_slot_columns(set.columns, slots, scratch);
+  for (Batch batch{0, 0}; batch.first < set.columns; batch.first += batch.count) {
+    const std::uint32_t left = set.columns - batch.first;
+    batch.count = left < CapacitanceScratch::batch ? left : CapacitanceScratch::batch;
+    begin_batch(batch, slots, scratch);
+    add_diagonal(model.coefficients, touched, batch, scratch);
+    for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
+      if (in_reach(model.couplings.section[s], set.level)) {
+        add_couplings(model, model.couplings.section[s], touched, batch, scratch);
+      }
     }
-    clear_column(view, set.level, set.column[j], scratch.blocks);
+    for (std::uint32_t j = batch.first; j < batch.first + batch.count; ++j) {
+      float* column = reinterpret_cast<float*>(a) + std::size_t{3} * j * stride;
+      for (std::uint32_t i = j; i < set.columns; ++i) {
+        store(apply(scratch, batch, i, j), stride, column + std::size_t{3} * i);
+      }
+    }
   }
+  release_slots(touched, scratch);
 }
 
 }  // namespace greenloop

@@ -2,29 +2,85 @@
 
 #include <cstdint>
 
-#include "runtime/block_columns.hpp"
+#include "runtime/arena.hpp"
 #include "runtime/contact_set.hpp"
-#include "runtime/point_functional.hpp"
+#include "runtime/couplings.hpp"
+#include "runtime/sparse_forces.hpp"
 
 namespace greenloop {
 
-/// Memory of assemble_capacitance.
-struct CapacitanceScratch {
-  Block* blocks = nullptr;                   ///< [node_count], zero between calls
-  PointCoefficient* coefficients = nullptr;  ///< the functionals of all columns of a set, one after the other
-  std::uint32_t* begin = nullptr;            ///< [columns + 1] of each functional
+/// A coefficient, by its slot, that a node's displacement depends on, and the weight: together a row of T^-1, which is
+/// a column of T^-T.
+struct PointCoefficient {
+  std::uint32_t slot;
+  float weight;
 };
 
-/// Work units of assemble_capacitance: `coefficients` over all functionals, `blocks` over all columns.
-constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::uint64_t coefficients,
-                                                  std::uint64_t blocks) {
-  return 2 * coefficients + 12 * blocks + 9 * columns * coefficients;
+/// Where a node of K(c) meets others of K(c): only coefficients whose displacement forces of level c reach.
+constexpr bool in_capacitance(std::uint32_t group, std::uint32_t c) {
+  return Coefficients::has_diagonal(group) || group - layout::max_levels + 2 <= c;
 }
 
-/// The capacitance matrix of a contact set in force form: block (i, j) is the displacement of the centre of column i
-/// per force at column j (James & Pai 2003, sections 3.2 and 5.4). It is not exactly symmetric: columns are thresholded
-/// and quantised one by one. a: [n * n / 4] by columns, n = lu_padded(3 * columns). For the loop.
-void assemble_capacitance(const ModelView& view, const Lifting& lifting, const ContactSet& set,
-                          CapacitanceScratch& scratch, Float4* a) noexcept;
+/// What a node costs as a column of the capacitance matrix.
+struct ColumnCost {
+  std::uint32_t coefficients = 0;  ///< of its functional
+  std::uint32_t blocks = 0;        ///< stored blocks in the lists of those, over all layers
+  std::uint32_t visits = 0;        ///< of touch
+};
+
+/// A column that depends on a coefficient, and the weight.
+struct SlotColumn {
+  std::uint32_t column;
+  float weight;
+};
+
+/// Memory of assemble_capacitance. A coefficient of the set's functionals has a slot; there are `columns` columns and
+/// `entries` weights of functionals.
+struct CapacitanceScratch {
+  static constexpr std::uint32_t batch = 16;  ///< columns of the matrix that are summed together
+
+  Touched touched;                           ///< of one node at a time
+  PointCoefficient* coefficients = nullptr;  ///< [entries] the functionals, one after the other
+  std::uint32_t* begin = nullptr;            ///< [columns + 1] of each functional
+  SlotColumn* column = nullptr;              ///< [entries] the same by slots
+  std::uint32_t* slot_begin = nullptr;       ///< [slots + 1] of each slot
+  std::uint32_t* batch_begin = nullptr;      ///< [slots] its columns in the batch
+  std::uint32_t* batch_end = nullptr;        ///< [slots]
+  std::uint32_t* slot = nullptr;             ///< [coefficients of the model], layout::none between calls
+  Block* root = nullptr;                     ///< [slots] scale
+  Block* sum = nullptr;                      ///< [slots * min(columns, batch)]
+  BlockPlace* places = nullptr;              ///< [longest list + 1]
+  Block* blocks = nullptr;                   ///< [longest list + 1]
+};
+
+/// What assemble_capacitance reads.
+struct CapacitanceModel {
+  const Refinement& refinement;
+  const Coefficients& coefficients;
+  const Couplings& couplings;
+};
+
+/// What the node at `place` of K(c) costs. force: [coefficients], 0. Start-up.
+[[nodiscard]] ColumnCost column_cost(const CapacitanceModel& model, std::uint32_t c, std::uint32_t place,
+                                     Touched& touched) noexcept;
+
+/// Work units of assemble_capacitance. visits, coefficients, blocks: ColumnCost summed over the columns of the set;
+/// slots: coefficients that the set touches, and stored: blocks in the columns of those in all layers, none counted
+/// twice.
+constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::uint64_t slots, std::uint64_t stored,
+                                                  std::uint64_t visits, std::uint64_t coefficients,
+                                                  std::uint64_t blocks) {
+  const std::uint64_t batches = (columns + CapacitanceScratch::batch - 1) / CapacitanceScratch::batch;
+  return 5 * visits + 16 * coefficients + 16 * slots + batches * (68 * slots + 74 * stored) + 9 * blocks +
+         columns * (3 * slots + 9 * coefficients);
+}
+
+/// The capacitance matrix of a contact set in force form: block (i, j) is the displacement of the average of column i
+/// per force at column j (James & Pai 2003, sections 3.2 and 5.4), by the non-standard form of all layers. Every block
+/// of it between two touched coefficients is read once per batch of columns. Symmetric; only the lower triangle is
+/// written. touched: by the set; a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [coefficients], 0
+/// before and after. For the loop; work: assemble_capacitance_work.
+void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
+                          CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept;
 
 }  // namespace greenloop

@@ -49,10 +49,6 @@ void sort_columns(ContactSet& set) {
   }
 }
 
-float without_denormals(float displacement) {
-  return displacement < least_displacement && displacement > -least_displacement ? 0.0F : displacement;
-}
-
 }  // namespace
 
 void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
@@ -88,7 +84,9 @@ void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, 
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const std::uint32_t node = contacts[i].node;
     const std::uint32_t mesh_level = facts[node].mesh_level;
-    const std::uint32_t column = view.representatives[level][mesh_level][node - view.level[mesh_level].node_begin];
+    const std::uint32_t representative =
+        view.representatives[level][mesh_level][node - view.level[mesh_level].node_begin];
+    const std::uint32_t column = domain_place(view, facts[representative].mesh_level, representative);
     set.place[i] = column;
     if (set.place_of_column[column] == layout::none) {
       set.place_of_column[column] = 0;

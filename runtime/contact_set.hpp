@@ -11,7 +11,7 @@ namespace greenloop {
 /// What the loop looks up about a node.
 struct NodeFacts {
   std::uint8_t mesh_level = 0;
-  bool touchable = false;  ///< a column of every constraint level stands for it
+  bool touchable = false;  ///< a node of every constraint level stands for it
   bool marked = false;     ///< by check_contacts, while it looks for duplicates
 };
 
@@ -26,8 +26,12 @@ Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_coun
 
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;
+constexpr float without_denormals(float displacement) {
+  return displacement < least_displacement && displacement > -least_displacement ? 0.0F : displacement;
+}
 
-/// The contacts of a step as columns of one constraint level. Contacts that share a column are merged.
+/// The contacts of a step as columns of one constraint level: the places, in the domain, of the nodes that stand for
+/// them. Contacts that share a column are merged.
 struct ContactSet {
   std::uint32_t level = 0;
   std::uint32_t columns = 0;                 ///< columns that hold them
@@ -35,7 +39,7 @@ struct ContactSet {
   std::uint32_t* place = nullptr;            ///< [contacts] of each contact's column in `column`
   std::uint32_t* members = nullptr;          ///< [columns] contacts merged into it
   std::uint32_t* sorting = nullptr;          ///< [contacts] scratch
-  std::uint32_t* place_of_column = nullptr;  ///< [columns of any level] scratch, `layout::none` between calls
+  std::uint32_t* place_of_column = nullptr;  ///< [domain] scratch, `layout::none` between calls
 };
 
 /// Bound of the work units of resolve_contacts: linear but for a merge sort.
@@ -47,7 +51,7 @@ constexpr std::uint64_t resolve_contacts_work(std::uint64_t contacts) {
   return (4 + passes) * contacts;
 }
 
-/// Resolves checked contacts at `level`, which must have columns.
+/// Resolves checked contacts at `level`, which must have representatives.
 void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
                       std::uint32_t level, ContactSet& set) noexcept;
 

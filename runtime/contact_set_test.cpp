@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "runtime/domain.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -63,7 +64,8 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
       std::vector<std::uint32_t> count(set.columns);
       for (std::size_t i = 0; i < contacts.size(); ++i) {
         const std::uint32_t q = memory.facts[contacts[i].node].mesh_level;
-        CHECK(set.column[set.place[i]] == view.representatives[c][q][contacts[i].node - view.level[q].node_begin]);
+        const std::uint32_t node = view.representatives[c][q][contacts[i].node - view.level[q].node_begin];
+        CHECK(set.column[set.place[i]] == domain_place(view, node));
         sum[set.place[i]] += contacts[i].displacement[0];
         ++count[set.place[i]];
         for (std::size_t r = 0; r < 3; ++r) {

@@ -23,21 +23,17 @@ inline bool in_domain(const ModelView& view, std::uint32_t node) noexcept {
 
 /// Domain nodes of K(level).
 inline std::uint32_t domain_up_to(const ModelView& view, std::uint32_t level) noexcept {
-  std::uint32_t count = 0;
-  for (std::uint32_t q = 0; q <= level; ++q) {
-    count += view.level[q].counts->domain_count;
-  }
-  return count;
+  return view.level[level].domain_begin + view.level[level].counts->domain_count;
+}
+
+/// Place of a domain node of the mesh level `level` among all domain nodes.
+inline std::uint32_t domain_place(const ModelView& view, std::uint32_t level, std::uint32_t node) noexcept {
+  return node - view.level[level].node_begin + view.level[level].domain_begin;
 }
 
 /// Place of a domain node among all domain nodes.
 inline std::uint32_t domain_place(const ModelView& view, std::uint32_t node) noexcept {
-  std::uint32_t before = 0;
-  std::uint32_t level = 0;
-  while (level + 1 < view.levels && node >= view.level[level + 1].node_begin) {
-    before += view.level[level++].counts->domain_count;
-  }
-  return before + node - view.level[level].node_begin;
+  return domain_place(view, level_of(view, node), node);
 }
 
 }  // namespace greenloop

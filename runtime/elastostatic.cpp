@@ -5,7 +5,8 @@
 
 #include "runtime/arena.hpp"
 #include "runtime/body.hpp"
-#include "runtime/lu.hpp"
+#include "runtime/cholesky.hpp"
+#include "runtime/field.hpp"
 
 namespace greenloop {
 
@@ -34,21 +35,22 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
 }
 
 // resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
-// many details as fit
+// many details as fit; leaves the coefficients of that level touched
 Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field) {
   const ModelView& view = *body.view;
   Plan plan;
   std::uint64_t forces = 0;
-  for (std::uint32_t c = view.levels; c-- > 0;) {
-    if (view.level[c].counts->column_count == 0) {
-      continue;
-    }
+  const std::uint32_t coarsest = view.info->coarsest_constraint_level;
+  for (std::uint32_t c = view.levels; c-- > coarsest;) {
     resolve_contacts(contacts, view, body.facts, c, body.set);
-    plan.counts = count_set(view, body.set, contacts.size(), body.functional_size[c]);
+    clear(body.touched);
+    touch(body.refinement, body.coefficients, c, body.set.column, body.set.columns, body.touched);
+    plan.counts =
+        count_set(view, body.coefficients, body.couplings, body.set, body.touched, contacts.size(), body.cost[c]);
     plan.cached = body.cache.find(body.set);
-    plan.work += plan_work(body.counts, contacts.size(), body.set.columns);
+    plan.work += plan_work(body.counts, plan.counts);
     forces = force_work(plan.counts) + (plan.cached != nullptr ? 0 : factor_work(body.counts, plan.counts));
-    plan.field_level = view.levels - 1;
+    plan.field_level = whole_field_level(c, view.levels);
     const std::uint64_t field = wants_field ? field_work(body.counts, plan.counts, plan.field_level) : 0;
     plan.fits = plan.work + forces + field <= budget;
     if (plan.fits) {
@@ -62,25 +64,23 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
   return plan;
 }
 
-// the factors of body.set; null if its capacitance matrix is singular
+// the factors of body.set; null if its capacitance matrix is not positive definite
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
-  assemble_capacitance(*body.view, body.lifting, body.set, body.capacitance, factor.lu);
-  if (!lu_factor(3 * body.set.columns, factor.lu, factor.exchange)) {
-    return nullptr;
-  }
-  return &factor;
+  const CapacitanceModel model{body.refinement, body.coefficients, body.couplings};
+  assemble_capacitance(model, body.set, body.touched, body.capacitance, body.force, factor.matrix);
+  return cholesky_factor(3 * body.set.columns, factor.matrix) ? &factor : nullptr;
 }
 
-// forces of the columns in body.force; false if they would overflow the answer
+// forces of the columns in body.column_force; false if they would overflow the answer
 bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& factor) {
   const std::uint32_t order = 3 * body.set.columns;
-  auto* force = reinterpret_cast<float*>(body.force);
+  auto* force = reinterpret_cast<float*>(body.column_force);
   average_displacements(contacts, body.set, force);
-  for (std::uint32_t i = order; i < lu_padded(order); ++i) {
+  for (std::uint32_t i = order; i < padded_order(order); ++i) {
     force[i] = 0;
   }
-  lu_solve(order, factor.lu, factor.exchange, body.force);
+  cholesky_solve(order, factor.matrix, body.column_force);
   float sum = 0;
   for (std::uint32_t i = 0; i < order; ++i) {
     sum += force[i] < 0 ? -force[i] : force[i];
@@ -88,31 +88,25 @@ bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& f
   return sum <= body.force_limit;
 }
 
-void compute_field(const Body& body, std::uint32_t field_level, std::span<float> displacement) {
-  auto* x = reinterpret_cast<Float4*>(displacement.data());
-  const auto* force = reinterpret_cast<const float*>(body.force);
-  constexpr std::uint32_t ahead = 3;  // columns whose memory is on its way while one is summed
-  for (std::uint32_t k = 0; k < ahead && k < body.set.columns; ++k) {
-    prefetch_column(*body.view, body.set.level, body.set.column[k], field_level);
-  }
-  std::memset(displacement.data(), 0, displacement.size_bytes());
+void answer_field(Body& body, std::span<const Contact> contacts, std::uint32_t field_level,
+                  std::span<float> displacement) {
+  const ModelView& view = *body.view;
+  const auto* force = reinterpret_cast<const float*>(body.column_force);
   for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-    if (k + ahead < body.set.columns) {
-      prefetch_column(*body.view, body.set.level, body.set.column[k + ahead], field_level);
-    }
     const float* at = force + std::size_t{3} * k;
-    const float of_column[3] = {at[0], at[1], at[2]};
-    add_column(*body.view, body.set.level, body.set.column[k], of_column, field_level, x);
+    body.force[body.set.column[k]] = Float4{at[0], at[1], at[2], 0.0F};
   }
-  inverse_transform(*body.view, body.lifting, field_level, x);
-}
-
-std::uint32_t finest_constraint_level(const ModelView& view) {
-  std::uint32_t c = view.levels - 1;
-  while (c > 0 && view.level[c].counts->column_count == 0) {
-    --c;
+  const FieldModel model{body.refinement, body.coefficients, body.couplings};
+  auto* x = reinterpret_cast<Float4*>(displacement.data());
+  compute_field(model, body.touched, field_level, body.force, body.sum, x);
+  if (body.set.level + 1 == view.levels) {
+    // held nodes stand where they are held: only the others need the approximation
+    for (const Contact& contact : contacts) {
+      const float* held = contact.displacement;
+      x[contact.node] =
+          Float4{without_denormals(held[0]), without_denormals(held[1]), without_denormals(held[2]), 0.0F};
+    }
   }
-  return c;
 }
 
 // nothing is touched: the body is at rest
@@ -122,7 +116,7 @@ void release(const Body& body, const Response& response, StepReport& report) {
     std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
     report.work += response.displacement.size() / 4;
   }
-  report.constraint_level = finest_constraint_level(view);
+  report.constraint_level = view.levels - 1;
   report.field_level = view.levels - 1;
 }
 
@@ -149,10 +143,10 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   if (!solve_forces(body, contacts, *factor)) {
     return held(Status::held_overflow, work);
   }
-  share_forces(reinterpret_cast<const float*>(body.force), contacts.size(), body.set, response.force.data());
+  share_forces(reinterpret_cast<const float*>(body.column_force), contacts.size(), body.set, response.force.data());
   if (!response.displacement.empty()) {
     work += field_work(body.counts, plan.counts, plan.field_level);
-    compute_field(body, plan.field_level, response.displacement);
+    answer_field(body, contacts, plan.field_level, response.displacement);
   }
   StepReport report;
   report.constraint_level = body.set.level;
@@ -160,7 +154,7 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   report.error = view.level[body.set.level].counts->worst_column_error;
   report.work = work;
   report.cached_factor = plan.cached != nullptr;
-  const bool finest = body.set.level == finest_constraint_level(view) && plan.field_level + 1 == view.levels;
+  const bool finest = body.set.level + 1 == view.levels && plan.field_level + 1 == view.levels;
   report.status = finest ? Status::ok : Status::coarser;
   return report;
 }
@@ -168,14 +162,14 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
 }  // namespace
 
 Requirement Elastostatic::required(const Model& model, const Limits& limits) noexcept {
-  const ModelView& view = model.view();
-  const BodySizes sizes = measure_body(view, limits);
+  BodySizes sizes;
+  Requirement requirement;
+  measure_body(model.view(), limits, sizes, requirement);
   if (!sizes.supported) {
     return {};
   }
-  Requirement requirement = bound_work(view, sizes);
   Arena counting;
-  place_body(counting, view, sizes);
+  place_body(counting, model.view(), sizes);
   requirement.bytes = counting.bytes() <= SIZE_MAX ? static_cast<std::size_t>(counting.bytes()) : 0;
   return requirement;
 }
@@ -185,18 +179,22 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Limits& lim
   const ModelView& view = model.view();
   Created created;
   created.available = memory.size();
-  const BodySizes sizes = measure_body(view, limits);
+  BodySizes sizes;
+  Requirement requirement;
+  measure_body(view, limits, sizes, requirement);
   if (!sizes.supported) {
     created.error = in_range(limits) ? CreateError::unsupported_model : CreateError::bad_limits;
     return created;
   }
-  const Requirement requirement = required(model, limits);
-  created.requested = requirement.bytes;
-  if (requirement.bytes == 0 || memory.size() < requirement.bytes) {
+  Arena counting;
+  place_body(counting, view, sizes);
+  if (counting.bytes() > memory.size()) {
+    created.requested = counting.bytes() <= SIZE_MAX ? static_cast<std::size_t>(counting.bytes()) : 0;
     created.error = CreateError::arena_too_small;
-    created.missing = requirement.bytes - memory.size();
+    created.missing = created.requested - memory.size();
     return created;
   }
+  created.requested = static_cast<std::size_t>(counting.bytes());
   if (reinterpret_cast<std::uintptr_t>(memory.data()) % requirement.alignment != 0) {
     created.error = CreateError::arena_misaligned;
     return created;

@@ -32,11 +32,11 @@ enum class Status : std::uint8_t {
   coarser,             ///< answered within the budget at a coarser level
   held_not_finite,     ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
   held_out_of_range,   ///< a contact names no node of the model, or more contacts than Limits allow
-  held_not_touchable,  ///< a contact names a node that has no columns
+  held_not_touchable,  ///< a contact names a node that the scene did not declare touchable
   held_duplicate,      ///< two contacts name the same node
   held_response_size,  ///< a response buffer has the wrong size or alignment
   held_over_budget,    ///< the budget is below Requirement::least_work: refused
-  held_singular,       ///< the capacitance matrix is singular to working precision
+  held_singular,       ///< the capacitance matrix is not positive definite to working precision
   held_overflow,       ///< the answer would not be finite, or comes too near the largest float
 };
 
@@ -73,12 +73,13 @@ enum class CreateError : std::uint8_t {
 };
 
 /// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions
-/// (James & Pai 2003, sections 3.2, 5.4 and 7).
+/// (James & Pai 2003, sections 3.2, 5.4 and 7) in two-sided non-standard form (Beylkin, Coifman & Rokhlin 1991).
 class Elastostatic {
  public:
   struct Created;
 
-  /// Bytes and worst-case work for `limits`. Start-up; work linear in the model's columns. Zero bytes if `create` would
+  /// Bytes and worst-case work for `limits`. Start-up; linear in nodes times levels and, for every 1,024 rows of a
+  /// section, in its blocks. Zero bytes if `create` would
   /// refuse for another reason than memory.
   [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
 

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "runtime/lu.hpp"
+#include "runtime/cholesky.hpp"
 
 namespace greenloop {
 namespace {
@@ -26,14 +26,13 @@ bool belongs_to(const Factor& factor, const ContactSet& set) {
 }  // namespace
 
 void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept {
-  const std::uint64_t order = lu_padded(3 * columns);
+  const std::uint64_t order = padded_order(3 * columns);
   factors_ = factors;
   factor_ = arena.take_zeroed<Factor>(factors);
   for (std::uint32_t i = 0; i < factors; ++i) {
     Factor factor;
     factor.column = arena.take<std::uint32_t>(columns);
-    factor.exchange = arena.take<std::uint32_t>(order);
-    factor.lu = arena.take<Float4>(order * order / 4);
+    factor.matrix = arena.take<Float4>(order * order / 4);
     if (factor_ != nullptr) {
       factor_[i] = factor;
     }

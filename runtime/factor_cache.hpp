@@ -14,9 +14,8 @@ struct Factor {
   std::uint64_t used = 0;  ///< when it was last used
   std::uint32_t level = 0;
   std::uint32_t columns = 0;
-  std::uint32_t* column = nullptr;    ///< [columns]
-  std::uint32_t* exchange = nullptr;  ///< see lu_factor
-  Float4* lu = nullptr;               ///< see lu_factor
+  std::uint32_t* column = nullptr;  ///< [columns]
+  Float4* matrix = nullptr;         ///< see cholesky_factor
 };
 
 /// Factors by contact set; the least recently used one makes room (James & Pai 2003, section 3.2).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -14,41 +15,111 @@ inline Float4 splat(float value) { return Float4{value, value, value, value}; }
 /// x, y and z; the fourth lane stays 0.
 inline Float4 splat3(float value) { return Float4{value, value, value, 0.0F}; }
 
-// A stored value is moved to the top bits of a 32-bit lane, which needs no sign extension; the power of two that this
-// multiplies by is undone, exactly, in the factor that the block is multiplied with.
-template <class Value>
-inline constexpr float widening = 0;
-template <>
-inline constexpr float widening<std::int8_t> = 0x1p-24F;
-template <>
-inline constexpr float widening<std::int16_t> = 0x1p-16F;
-
 namespace detail {
 using Byte16 = std::int8_t __attribute__((vector_size(16)));
 using Half8 = std::int16_t __attribute__((vector_size(16)));
+using UHalf8 = std::uint16_t __attribute__((vector_size(16)));
 using Int4 = std::int32_t __attribute__((vector_size(16)));
 using Long2 = std::int64_t __attribute__((vector_size(16)));
+using ULong2 = std::uint64_t __attribute__((vector_size(16)));
 
-inline Float4 top_halves(Half8 halves) {
+inline Float4 low_halves(Half8 halves) {
   const Half8 low = __builtin_shufflevector(Half8{}, halves, 0, 8, 1, 9, 2, 10, 3, 11);
   return __builtin_convertvector(reinterpret_cast<Int4>(low), Float4);
 }
-}  // namespace detail
 
-/// The four values at `value`, each times 1 / widening. Reads one value beyond a block's column.
-inline Float4 load_widened(const std::int8_t* value) {
+inline Float4 high_halves(Half8 halves) {
+  const Half8 high = __builtin_shufflevector(Half8{}, halves, 4, 12, 5, 13, 6, 14, 7, 15);
+  return __builtin_convertvector(reinterpret_cast<Int4>(high), Float4);
+}
+
+inline Float4 load_bytes(const std::byte* value) {
   std::int32_t word;
   std::memcpy(&word, value, sizeof word);
-  const auto bytes = reinterpret_cast<detail::Byte16>(detail::Int4{word, 0, 0, 0});
-  const detail::Byte16 halves =
-      __builtin_shufflevector(detail::Byte16{}, bytes, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
-  return detail::top_halves(reinterpret_cast<detail::Half8>(halves));
+  const auto bytes = reinterpret_cast<Byte16>(Int4{word, 0, 0, 0});
+  const Byte16 halves =
+      __builtin_shufflevector(Byte16{}, bytes, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
+  return low_halves(reinterpret_cast<Half8>(halves));
 }
 
-inline Float4 load_widened(const std::int16_t* value) {
+inline Float4 load_halves(const std::byte* value) {
   std::int64_t word;
   std::memcpy(&word, value, sizeof word);
-  return detail::top_halves(reinterpret_cast<detail::Half8>(detail::Long2{word, 0}));
+  return low_halves(reinterpret_cast<Half8>(Long2{word, 0}));
 }
+}  // namespace detail
+
+/// Lane by lane 0 where the magnitude is below 2^-90: keeps denormal numbers out of the sums.
+inline Float4 without_denormals(Float4 value) {
+  const Float4 least = splat(0x1p-90F);
+  const detail::Int4 tiny = (value < least) & (value > -least);
+  return reinterpret_cast<Float4>(reinterpret_cast<detail::Int4>(value) & ~tiny);
+}
+
+/// The same with a fourth lane of 0.
+inline Float4 xyz(Float4 value) {
+  return reinterpret_cast<Float4>(reinterpret_cast<detail::Int4>(value) & detail::Int4{-1, -1, -1, 0});
+}
+
+/// A 3x3 block by columns; fourth lanes undefined.
+struct Block {
+  Float4 column[3];
+};
+
+inline Block transposed(const Block& m) {
+  const Float4 low = __builtin_shufflevector(m.column[0], m.column[1], 0, 4, 1, 5);
+  const Float4 high = __builtin_shufflevector(m.column[0], m.column[1], 2, 6, 3, 7);
+  return {{__builtin_shufflevector(low, m.column[2], 0, 1, 4, 7), __builtin_shufflevector(low, m.column[2], 2, 3, 5, 7),
+           __builtin_shufflevector(high, m.column[2], 0, 1, 6, 7)}};
+}
+
+/// block times vector: the fourth lane is 0 if that of `f` is.
+inline Float4 product(const Block& m, const Float4 (&f)[3]) {
+  return (m.column[0] * f[0] + m.column[1] * f[1]) + m.column[2] * f[2];
+}
+
+// A stored value is moved to the top bits of a 32-bit lane, which needs no sign extension; the power of two that this
+// multiplies by is undone, exactly, in the factor that the block is multiplied with.
+
+/// Stored blocks of `bits` a value: see layout::CouplingsHeader. Reads at most 16 bytes beyond a block.
+template <unsigned bits>
+struct StoredBlock;
+
+template <>
+struct StoredBlock<4> {
+  static constexpr std::size_t bytes = 5;
+  static constexpr float widening = 0x1p-28F;
+  static Block load(const std::byte* value) {
+    std::uint64_t word;
+    std::memcpy(&word, value, sizeof word);
+    // four copies of the nibbles of a column, each shifted until another nibble is on top
+    constexpr std::uint64_t copies = 0x0001000100010001;
+    constexpr detail::UHalf8 shift = {0x1000, 0x100, 0x10, 1, 0x1000, 0x100, 0x10, 1};
+    constexpr detail::UHalf8 top = {0xf000, 0xf000, 0xf000, 0xf000, 0xf000, 0xf000, 0xf000, 0xf000};
+    const detail::ULong2 first = {(word & 0xffff) * copies, (word >> 12 & 0xffff) * copies};
+    const detail::ULong2 last = {(word >> 24 & 0xffff) * copies, 0};
+    const auto two = reinterpret_cast<detail::Half8>(reinterpret_cast<detail::UHalf8>(first) * shift & top);
+    const auto one = reinterpret_cast<detail::Half8>(reinterpret_cast<detail::UHalf8>(last) * shift & top);
+    return {{detail::low_halves(two), detail::high_halves(two), detail::low_halves(one)}};
+  }
+};
+
+template <>
+struct StoredBlock<8> {
+  static constexpr std::size_t bytes = 9;
+  static constexpr float widening = 0x1p-24F;
+  static Block load(const std::byte* value) {
+    return {{detail::load_bytes(value), detail::load_bytes(value + 3), detail::load_bytes(value + 6)}};
+  }
+};
+
+template <>
+struct StoredBlock<16> {
+  static constexpr std::size_t bytes = 18;
+  static constexpr float widening = 0x1p-16F;
+  static Block load(const std::byte* value) {
+    return {{detail::load_halves(value), detail::load_halves(value + 6), detail::load_halves(value + 12)}};
+  }
+};
 
 }  // namespace greenloop

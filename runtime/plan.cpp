@@ -1,95 +1,124 @@
 #include "runtime/plan.hpp"
 
-#include "runtime/block_columns.hpp"
-#include "runtime/capacitance.hpp"
+#include "runtime/cholesky.hpp"
+#include "runtime/domain.hpp"
 #include "runtime/factor_cache.hpp"
-#include "runtime/lu.hpp"
+#include "runtime/field.hpp"
 
 namespace greenloop {
 namespace {
 
-// columns that hold at least `least` blocks, and the blocks in those that hold more
-struct Tally {
-  std::uint64_t columns = 0;
-  std::uint64_t blocks_above = 0;
-  std::uint64_t columns_above = 0;
-};
+std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
 
-Tally tally(const ModelView& view, std::uint32_t constraint_level, std::uint32_t row_level, std::uint32_t least) {
-  Tally result;
-  for (std::uint32_t j = 0; j < view.level[constraint_level].counts->column_count; ++j) {
-    const std::uint32_t blocks = column_blocks(view, constraint_level, j, row_level);
-    result.columns += blocks >= least ? 1 : 0;
-    result.columns_above += blocks > least ? 1 : 0;
-    result.blocks_above += blocks > least ? blocks : 0;
+// counts by level of the rows become counts of the rows of levels 0..F
+void accumulate(std::uint32_t levels, std::uint64_t* blocks) {
+  for (std::uint32_t level = 1; level < levels; ++level) {
+    blocks[level] += blocks[level - 1];
   }
-  return result;
 }
 
-// blocks in the `count` columns that hold most
-std::uint64_t most_blocks(const ModelView& view, std::uint32_t constraint_level, std::uint32_t row_level,
-                          std::uint64_t count) {
-  // bisect for the number of blocks in the last of them
-  std::uint32_t low = 0;
-  std::uint32_t high = domain_up_to(view, row_level) + 1;
-  while (high - low > 1) {
-    const std::uint32_t middle = low + (high - low) / 2;
-    (tally(view, constraint_level, row_level, middle).columns >= count ? low : high) = middle;
+// most coefficients of a group that forces on `nodes` nodes of K(c) touch
+std::uint64_t most_touched(const Coefficients& coefficients, const ReachBound& reach, std::uint32_t group,
+                           std::uint32_t c, std::uint64_t nodes) {
+  const CoefficientGroup& of = coefficients.group[group];
+  if (of.level > c) {
+    return 0;
   }
-  const Tally above = tally(view, constraint_level, row_level, low);
-  return above.blocks_above + (count - above.columns_above) * low;
+  const bool averages = group == 0 || !Coefficients::has_diagonal(group);
+  return smaller(of.count, nodes * (averages ? reach.averages[of.level] : reach.details[of.level]));
 }
 
 }  // namespace
 
-std::uint64_t plan_work(const ModelCounts& model, std::uint64_t contacts, std::uint64_t columns) noexcept {
-  return resolve_contacts_work(contacts) + columns * (model.levels + 1) + std::uint64_t{2} * model.levels +
-         FactorCache::find_work(model.cached_factors, columns);
+std::uint64_t plan_work(const ModelCounts& model, const SetCounts& set) noexcept {
+  return resolve_contacts_work(set.contacts) + 4 * set.columns + 2 * set.visits + 16 * set.coefficients +
+         2 * model.sections + FactorCache::find_work(model.cached_factors, set.columns);
 }
 
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
   return FactorCache::find_work(model.cached_factors, set.columns) +
-         assemble_capacitance_work(set.columns, set.coefficients, set.blocks[model.levels - 1]) + lu_factor_work(order);
+         assemble_capacitance_work(set.columns, set.coefficients, set.stored, set.column_visits,
+                                   set.column_coefficients, set.column_blocks) +
+         cholesky_factor_work(order);
 }
 
 std::uint64_t force_work(const SetCounts& set) noexcept {
-  return merge_work(set.contacts, set.columns) + lu_solve_work(static_cast<std::uint32_t>(3 * set.columns));
+  return merge_work(set.contacts, set.columns) + cholesky_solve_work(static_cast<std::uint32_t>(3 * set.columns));
 }
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level) noexcept {
-  return model.nodes + 9 * set.blocks[field_level] + model.transform_work[field_level];
+  return 3 * set.visits + 24 * set.coefficients + 9 * set.blocks[field_level] + 9 * model.rows[field_level] +
+         model.nodes + model.transform_work[field_level] + 4 * set.contacts + 2 * model.sections;
 }
 
-SetCounts count_set(const ModelView& view, const ContactSet& set, std::uint64_t contacts,
-                    const std::uint32_t* functional_size) noexcept {
+SetCounts count_set(const ModelView& view, const Coefficients& coefficients, const Couplings& couplings,
+                    const ContactSet& set, const Touched& touched, std::uint64_t contacts,
+                    const ColumnCost* cost) noexcept {
   SetCounts counts;
   counts.contacts = contacts;
   counts.columns = set.columns;
+  counts.coefficients = touched.coefficients();
+  counts.visits = touched.visits;
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    counts.coefficients += functional_size[set.column[k]];
+    counts.column_coefficients += cost[set.column[k]].coefficients;
+    counts.column_blocks += cost[set.column[k]].blocks;
+    counts.column_visits += cost[set.column[k]].visits;
   }
-  std::uint64_t blocks = 0;
-  for (std::uint32_t r = 0; r < view.levels; ++r) {
-    const std::uint32_t* begin = view.blocks[set.level][r].begin;
-    for (std::uint32_t k = 0; k < set.columns; ++k) {
-      blocks += begin[set.column[k] + 1] - begin[set.column[k]];
+  for (std::uint32_t s = 0; s < couplings.count; ++s) {
+    const CouplingSection& section = couplings.section[s];
+    const std::uint32_t column_begin = coefficients.group[section.column_group].begin;
+    std::uint64_t direct = 0;
+    for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
+      direct += section.direct_length(touched.list[section.column_group][k] - column_begin);
     }
-    counts.blocks[r] = blocks;
+    counts.stored += direct;
+    if (!in_field(view, section)) {
+      continue;
+    }
+    counts.blocks[section.row_level] += direct;
+    const std::uint32_t row_begin = coefficients.group[section.row_group].begin;
+    for (std::uint32_t k = 0; k < touched.count[section.row_group]; ++k) {
+      const std::uint32_t row = touched.list[section.row_group][k] - row_begin;
+      counts.blocks[section.column_level] += section.mirrored_length(row);
+    }
   }
+  accumulate(view.levels, counts.blocks);
   return counts;
 }
 
-SetCounts most_counts(const ModelView& view, std::uint32_t constraint_level, std::uint32_t max_contacts,
-                      std::uint32_t functional_bound) noexcept {
-  const std::uint32_t columns = view.level[constraint_level].counts->column_count;
+SetCounts most_counts(const ModelView& view, const Coefficients& coefficients,
+                      const LongestLists (&longest)[Couplings::most], std::uint32_t c, std::uint32_t max_contacts,
+                      const ReachBound& reach) noexcept {
   SetCounts counts;
   counts.contacts = max_contacts;
-  counts.columns = columns < max_contacts ? columns : max_contacts;
-  counts.coefficients = counts.columns * functional_bound;
-  for (std::uint32_t r = 0; r < view.levels; ++r) {
-    counts.blocks[r] = most_blocks(view, constraint_level, r, counts.columns);
+  counts.columns = smaller(domain_up_to(view, c), max_contacts);
+  counts.visits = counts.columns * reach.visits;
+  counts.column_visits = counts.visits;
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    counts.coefficients += most_touched(coefficients, reach, g, c, counts.columns);
+    counts.column_coefficients += counts.columns * most_touched(coefficients, reach, g, c, 1);
   }
+  CouplingSection section;
+  for (std::uint32_t s = 0; s < Couplings::most; ++s) {
+    if (!find_section(view, s, section)) {
+      continue;
+    }
+    const std::uint64_t all = section.view.begin[section.view.columns];
+    const auto bound = [&](std::uint32_t group, std::uint32_t length, std::uint64_t nodes) {
+      return smaller(all, length * most_touched(coefficients, reach, group, c, nodes));
+    };
+    if (in_field(view, section)) {
+      counts.blocks[section.row_level] += bound(section.column_group, longest[s].direct, counts.columns);
+      counts.blocks[section.column_level] += bound(section.row_group, longest[s].mirrored, counts.columns);
+    }
+    counts.stored += bound(section.column_group, longest[s].direct, counts.columns);
+    if (section.column_level <= c) {
+      counts.column_blocks += counts.columns * (bound(section.column_group, longest[s].direct, 1) +
+                                                bound(section.row_group, longest[s].mirrored, 1));
+    }
+  }
+  accumulate(view.levels, counts.blocks);
   return counts;
 }
 

@@ -3,7 +3,11 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
+#include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
+#include "runtime/couplings.hpp"
+#include "runtime/sparse_forces.hpp"
+#include "runtime/support.hpp"
 
 namespace greenloop {
 
@@ -11,8 +15,10 @@ namespace greenloop {
 struct ModelCounts {
   std::uint64_t nodes = 0;
   std::uint32_t levels = 0;
+  std::uint32_t sections = 0;
   std::uint32_t max_contacts = 0;
   std::uint32_t cached_factors = 0;
+  std::uint64_t rows[layout::max_levels] = {};            ///< coefficients of levels 0..F
   std::uint64_t transform_work[layout::max_levels] = {};  ///< of an inverse transform with details up to a level
 };
 
@@ -20,12 +26,18 @@ struct ModelCounts {
 struct SetCounts {
   std::uint64_t contacts = 0;
   std::uint64_t columns = 0;
-  std::uint64_t coefficients = 0;                 ///< over the point functionals of all columns
-  std::uint64_t blocks[layout::max_levels] = {};  ///< over all columns, in the rows of levels 0..r
+  std::uint64_t coefficients = 0;                 ///< that the columns touch, none counted twice
+  std::uint64_t visits = 0;                       ///< of touching them
+  std::uint64_t blocks[layout::max_levels] = {};  ///< coupled with those, in rows of levels 0..F
+  std::uint64_t stored = 0;                       ///< blocks of all layers in those columns, up to the set's level
+  std::uint64_t column_coefficients = 0;          ///< ColumnCost over all columns
+  std::uint64_t column_blocks = 0;
+  std::uint64_t column_visits = 0;
 };
 
-/// Work units of deciding whether to resolve `contacts` at a level: merging, sorting, counting, asking the cache.
-[[nodiscard]] std::uint64_t plan_work(const ModelCounts& model, std::uint64_t contacts, std::uint64_t columns) noexcept;
+/// Work units of deciding whether to resolve `contacts` at a level: merging, sorting, touching, counting, asking the
+/// cache.
+[[nodiscard]] std::uint64_t plan_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;
@@ -37,13 +49,15 @@ struct SetCounts {
 [[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set,
                                        std::uint32_t field_level) noexcept;
 
-/// Counts of a resolved set. functional_size: [columns of set.level] coefficients of each column's point functional.
-[[nodiscard]] SetCounts count_set(const ModelView& view, const ContactSet& set, std::uint64_t contacts,
-                                  const std::uint32_t* functional_size) noexcept;
+/// Counts of a resolved set whose coefficients are touched. cost: [domain] of each node as a column of set.level.
+[[nodiscard]] SetCounts count_set(const ModelView& view, const Coefficients& coefficients, const Couplings& couplings,
+                                  const ContactSet& set, const Touched& touched, std::uint64_t contacts,
+                                  const ColumnCost* cost) noexcept;
 
-/// Bounds of the counts of any set of at most `max_contacts` contacts at a constraint level. functional_bound: largest
-/// point functional of that level. Start-up; 33 passes over the level's columns for every mesh level.
-[[nodiscard]] SetCounts most_counts(const ModelView& view, std::uint32_t constraint_level, std::uint32_t max_contacts,
-                                    std::uint32_t functional_bound) noexcept;
+/// Bounds of the counts of any set of at most `max_contacts` contacts at constraint level c. longest: of each possible
+/// section, see find_section. Start-up; linear in the sections.
+[[nodiscard]] SetCounts most_counts(const ModelView& view, const Coefficients& coefficients,
+                                    const LongestLists (&longest)[Couplings::most], std::uint32_t c,
+                                    std::uint32_t max_contacts, const ReachBound& reach) noexcept;
 
 }  // namespace greenloop

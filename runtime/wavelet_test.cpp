@@ -8,29 +8,11 @@
 #include <random>
 #include <vector>
 
-#include "runtime/body.hpp"
-#include "runtime/point_functional.hpp"
+#include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
 namespace {
-
-// a body's precomputed lifting, in its own memory
-class PlacedBody {
- public:
-  explicit PlacedBody(const ModelView& view) {
-    const BodySizes sizes = measure_body(view, {.max_contacts = 1, .cached_factors = 1});
-    Arena counting;
-    place_body(counting, view, sizes);
-    memory_ = AlignedBytes(static_cast<std::size_t>(counting.bytes()));
-    Arena arena(memory_.data());
-    body = place_body(arena, view, sizes);
-  }
-  Body* body = nullptr;
-
- private:
-  AlignedBytes memory_;
-};
 
 std::vector<std::uint32_t> domain_nodes(const ModelView& view) {
   std::vector<std::uint32_t> nodes;
@@ -74,7 +56,7 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
       field[node][r] = static_cast<float>(d[node][r]);
     }
   }
-  inverse_transform(view, placed.body->lifting, view.levels - 1, field.data());
+  inverse_transform(view, placed.body->lifting, view.levels - 1, {}, field.data());
   for (std::uint32_t node = 0; node < view.node_count; ++node) {
     for (std::size_t r = 0; r < 3; ++r) {
       CHECK(std::abs(double{field[node][r]} - x[node][r]) <= 8 * view.levels * 0x1p-24);
@@ -83,40 +65,29 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
   }
 }
 
-TEST_CASE("a point functional gives what the inverse transform gives there, at every node") {
-  const TestModel model({.levels = 5, .touchable_above = 0.95});
+TEST_CASE("averages join the values of their level before the next level is made") {
+  const TestModel model({.levels = 4, .touchable_above = 0.95});
   const ModelView& view = model.view();
   const PlacedBody placed(view);
-  std::uint32_t most_neighbours[layout::max_levels] = {};
-  for (std::uint32_t q = 1; q < view.levels; ++q) {
-    most_neighbours[q] = count_lifting(view, q).most_neighbours;
-    CHECK(most_neighbours[q] == (q == 1 ? 4 : 6));  // an octahedron's corners have four edges
+  std::vector<Float4> ones(domain_up_to(view, 1), splat3(1.0F));
+  const Float4* averages[layout::max_levels] = {nullptr, ones.data()};
+  std::vector<Float4> joined(view.node_count);
+  inverse_transform(view, placed.body->lifting, view.levels - 1, averages, joined.data());
+  // the same as what interpolating ones from level 1 gives
+  std::vector<Float4> interpolated(view.node_count);
+  for (std::uint32_t q = 0; q < 2; ++q) {
+    std::fill_n(interpolated.begin() + view.level[q].node_begin, view.level[q].counts->domain_count, splat3(1.0F));
   }
-  std::mt19937_64 random(3);
-  std::vector<Float4> coefficients(view.node_count);
-  const auto nodes = domain_nodes(view);
-  for (const std::uint32_t node : nodes) {
-    coefficients[node] = splat3(static_cast<float>(random() >> 40) * 0x1p-24F);
-  }
-  auto field = coefficients;
-  inverse_transform(view, placed.body->lifting, view.levels - 1, field.data());
-  std::uint32_t longest = 0;
-  for (const std::uint32_t node : nodes) {
-    const std::uint32_t bound = point_functional_bound(view, most_neighbours, node);
-    std::vector<PointCoefficient> functional(bound);
-    const std::uint32_t length = point_functional(view, placed.body->lifting, node, functional.data());
-    REQUIRE(length <= bound);
-    longest = std::max(longest, length);
-    std::vector<int> times_named(view.node_count);
-    double sum = 0;
-    for (std::uint32_t k = 0; k < length; ++k) {
-      sum += double{functional[k].weight} * double{coefficients[functional[k].node][0]};
-      ++times_named[functional[k].node];
+  for (std::uint32_t q = 2; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      const std::uint32_t* parent = level.refinement[i].parent;
+      interpolated[level.node_begin + i] = splat3(0.5F) * (interpolated[parent[0]] + interpolated[parent[1]]);
     }
-    CHECK(std::all_of(times_named.begin(), times_named.end(), [](int times) { return times <= 1; }));
-    CHECK(std::abs(sum - double{field[node][0]}) <= 64 * 0x1p-24);
   }
-  MESSAGE("longest functional over five levels: ", longest, " coefficients");
+  for (std::uint32_t node = 0; node < view.node_count; ++node) {
+    CHECK(float{joined[node][2]} == interpolated[node][2]);
+  }
 }
 
 TEST_CASE("details above the field level are interpolated") {
@@ -127,7 +98,7 @@ TEST_CASE("details above the field level are interpolated") {
   for (const std::uint32_t node : domain_nodes(view)) {
     field[node] = node < view.level[1].node_begin ? splat3(1.0F) : Float4{};
   }
-  inverse_transform(view, placed.body->lifting, 0, field.data());
+  inverse_transform(view, placed.body->lifting, 0, {}, field.data());
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {

@@ -4,7 +4,8 @@ namespace greenloop {
 
 ModelData smallest_model() {
   constexpr float third_of_triangle = 0.5F / 3;  // m^2
-  constexpr float quantum = 1.0F / 1024;         // m/N
+  constexpr float quantum = 1.0F / 1024;
+  constexpr float root_of_compliance = 0.25F;  // (m/N)^(1/2)
   ModelData model;
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
   model.info.wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
@@ -14,21 +15,22 @@ ModelData smallest_model() {
   model.info.rate = 1000;
   model.info.max_contacts = 1;
   model.info.step_work = 1000;
+  model.info.field_layers = 1;
   model.provenance = "{}";
   model.base_triangles = {0, 1, 2};
 
   LevelData level;
   level.nodes = {{{0, 0, 0}, third_of_triangle, layout::node_domain | layout::node_touchable | layout::node_read},
-                 {{1, 0, 0}, third_of_triangle, layout::node_fixed},
+                 {{1, 0, 0}, third_of_triangle, layout::node_domain | layout::node_read},
                  {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
-  level.columns = {{0, third_of_triangle}};
   level.representatives = {{0, layout::none, layout::none}};
-  BlocksData blocks;
-  blocks.begin = {0, 1};
-  blocks.scale = {quantum};
-  blocks.index = {0};
-  blocks.value = {64, 0, 0, 0, 64, 0, 0, 0, 64};
-  level.blocks = {blocks};
+  level.averages.assign(2, {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
+                            .diagonal = {1, 0, 0, 1, 0, 1}});
+  CouplingsData& couplings = level.couplings[static_cast<std::size_t>(layout::Partner::same)][0];
+  couplings.value_bits = 16;
+  couplings.quantum = quantum;
+  couplings.begin = {0, 0, 1};
+  couplings.value = {256, 0, 0, 0, 256, 0, 0, 64, 256};
   model.levels = {level};
   return model;
 }

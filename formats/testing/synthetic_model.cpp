@@ -1,343 +1,266 @@
 #include "formats/testing/synthetic_model.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <span>
-#include <utility>
+
+#include "formats/testing/dense_wavelet.hpp"
+#include "formats/testing/synthetic_sphere.hpp"
 
 namespace greenloop {
 namespace {
 
-using Point = std::array<double, 3>;
-using Block = std::array<double, 9>;  // displacement r per force c at 3 c + r
-using Triangle = std::array<std::uint32_t, 3>;
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using layout::Partner;
+using Sphere = SyntheticSphere;
 
-constexpr double radius = 0.1;        // m
-constexpr double range = 0.05;        // m, of the kernel
-constexpr double softness = 1e-3;     // m/N
-constexpr double fixed_below = -0.5;  // in radii, as is the next
-constexpr double unneeded_below = -0.2;
-constexpr Block coupling = {1, 0.2, 0.1, 0.2, 0.9, 0.15, 0.1, 0.15, 0.8};
+constexpr double range = 0.05;     // m, of the kernel
+constexpr double softness = 1e-3;  // m/N
+constexpr double twist = 0.5;
 
-double distance(const Point& x, const Point& y) { return std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]); }
-
-double norm(const Block& block) {
-  double sum = 0;
-  for (const double value : block) sum += value * value;
-  return std::sqrt(sum);
+// I + twist [x / radius]_x
+Matrix3d frame_at(const Eigen::Vector3d& x) {
+  const Eigen::Vector3d t = twist / Sphere::radius * x;
+  Matrix3d frame;
+  frame << 1, -t[2], t[1], t[2], 1, -t[0], -t[1], t[0], 1;
+  return frame;
 }
 
-void add(Block& to, double weight, const Block& from) {
-  for (std::size_t k = 0; k < 9; ++k) to[k] += weight * from[k];
+MatrixXd exact_compliance(const Sphere& sphere) {
+  std::vector<Eigen::Vector3d> domain;
+  for (std::uint32_t i = 0; i < sphere.count(); ++i) {
+    const auto& x = sphere.positions[i];
+    if (sphere.has(i, layout::node_domain)) domain.emplace_back(x[0], x[1], x[2]);
+  }
+  const auto n = static_cast<Index>(domain.size());
+  MatrixXd compliance(3 * n, 3 * n);
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = 0; i < n; ++i) {
+      compliance.block<3, 3>(3 * i, 3 * j) = synthetic_compliance(domain[i], domain[j]);
+    }
+  }
+  return compliance;
 }
 
-// Nodes coarse to fine and, within a level, the domain first.
-struct Sphere {
-  std::vector<Point> positions;
-  std::vector<std::array<std::uint32_t, 2>> parents;
-  std::vector<std::uint32_t> begin = {0};  // of each level, then the number of nodes
-  std::vector<Triangle> base, finest;
-  std::vector<std::uint32_t> flags;
-  std::vector<double> areas;
+Matrix3d symmetric(const float (&six)[6]) {
+  Matrix3d matrix;
+  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+  return matrix;
+}
 
-  [[nodiscard]] std::uint32_t levels() const { return static_cast<std::uint32_t>(begin.size() - 1); }
-  [[nodiscard]] std::uint32_t count() const { return begin.back(); }
-  [[nodiscard]] bool has(std::uint32_t node, layout::NodeFlag flag) const { return (flags[node] & flag) != 0; }
+void store(const Matrix3d& matrix, float (&six)[6]) {
+  std::size_t k = 0;
+  for (Index r = 0; r < 3; ++r) {
+    for (Index c = r; c < 3; ++c) six[k++] = static_cast<float>(matrix(r, c));
+  }
+}
+
+// Of the coefficients begin .. end-1, whose diagonal blocks stand in `blocks`.
+std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index end) {
+  const Eigen::Vector3d direction(1, -1, 0.5);
+  std::vector<layout::Scale> scales;
+  for (Index i = begin; i < end; ++i) {
+    const Matrix3d block = blocks.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
+    // a conditional compliance as if some neighbour were held along one direction; how many are is the writer's choice
+    const Eigen::Vector3d held = block * direction;
+    const Matrix3d conditional = 0.8 * (block - 0.5 / direction.dot(held) * held * held.transpose());
+    const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(conditional).operatorSqrt();
+    layout::Scale scale;
+    store(root, scale.root);
+    const Matrix3d inverse = symmetric(scale.root).inverse();
+    store(inverse * block * inverse, scale.diagonal);
+    scales.push_back(scale);
+  }
+  return scales;
+}
+
+std::vector<Matrix3d> inverse_roots(const std::vector<layout::Scale>& scales) {
+  std::vector<Matrix3d> inverses;
+  inverses.reserve(scales.size());
+  for (const layout::Scale& scale : scales) inverses.emplace_back(symmetric(scale.root).inverse());
+  return inverses;
+}
+
+// One partner's couplings before they are quantised.
+struct ScaledBlocks {
+  std::vector<std::uint32_t> begin = {0}, index;
+  std::vector<float> value;
+
+  void add(std::uint32_t row, const Matrix3d& block) {
+    index.push_back(row);
+    for (Index k = 0; k < 9; ++k) value.push_back(static_cast<float>(block(k % 3, k / 3)));
+  }
+  void end_column() { begin.push_back(static_cast<std::uint32_t>(index.size())); }
+
+  [[nodiscard]] CouplingsData quantised(std::uint32_t bits) const {
+    float largest = 0;
+    for (const float x : value) largest = std::max(largest, std::abs(x));
+    const auto most = static_cast<float>((1 << (bits - 1)) - 1);
+    CouplingsData data{.value_bits = bits, .quantum = largest / most, .begin = begin, .index = index, .value = {}};
+    for (const float x : value) {
+      data.value.push_back(static_cast<std::int16_t>(std::clamp(std::round(x / data.quantum), -most, most)));
+    }
+    return data;
+  }
 };
 
-std::uint32_t flags_at(double height, bool finest_of_several, double touchable_above) {
-  if (height < fixed_below) return layout::node_fixed;
-  if (finest_of_several && height < unneeded_below) return 0;
-  const bool touchable = height >= touchable_above;
-  return layout::node_domain | layout::node_read | (touchable ? static_cast<std::uint32_t>(layout::node_touchable) : 0);
-}
+class Compression {
+ public:
+  Compression(ModelData& model, const SyntheticOptions& options) : model_(model), options_(options), wavelet_(model) {}
 
-// Adds a level's nodes, domain first; returns the new index of each.
-std::vector<std::uint32_t> add_level(Sphere& sphere, const std::vector<Point>& points, bool finest_of_several,
-                                     double touchable_above) {
-  std::vector<std::uint32_t> index(points.size());
-  for (const bool domain : {true, false}) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const std::uint32_t flags = flags_at(points[i][2] / radius, finest_of_several, touchable_above);
-      if (((flags & layout::node_domain) != 0) != domain) continue;
-      index[i] = static_cast<std::uint32_t>(sphere.positions.size());
-      sphere.positions.push_back(points[i]);
-      sphere.flags.push_back(flags);
+  void run(MatrixXd compliance) {
+    exact_ = to_non_standard_form(wavelet_, compliance);
+    const std::uint32_t levels = wavelet_.levels();
+    for (std::uint32_t q = 0; q < levels; ++q) {
+      LevelData& level = model_.levels[q];
+      if (q == 0) level.averages = scales_of(compliance, 0, wavelet_.end(0));
+      if (q > 0) level.details = scales_of(compliance, wavelet_.begin(q), wavelet_.end(q));
+      if (q > 0 && q + 2 < levels) level.averages = scales_of(exact_[q], 0, wavelet_.end(q));
     }
+    for (std::uint32_t q = 0; q < levels; ++q) add_couplings(q, compliance);
   }
-  sphere.begin.push_back(static_cast<std::uint32_t>(sphere.positions.size()));
-  return index;
-}
 
-void split(Sphere& sphere, bool finest, double touchable_above) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> odd;
-  std::vector<Point> points;
-  std::vector<std::array<std::uint32_t, 2>> ends;
-  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-    const auto [found, is_new] = odd.try_emplace({std::min(a, b), std::max(a, b)}, points.size());
-    if (is_new) {
-      Point x;
-      for (std::size_t k = 0; k < 3; ++k) x[k] = sphere.positions[a][k] + sphere.positions[b][k];
-      const double scale = radius / distance(x, {});
-      for (double& value : x) value *= scale;
-      points.push_back(x);
-      ends.push_back({found->first.first, found->first.second});
-    }
-    return found->second;
-  };
-  std::vector<std::array<std::size_t, 3>> middles;
-  for (const Triangle& t : sphere.finest) {
-    middles.push_back({middle(t[0], t[1]), middle(t[1], t[2]), middle(t[2], t[0])});
-  }
-  const auto index = add_level(sphere, points, finest, touchable_above);
-  sphere.parents.resize(sphere.positions.size());
-  for (std::size_t i = 0; i < ends.size(); ++i) sphere.parents[index[i]] = ends[i];
-  std::vector<Triangle> children;
-  for (std::size_t i = 0; i < middles.size(); ++i) {
-    const auto [a, b, c] = sphere.finest[i];
-    const std::uint32_t ab = index[middles[i][0]], bc = index[middles[i][1]], ca = index[middles[i][2]];
-    for (const Triangle& t : {Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) children.push_back(t);
-  }
-  sphere.finest = std::move(children);
-}
-
-void measure_areas(Sphere& sphere) {
-  sphere.areas.assign(sphere.count(), 0);
-  for (const Triangle& t : sphere.finest) {
-    const double a = distance(sphere.positions[t[0]], sphere.positions[t[1]]);
-    const double b = distance(sphere.positions[t[1]], sphere.positions[t[2]]);
-    const double c = distance(sphere.positions[t[2]], sphere.positions[t[0]]);
-    const double half = (a + b + c) / 2;  // Heron's formula
-    const double area = std::sqrt(half * (half - a) * (half - b) * (half - c));
-    for (const std::uint32_t node : t) sphere.areas[node] += area / 3;
-  }
-}
-
-Sphere make_sphere(const SyntheticOptions& options) {
-  Sphere sphere;
-  const double r = radius;
-  const std::vector<Point> corners = {{r, 0, 0}, {-r, 0, 0}, {0, r, 0}, {0, -r, 0}, {0, 0, r}, {0, 0, -r}};
-  const auto index = add_level(sphere, corners, false, options.touchable_above);
-  for (const auto& t :
-       {Triangle{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}) {
-    sphere.base.push_back({index[t[0]], index[t[1]], index[t[2]]});
-  }
-  sphere.finest = sphere.base;
-  for (std::uint32_t q = 1; q < options.levels; ++q) split(sphere, q + 1 == options.levels, options.touchable_above);
-  measure_areas(sphere);
-  return sphere;
-}
-
-// The hat of a node of level c, by its values at all nodes.
-std::vector<double> hat(const Sphere& sphere, std::uint32_t c, std::uint32_t node) {
-  std::vector<double> values(sphere.count(), 0);
-  values[node] = 1;
-  for (std::uint32_t i = sphere.begin[c + 1]; i < sphere.count(); ++i) {
-    values[i] = (values[sphere.parents[i][0]] + values[sphere.parents[i][1]]) / 2;
-  }
-  return values;
-}
-
-// The lifting weight of every node towards its parents.
-std::vector<std::array<double, 2>> lifting_weights(const Sphere& sphere) {
-  std::vector<double> integral = sphere.areas;
-  std::vector<std::array<double, 2>> lift(sphere.count());
-  for (std::uint32_t q = sphere.levels() - 1; q > 0; --q) {
-    for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
-      for (const std::uint32_t parent : sphere.parents[m]) integral[parent] += integral[m] / 2;
-    }
-    for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
-      for (std::size_t k = 0; k < 2; ++k) {
-        const std::uint32_t parent = sphere.parents[m][k];
-        const bool lifted = sphere.has(m, layout::node_domain) && sphere.has(parent, layout::node_domain);
-        lift[m][k] = lifted ? integral[m] / (2 * integral[parent]) : 0;
+  void measure(const Sphere& sphere) {
+    exact_.push_back(exact_compliance(sphere));
+    for (std::uint32_t layers = layout::strengths; layers >= options_.field_layers; --layers) {
+      const std::vector<MatrixXd> decoded = decoded_compliances(model_, layers);
+      for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
+        layout::Level& counts = model_.levels[q].counts;
+        counts.field_rms_error = static_cast<float>((decoded[q] - exact_[q]).norm() / exact_[q].norm());
+        counts.field_column_error = static_cast<float>(worst_column(decoded[q], exact_[q]));
+        if (layers < layout::strengths) continue;
+        counts.rms_error = counts.field_rms_error;
+        counts.worst_column_error = counts.field_column_error;
       }
     }
   }
-  return lift;
-}
 
-// The lifted Linear transform in place (docs/theory.md, section 3); blocks outside the domain are and stay zero.
-void transform(const Sphere& sphere, const std::vector<std::array<double, 2>>& lift, std::vector<Block>& x) {
-  for (std::uint32_t q = sphere.levels() - 1; q > 0; --q) {
-    for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
-      if (!sphere.has(m, layout::node_domain)) continue;
-      for (const std::uint32_t parent : sphere.parents[m]) add(x[m], -0.5, x[parent]);
+ private:
+  static double worst_column(const MatrixXd& decoded, const MatrixXd& exact) {
+    double worst = 0;
+    for (Index j = 0; j < exact.cols(); j += 3) {
+      double largest_error = 0, largest = 0;
+      for (Index i = 0; i < exact.rows(); i += 3) {
+        largest = std::max(largest, exact.block<3, 3>(i, j).norm());
+        largest_error = std::max(largest_error, (decoded.block<3, 3>(i, j) - exact.block<3, 3>(i, j)).norm());
+      }
+      worst = std::max(worst, largest_error / largest);
     }
-    for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
-      for (std::size_t k = 0; k < 2; ++k) add(x[sphere.parents[m][k]], lift[m][k], x[m]);
+    return worst;
+  }
+
+  [[nodiscard]] std::size_t layer_of(double norm) const {
+    return norm >= options_.strong ? 0 : norm >= options_.medium ? 1 : 2;
+  }
+
+  void add_couplings(std::uint32_t q, const MatrixXd& form) {
+    const auto& own = q == 0 ? model_.levels[0].averages : model_.levels[q].details;
+    if (q > 0) add_couplings(q, Partner::averages, model_.levels[q < 2 ? 0 : q - 2].averages, own, 0, form);
+    if (q > 1) add_couplings(q, Partner::parents, model_.levels[q - 1].details, own, wavelet_.begin(q - 1), form);
+    add_couplings(q, Partner::same, own, own, wavelet_.begin(q), form);
+  }
+
+  void add_couplings(std::uint32_t q, Partner partner, const std::vector<layout::Scale>& row_scales,
+                     const std::vector<layout::Scale>& column_scales, Index first_row, const MatrixXd& form) {
+    const auto rows = inverse_roots(row_scales), columns = inverse_roots(column_scales);
+    ScaledBlocks layers[layout::strengths];
+    for (std::size_t j = 0; j < columns.size(); ++j) {
+      for (std::size_t i = 0; i < (partner == Partner::same ? j : rows.size()); ++i) {
+        const Index column = 3 * (wavelet_.begin(q) + static_cast<Index>(j));
+        const Index row = 3 * (first_row + static_cast<Index>(i));
+        const Matrix3d block = rows[i] * form.block<3, 3>(column, row).transpose() * columns[j];
+        const double norm = block.norm() / std::sqrt(3.0);
+        if (q > 0 && norm < options_.epsilon) continue;
+        layers[q == 0 ? 0 : layer_of(norm)].add(static_cast<std::uint32_t>(i), block);
+      }
+      for (ScaledBlocks& layer : layers) layer.end_column();
+    }
+    auto& stored = model_.levels[q].couplings[static_cast<std::size_t>(partner)];
+    if (q == 0) {
+      stored[0] = layers[0].quantised(16);
+      stored[0].index.clear();
+    } else {
+      stored[0] = layers[0].quantised(options_.strong_bits);
+      stored[1] = layers[1].quantised(options_.medium_bits);
+      stored[2] = layers[2].quantised(options_.weak_bits);
     }
   }
-}
 
-void invert(const Sphere& sphere, const std::vector<std::array<double, 2>>& lift, std::vector<Block>& x) {
-  for (std::uint32_t q = 1; q < sphere.levels(); ++q) {
-    for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
-      for (std::size_t k = 0; k < 2; ++k) add(x[sphere.parents[m][k]], -lift[m][k], x[m]);
-    }
-    for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
-      if (!sphere.has(m, layout::node_domain)) continue;
-      for (const std::uint32_t parent : sphere.parents[m]) add(x[m], 0.5, x[parent]);
-    }
-  }
-}
-
-// Displacement of the domain per unit force spread over `weights` (which sum to one).
-std::vector<Block> exact_column(const Sphere& sphere, const std::vector<double>& weights) {
-  std::vector<Block> column(sphere.count(), Block{});
-  for (std::uint32_t i = 0; i < sphere.count(); ++i) {
-    if (!sphere.has(i, layout::node_domain)) continue;
-    double kernel = 0;
-    for (std::uint32_t j = 0; j < sphere.count(); ++j) {
-      if (weights[j] == 0) continue;
-      kernel += weights[j] * std::exp(-distance(sphere.positions[i], sphere.positions[j]) / range);
-    }
-    add(column[i], softness * kernel, coupling);
-  }
-  return column;
-}
-
-double largest_norm(const std::vector<Block>& column) {
-  double largest = 0;
-  for (const Block& block : column) largest = std::max(largest, norm(block));
-  return largest;
-}
-
-// Appends the blocks of one column and one row level; leaves in `column` what a reader will see.
-void quantise(BlocksData& data, std::span<Block> column, double threshold) {
-  const double most = data.value_bytes == 1 ? 127 : 32767;
-  double largest = 0;
-  for (const Block& block : column) {
-    for (const double value : block) largest = std::max(largest, std::abs(value));
-  }
-  const auto scale = static_cast<float>(largest / most);
-  for (std::uint32_t i = 0; i < column.size(); ++i) {
-    if (!data.dense && norm(column[i]) < threshold) {
-      column[i] = {};
-      continue;
-    }
-    if (!data.dense) data.index.push_back(i);
-    for (double& value : column[i]) {
-      const double quanta = scale > 0 ? std::clamp(std::round(value / scale), -most, most) : 0;
-      data.value.push_back(static_cast<std::int16_t>(quanta));
-      value = quanta * scale;
-    }
-  }
-  data.begin.push_back(static_cast<std::uint32_t>(data.value.size() / 9));
-  data.scale.push_back(scale);
-}
-
-struct Errors {
-  double error_square = 0, square = 0, worst = 0;
-
-  void measure(const std::vector<Block>& exact, const std::vector<Block>& decoded, double area) {
-    double largest_error = 0;
-    for (std::size_t i = 0; i < exact.size(); ++i) {
-      Block error = decoded[i];
-      add(error, -1, exact[i]);
-      error_square += std::pow(area * norm(error), 2);
-      square += std::pow(area * norm(exact[i]), 2);
-      largest_error = std::max(largest_error, norm(error));
-    }
-    worst = std::max(worst, largest_error / largest_norm(exact));
-  }
+  ModelData& model_;
+  const SyntheticOptions& options_;
+  DenseWavelet wavelet_;
+  std::vector<MatrixXd> exact_;  // by level
 };
 
-std::vector<std::vector<std::uint32_t>> representatives(const Sphere& sphere,
-                                                        const std::vector<layout::ColumnRecord>& columns) {
+std::vector<std::vector<std::uint32_t>> representatives(const Sphere& sphere, std::uint32_t c) {
+  std::vector<std::uint32_t> candidates;
+  for (std::uint32_t i = 0; i < sphere.begin[c + 1]; ++i) {
+    if (sphere.has(i, layout::node_touchable)) candidates.push_back(i);
+  }
   std::vector<std::vector<std::uint32_t>> result(sphere.levels());
   for (std::uint32_t q = 0; q < sphere.levels(); ++q) {
     for (std::uint32_t i = sphere.begin[q]; i < sphere.begin[q + 1]; ++i) {
-      const auto nearer = [&](const layout::ColumnRecord& a, const layout::ColumnRecord& b) {
-        return distance(sphere.positions[a.node], sphere.positions[i]) <
-               distance(sphere.positions[b.node], sphere.positions[i]);
+      const auto nearer = [&](std::uint32_t a, std::uint32_t b) {
+        return distance(sphere.positions[a], sphere.positions[i]) < distance(sphere.positions[b], sphere.positions[i]);
       };
-      const auto nearest = std::min_element(columns.begin(), columns.end(), nearer);
       const bool touchable = sphere.has(i, layout::node_touchable);
-      result[q].push_back(touchable ? static_cast<std::uint32_t>(nearest - columns.begin()) : layout::none);
+      result[q].push_back(touchable ? *std::min_element(candidates.begin(), candidates.end(), nearer) : layout::none);
     }
   }
   return result;
 }
 
-// The columns of constraint level c: every touchable node of K(c).
-void add_columns(LevelData& level, const Sphere& sphere, std::uint32_t c, const SyntheticOptions& options) {
-  const auto lift = lifting_weights(sphere);
-  BlocksData empty;
-  empty.value_bytes = options.value_bytes;
-  empty.dense = options.dense;
-  empty.begin = {0};
-  level.blocks.assign(sphere.levels(), empty);
-  Errors errors;
-  for (std::uint32_t node = 0; node < sphere.begin[c + 1]; ++node) {
-    if (!sphere.has(node, layout::node_touchable)) continue;
-    std::vector<double> weights = hat(sphere, c, node);
-    double area = 0;
-    for (std::uint32_t j = 0; j < sphere.count(); ++j) {
-      weights[j] *= sphere.has(j, layout::node_fixed) ? 0 : sphere.areas[j];
-      area += weights[j];
-    }
-    for (double& weight : weights) weight /= area;
-    level.columns.push_back({node, static_cast<float>(area)});
-
-    const std::vector<Block> exact = exact_column(sphere, weights);
-    std::vector<Block> column = exact;
-    transform(sphere, lift, column);
-    for (std::uint32_t r = 0; r < sphere.levels(); ++r) {
-      std::uint32_t rows = 0;
-      while (rows < sphere.begin[r + 1] - sphere.begin[r] && sphere.has(sphere.begin[r] + rows, layout::node_domain)) {
-        ++rows;
-      }
-      const double epsilon =
-          r == 0 ? 0 : std::ldexp(options.epsilon, static_cast<int>(r + 1) - static_cast<int>(sphere.levels()));
-      quantise(level.blocks[r], std::span(column).subspan(sphere.begin[r], rows), epsilon * largest_norm(exact));
-    }
-    invert(sphere, lift, column);
-    errors.measure(exact, column, area);
-  }
-  level.representatives = representatives(sphere, level.columns);
-  level.counts.rms_error = static_cast<float>(std::sqrt(errors.error_square / errors.square));
-  level.counts.worst_column_error = static_cast<float>(errors.worst);
-}
-
-LevelData make_level(const Sphere& sphere, std::uint32_t q) {
+LevelData make_level(const Sphere& sphere, std::uint32_t q, bool lifted) {
   LevelData level;
   const auto lift = lifting_weights(sphere);
   for (std::uint32_t i = sphere.begin[q]; i < sphere.begin[q + 1]; ++i) {
-    const Point& x = sphere.positions[i];
+    const Sphere::Point& x = sphere.positions[i];
     level.nodes.push_back({{static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])},
                            static_cast<float>(sphere.areas[i]),
                            sphere.flags[i]});
     if (q == 0) continue;
+    const double weight = lifted ? 1 : 0;
     level.refinement.push_back({{sphere.parents[i][0], sphere.parents[i][1]},
-                                {static_cast<float>(lift[i][0]), static_cast<float>(lift[i][1])}});
+                                {static_cast<float>(weight * lift[i][0]), static_cast<float>(weight * lift[i][1])}});
   }
   return level;
 }
 
 }  // namespace
 
+Matrix3d synthetic_compliance(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
+  Matrix3d core;
+  core << 1, 0.2, 0.1, 0.2, 0.9, 0.15, 0.1, 0.15, 0.8;
+  return softness * std::exp(-(x - y).norm() / range) * frame_at(x) * core * frame_at(y).transpose();
+}
+
 ModelData synthetic_model(const SyntheticOptions& options) {
-  const Sphere sphere = make_sphere(options);
+  const Sphere sphere = make_sphere(options.levels, options.touchable_above);
   ModelData model;
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
-  model.info.wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
+  model.info.wavelet =
+      static_cast<std::uint32_t>(options.lifted ? layout::Wavelet::lifted_linear : layout::Wavelet::linear);
   model.info.components = 3;
   model.info.young = 1e5;
   model.info.poisson = 0.4;
-  model.info.epsilon = options.epsilon;
+  model.info.threshold = options.epsilon;
   model.info.rate = 1000;
   model.info.max_contacts = 16;
   model.info.step_work = 1'000'000;
   model.info.coarsest_constraint_level = options.coarsest_constraint_level;
+  model.info.field_layers = options.field_layers;
   model.provenance = R"({"generator": "synthetic sphere"})";
-  for (const Triangle& t : sphere.base) model.base_triangles.insert(model.base_triangles.end(), t.begin(), t.end());
+  for (const auto& t : sphere.base) model.base_triangles.insert(model.base_triangles.end(), t.begin(), t.end());
   for (std::uint32_t q = 0; q < sphere.levels(); ++q) {
-    model.levels.push_back(make_level(sphere, q));
-    if (q >= options.coarsest_constraint_level) add_columns(model.levels.back(), sphere, q, options);
+    model.levels.push_back(make_level(sphere, q, options.lifted));
+    if (q >= options.coarsest_constraint_level) model.levels.back().representatives = representatives(sphere, q);
   }
+  Compression compression(model, options);
+  compression.run(exact_compliance(sphere));
+  compression.measure(sphere);
   return model;
 }
 

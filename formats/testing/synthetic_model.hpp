@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 
 #include "formats/writer.hpp"
@@ -10,16 +11,26 @@ namespace greenloop {
 struct SyntheticOptions {
   std::uint32_t levels = 3;                     ///< 1..6 mesh levels: 6, 18, 66, 258, 1026, 4098 nodes
   std::uint32_t coarsest_constraint_level = 0;  ///< < levels
-  std::uint32_t value_bytes = 1;                ///< 1 or 2
-  bool dense = false;                           ///< keep every block, without indices
-  double epsilon = 0.01;                        ///< block threshold at the finest level
+  std::uint32_t strong_bits = 8;                ///< 4, 8 or 16
+  std::uint32_t medium_bits = 8;                ///< 4, 8 or 16
+  std::uint32_t weak_bits = 4;                  ///< 4, 8 or 16
+  std::uint32_t field_layers = 3;               ///< 1 to 3
+  bool lifted = true;                           ///< else the plain Linear wavelet
+  double strong = 0.1;                          ///< scaled blocks of this norm over root 3 are strong couplings
+  double medium = 0.03;                         ///< of this norm, medium ones
+  double epsilon = 0.005;                       ///< below this they are dropped; 0 keeps all
   double touchable_above = 0;                   ///< nodes with z >= this times the radius may be contacts; at most 1
 };
 
-/// A valid model of that body whose compliance is exp(-|x - y| / 0.05 m) times a constant symmetric positive definite
-/// 3 x 3 matrix: symmetric positive definite, not elastic. Wavelet-transformed (lifted Linear), thresholded, quantised;
-/// the errors in Level are measured. On the finest level the free nodes below z = -0.02 m are outside the domain.
-/// Work: columns times nodes. Offline only, for tests and fuzzing.
+/// The exact compliance of that body between points x and y (m): 1e-3 m/N exp(-|x - y| / 0.05 m) Q(x) C Q(y)^T with a
+/// constant C and a smoothly varying Q. Symmetric positive definite over any points, not elastic; its blocks are not
+/// symmetric.
+[[nodiscard]] Eigen::Matrix3d synthetic_compliance(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
+
+/// A valid model of that body: scaled, thresholded, quantised; the compliance it stands for is positive definite too.
+/// The errors in Level are measured, but patch_force_error and Info::lambda_min stay 0. On the finest of several levels
+/// the free nodes below z = -0.02 m are outside the domain. A node is represented by the nearest touchable node.
+/// Work and memory: quadratic in the nodes. Offline only, for tests and fuzzing.
 [[nodiscard]] ModelData synthetic_model(const SyntheticOptions& options);
 
 }  // namespace greenloop

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstring>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -39,13 +40,14 @@ Json levels_of(const ModelView& view) {
   Json levels = Json::array();
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     const layout::Level& level = *view.level[c].counts;
+    const std::uint32_t columns = view.level[c].domain_begin + level.domain_count;
     levels.push_back({{"level", c},
-                      {"columns", level.column_count},
+                      {"columns", columns},
                       {"kept_blocks", level.kept_blocks},
                       {"dense_blocks", level.dense_blocks},
                       {"rms_error", level.rms_error},
                       {"worst_column_error", level.worst_column_error},
-                      {"force_error", level.force_error}});
+                      {"worst_patch_force_error", level.patch_force_error}});
   }
   return levels;
 }
@@ -54,6 +56,32 @@ Json provenance_of(const ModelView& view) {
   const std::string text(view.provenance.begin(), view.provenance.end());
   const Json parsed = Json::parse(text, nullptr, false);
   return parsed.is_discarded() ? Json(text) : parsed;
+}
+
+std::string_view wavelet_name(std::uint32_t wavelet) {
+  return wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
+}
+
+// stored blocks by the bits of their values
+Json bits_of(const ModelView& view) {
+  std::map<std::uint32_t, std::uint64_t> blocks;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    for (const auto& partner : view.level[q].couplings) {
+      for (const CouplingsView& couplings : partner) {
+        if (couplings.columns > 0) blocks[couplings.value_bits] += couplings.begin[couplings.columns];
+      }
+    }
+  }
+  Json bits = Json::object();
+  for (const auto& [width, count] : blocks) bits[std::to_string(width)] = count;
+  return bits;
+}
+
+// what the build tried, if the model is its work
+Json frontier_of(const ModelView& view) {
+  const Json provenance = provenance_of(view);
+  const bool has_it = provenance.is_object() && provenance.contains("frontier");
+  return has_it ? provenance["frontier"] : Json::array();
 }
 
 Json inspection_of(const ModelFile& model) {
@@ -67,12 +95,21 @@ Json inspection_of(const ModelFile& model) {
       {"levels", view.levels},
       {"complete_levels", info.levels},
       {"bytes", model.bytes.size()},
-      {"dense_bytes", dense_block_bytes * finest.column_count * view.domain_count},
+      {"dense_bytes", dense_block_bytes * view.domain_count * view.domain_count},
       {"kept_blocks", finest.kept_blocks},
       {"dense_blocks", finest.dense_blocks},
       {"rms_error", finest.rms_error},
       {"worst_column_error", finest.worst_column_error},
-      {"epsilon", info.epsilon},
+      {"worst_patch_force_error", finest.patch_force_error},
+      {"field_layers", info.field_layers},
+      {"field_rms_error", finest.field_rms_error},
+      {"field_column_error", finest.field_column_error},
+      {"lambda_min", info.lambda_min},
+      {"certificate", info.lambda_min > 0},
+      {"wavelet", wavelet_name(info.wavelet)},
+      {"bits", bits_of(view)},
+      {"threshold", info.threshold},
+      {"frontier", frontier_of(view)},
       {"store_asymmetry", info.store_asymmetry},
       {"material", {{"young", info.young}, {"poisson", info.poisson}}},
       {"box", {{"min", info.box_min}, {"max", info.box_max}}},
@@ -114,16 +151,23 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                            ratio(found["dense_bytes"], found["bytes"]), bytes_text(found["dense_bytes"])));
   row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
+  row("field", fmt::format("{} RMS, {} in the worst column, with {} of {} layers of couplings",
+                           percent(found["field_rms_error"]), percent(found["field_column_error"]),
+                           found["field_layers"].dump(), layout::strengths));
+  row("certificate", found["certificate"].get<bool>()
+                         ? fmt::format("every eigenvalue of the compliance is above {:.3g} m/N (verify --certificate)",
+                                       found["lambda_min"].get<double>())
+                         : "none");
   row("material",
       fmt::format("Young's modulus {} Pa, Poisson's ratio {}", material["young"].dump(), material["poisson"].dump()));
   row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),
                            scene["max_contacts"].dump(), scene["step_work"].dump()));
   fmt::print(out, "\n  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", "level", "columns", "kept blocks", "dense",
-             "RMS error", "worst column", "force error");
+             "RMS error", "worst column", "patch force");
   for (const auto& level : found["constraint_levels"]) {
     fmt::print(out, "  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", level["level"].dump(), level["columns"].dump(),
                level["kept_blocks"].dump(), level["dense_blocks"].dump(), percent(level["rms_error"]),
-               percent(level["worst_column_error"]), percent(level["force_error"]));
+               percent(level["worst_column_error"]), percent(level["worst_patch_force_error"]));
   }
   fmt::print(out, "\n  provenance: {}\n", found["provenance"].dump(2));
 }

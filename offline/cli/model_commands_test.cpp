@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Eigenvalues>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -17,6 +18,7 @@
 #include "offline/cli/convert_command.hpp"
 #include "offline/cli/inspect_command.hpp"
 #include "offline/cli/verify_command.hpp"
+#include "offline/compress/compressed_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -61,7 +63,7 @@ std::string convert_refusal(const ConvertArguments& arguments) {
 TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   const Folder folder("inspect_json", {.levels = 3, .coarsest_constraint_level = 1});
   const Json found = inspect_json(folder / "sphere.gloop");
-  CHECK(found["version"] == "1.0");
+  CHECK(found["version"] == "2.0");
   CHECK(found["nodes"] == 66);
   CHECK(found["domain_nodes"] == 41);
   CHECK(found["levels"] == 3);
@@ -73,6 +75,14 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   CHECK(found["rms_error"] > 0);
   CHECK(found["rms_error"] < 0.03);
   CHECK(found["worst_column_error"] > 0);
+  CHECK(found["worst_patch_force_error"] == 0);
+  CHECK(found["field_layers"] == 3);
+  CHECK(found["field_rms_error"] > 0);
+  CHECK(found["field_column_error"] > 0);
+  CHECK(found["lambda_min"] == 0);
+  CHECK(found["certificate"] == false);
+  CHECK(found["wavelet"] == "lifted linear");
+  CHECK(found["frontier"].empty());
   CHECK(found["material"] == Json{{"young", 1e5}, {"poisson", 0.4}});
   CHECK(found["provenance"]["generator"] == "synthetic sphere");
   CHECK(found["units"]["compliance"] == "m/N");
@@ -85,12 +95,36 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   CHECK(finest["worst_column_error"] == found["worst_column_error"]);
   CHECK(finest["kept_blocks"] == found["kept_blocks"]);
   CHECK(finest["dense_blocks"] == found["dense_blocks"]);
-  CHECK(finest.contains("force_error"));
+  CHECK(finest["worst_patch_force_error"] == 0);
 
-  // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 x (Columns, 3 Representatives, 3 Blocks)
-  REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 * 7);
-  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 896}, {"bytes", 256}});
-  CHECK(found["sections"].back()["kind"] == "Blocks(2, 1)");
+  // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 + 4 Representatives, 3 Scales, 1 + 6 + 9 Couplings
+  REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 + 4 + 3 + 1 + 6 + 9);
+  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 1216}, {"bytes", 256}});
+  CHECK(found["sections"].back()["kind"] == "Couplings(2, same, weak)");
+}
+
+TEST_CASE("inspect --json: wavelet, bits, certificate and frontier are the file's own") {
+  const Folder folder("inspect_own");
+  ModelData data = synthetic_model({.levels = 3, .strong_bits = 16, .field_layers = 2, .lifted = false});
+  data.info.lambda_min = 2.5e-6;
+  data.provenance = R"({"frontier": [{"threshold": 0.5}]})";
+  std::uint64_t blocks[17] = {};
+  for (LevelData& level : data.levels) {
+    level.counts.patch_force_error = 0.25;
+    for (const auto& partner : level.couplings) {
+      for (const CouplingsData& couplings : partner) blocks[couplings.value_bits] += couplings.value.size() / 9;
+    }
+  }
+  write_file(folder / "own.gloop", encode(data));
+  const Json found = inspect_json(folder / "own.gloop");
+  CHECK(found["wavelet"] == "linear");
+  CHECK(found["field_layers"] == 2);
+  CHECK(found["field_rms_error"] >= found["rms_error"]);
+  CHECK(found["lambda_min"] == 2.5e-6);
+  CHECK(found["certificate"] == true);
+  CHECK(found["worst_patch_force_error"] == 0.25);
+  CHECK(found["frontier"] == Json::parse(R"([{"threshold": 0.5}])"));
+  CHECK(found["bits"] == Json{{"4", blocks[4]}, {"8", blocks[8]}, {"16", blocks[16]}});
 }
 
 TEST_CASE("inspect: the table for people says the same") {
@@ -123,7 +157,7 @@ TEST_CASE("inspect: a file that is not valid is an error that names it") {
 TEST_CASE("verify: exit code 0 only for a valid file, and the first fault in words and JSON") {
   const Folder folder("verify_command");
   std::ostringstream good, bad, absent;
-  CHECK(run_verify({folder / "sphere.gloop", true}, good) == 0);
+  CHECK(run_verify({folder / "sphere.gloop", false, true}, good) == 0);
   CHECK(Json::parse(good.str())["ok"] == true);
   CHECK(Json::parse(good.str())["rule"] == "ok");
 
@@ -131,7 +165,7 @@ TEST_CASE("verify: exit code 0 only for a valid file, and the first fault in wor
   mutant.records<layout::NodeRecord>(layout::SectionKind::nodes, 1)[2].area = -3;
   (void)mutant.verdict();
   write_file(folder / "bad.gloop", mutant.bytes());
-  CHECK(run_verify({folder / "bad.gloop", true}, bad) == 1);
+  CHECK(run_verify({folder / "bad.gloop", false, true}, bad) == 1);
   const Json verdict = Json::parse(bad.str());
   CHECK(verdict["ok"] == false);
   CHECK(verdict["rule"] == "out_of_range");
@@ -141,11 +175,67 @@ TEST_CASE("verify: exit code 0 only for a valid file, and the first fault in wor
   CHECK(verdict["value"] == -3);
   CHECK(verdict["message"].get<std::string>().find("bad.gloop: Nodes(1), field `area`, index 2") != std::string::npos);
 
-  CHECK(run_verify({folder / "absent.gloop", true}, absent) == 1);
+  CHECK(run_verify({folder / "absent.gloop", false, true}, absent) == 1);
   CHECK(Json::parse(absent.str())["rule"] == "unreadable");
   std::ostringstream text;
-  CHECK(run_verify({folder / "sphere.gloop", false}, text) == 0);
+  CHECK(run_verify({folder / "sphere.gloop", false, false}, text) == 0);
   CHECK(text.str() == (folder / "sphere.gloop").string() + ": the file is valid\n");
+}
+
+// m/N, of the compliance that the model stands for, by its dense matrix
+double least_eigenvalue(const ModelData& data) {
+  const AlignedBytes bytes(encode(data));
+  ModelView view;
+  REQUIRE(verify(bytes.span(), view).ok());
+  const CompressedCompliance compressed(view, all_layers);
+  const auto rows = static_cast<Eigen::Index>(compressed.rows(compressed.finest()));
+  Eigen::MatrixXd dense(3 * rows, 3 * rows);
+  for (Eigen::Index j = 0; j < rows; ++j) {
+    const std::vector<double> column = compressed.column(compressed.finest(), static_cast<std::size_t>(j));
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      dense.block<3, 3>(3 * i, 3 * j) = Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * i);
+    }
+  }
+  CHECK((dense - dense.transpose()).norm() <= 1e-12 * dense.norm());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues()[0];
+}
+
+TEST_CASE("verify --certificate: holds just below the least eigenvalue, not just above, not if absent or cut off") {
+  const Folder folder("verify_certificate");
+  ModelData data = synthetic_model({.levels = 3});
+  const double least = least_eigenvalue(data);
+  REQUIRE(least > 0);
+  const auto verdict = [&](double lambda_min, const std::string& file, int exit_code) {
+    data.info.lambda_min = lambda_min;
+    write_file(folder / file, encode(data));
+    std::ostringstream out;
+    CHECK(run_verify({folder / file, true, true}, out) == exit_code);
+    return Json::parse(out.str());
+  };
+  const Json right = verdict(0.999 * least, "right.gloop", 0);
+  CHECK(right["ok"] == true);
+  CHECK(right["certificate"]["holds"] == true);
+  CHECK(right["certificate"]["lambda_min"] == 0.999 * least);
+  CHECK(right["certificate"]["unknowns"] == 3 * 41);
+  CHECK(right["certificate"]["shift"] >= 0.999 * least);
+
+  const Json boast = verdict(1.001 * least, "boast.gloop", 1);
+  CHECK(boast["ok"] == false);
+  CHECK(boast["rule"] == "ok");
+  CHECK(boast["certificate"]["holds"] == false);
+  CHECK(boast["message"].get<std::string>().find("does not hold") != std::string::npos);
+  std::ostringstream unasked;
+  CHECK(run_verify({folder / "boast.gloop", false, true}, unasked) == 0);
+  CHECK_FALSE(Json::parse(unasked.str()).contains("certificate"));
+
+  const Json none = verdict(0, "none.gloop", 1);
+  CHECK(none["message"].get<std::string>().find("carries no certificate") != std::string::npos);
+
+  std::ostringstream out;
+  CHECK(run_convert({folder / "right.gloop", folder / "cut.gloop", 2}, out) == 0);
+  out.str("");
+  CHECK(run_verify({folder / "cut.gloop", true, true}, out) == 1);
+  CHECK(Json::parse(out.str())["message"].get<std::string>().find("is cut off") != std::string::npos);
 }
 
 TEST_CASE("convert: a model becomes C source, header and definition") {

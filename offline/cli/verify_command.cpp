@@ -1,5 +1,7 @@
 #include "offline/cli/verify_command.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -9,13 +11,45 @@
 
 #include "formats/describe.hpp"
 #include "formats/model_file.hpp"
+#include "offline/compress/certificate.hpp"
 
 namespace greenloop::offline {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json verdict_of(const std::filesystem::path& file) {
+// proves what the model claims about its least eigenvalue
+void check_claim(const std::filesystem::path& file, const ModelView& view, Json& verdict) {
+  const double lambda_min = view.info->lambda_min;
+  Json& found = verdict["certificate"];
+  found = {{"lambda_min", lambda_min}};
+  const auto conclude = [&](bool holds, const std::string& message) {
+    found["holds"] = holds;
+    verdict["ok"] = holds;
+    verdict["message"] = fmt::format("{}: {}", file.string(), message);
+  };
+  if (view.levels < view.info->levels) {
+    conclude(false, "is cut off; the certificate is that of the whole model: check that one");
+    return;
+  }
+  if (!(lambda_min > 0)) {
+    conclude(false, "carries no certificate (Info::lambda_min is 0); build the model again");
+    return;
+  }
+  const CompressedCompliance compressed(view, all_layers);
+  const CertificateCheck check = check_certificate(compressed, lambda_min, [](double, std::string_view) {});
+  found["unknowns"] = check.unknowns;
+  found["shift"] = check.shift;
+  conclude(check.holds,
+           check.holds
+               ? fmt::format("the compliance is positive definite: all {} eigenvalues are above {:.4g} m/N",
+                             check.unknowns, lambda_min)
+               : fmt::format("the certificate does not hold: not all {} eigenvalues of the compliance are above "
+                             "Info::lambda_min = {:.4g} m/N; build the model again",
+                             check.unknowns, lambda_min));
+}
+
+Json verdict_of(const std::filesystem::path& file, bool certificate) {
   AlignedBytes bytes;
   try {
     bytes = load_file(file);
@@ -26,22 +60,24 @@ Json verdict_of(const std::filesystem::path& file) {
   ModelView view;
   const VerifyResult result = verify(bytes.span(), view);
   const bool in_section = result.kind != layout::SectionKind{};
-  return {{"ok", result.ok()},
-          {"rule", rule_name(result.rule)},
-          {"section", in_section    ? section_name(result.kind, result.a, result.b)
-                      : result.ok() ? ""
-                                    : "Header"},
-          {"field", result.field},
-          {"index", result.index},
-          {"value", result.value},
-          {"limit", result.limit},
-          {"message", file.string() + ": " + describe(result)}};
+  Json verdict = {{"ok", result.ok()},
+                  {"rule", rule_name(result.rule)},
+                  {"section", in_section    ? section_name(result.kind, result.a, result.b)
+                              : result.ok() ? ""
+                                            : "Header"},
+                  {"field", result.field},
+                  {"index", result.index},
+                  {"value", result.value},
+                  {"limit", result.limit},
+                  {"message", file.string() + ": " + describe(result)}};
+  if (result.ok() && certificate) check_claim(file, view, verdict);
+  return verdict;
 }
 
 }  // namespace
 
 int run_verify(const VerifyArguments& arguments, std::ostream& out) {
-  const Json verdict = verdict_of(arguments.file);
+  const Json verdict = verdict_of(arguments.file, arguments.certificate);
   out << (arguments.json ? verdict.dump(2) : verdict["message"].get<std::string>()) << '\n';
   return verdict["ok"].get<bool>() ? 0 : 1;
 }
@@ -50,6 +86,10 @@ void add_verify(CLI::App& parent, int& exit_code) {
   CLI::App* command = parent.add_subcommand("verify", "Check every field and checksum of a model file");
   const auto arguments = std::make_shared<VerifyArguments>();
   command->add_option("model", arguments->file, "Model file (.gloop)")->required();
+  command->add_flag(
+      "--certificate", arguments->certificate,
+      "Also prove that the compliance is positive definite: a Cholesky factorisation in double precision, "
+      "72 bytes times the square of the domain nodes");
   command->add_flag("--json", arguments->json, "Print the verdict as JSON");
   command->callback([arguments, &exit_code] { exit_code = run_verify(*arguments, std::cout); });
 }

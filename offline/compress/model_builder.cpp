@@ -1,181 +1,271 @@
 #include "offline/compress/model_builder.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
-#include "offline/compress/force_error.hpp"
-#include "offline/compress/hierarchy.hpp"
-#include "offline/compress/lifted_linear.hpp"
+#include "offline/compress/certificate.hpp"
+#include "offline/compress/exact_sample.hpp"
+#include "offline/compress/field_error.hpp"
 #include "offline/compress/model_tables.hpp"
-#include "offline/compress/search.hpp"
 
 namespace greenloop::offline {
 namespace {
 
-constexpr std::size_t sample_size = 128;    // columns the search works on
-constexpr std::size_t stream_columns = 64;  // columns read at a time
-constexpr std::array curve_epsilons = {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
+constexpr std::size_t search_patches = 16;  // the worst ones, which encodings are tried with
+constexpr std::size_t stream_columns = 64;  // read at a time
+constexpr double first_floor = 0.0005, least_floor = 1e-5;
+constexpr std::uint32_t strong_layers = 1;
+constexpr double field_safety = 0.7;       // of the field's errors over strong couplings, searched on a sample
+constexpr int rounds = 4;                  // of search and measurement per pyramid
+constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
+constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
 
-void require_fit(const CompressionInput& input) {
-  const std::size_t count = input.mesh.positions.size();
-  if (input.column_nodes.empty()) {
-    throw std::invalid_argument("compression: column_nodes is empty; at least one free node must be touchable");
-  }
+void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
   if (input.mesh.vertex_end.size() > layout::max_levels) {
     throw std::invalid_argument("compression: the mesh has " + std::to_string(input.mesh.vertex_end.size()) +
                                 " levels; a model holds at most " + std::to_string(layout::max_levels));
   }
-  if (!(input.accuracy.rms > 0) || !(input.accuracy.worst_column > 0)) {
-    throw std::invalid_argument("compression: accuracy rms = " + std::to_string(input.accuracy.rms) +
-                                ", worst_column = " + std::to_string(input.accuracy.worst_column) +
-                                "; both must be positive");
+  const auto& [rms, column, force] = input.accuracy;
+  if (!(rms > 0) || !(column > 0) || !(force > 0)) {
+    throw std::invalid_argument("compression: accuracy rms = " + std::to_string(rms) +
+                                ", worst_column = " + std::to_string(column) +
+                                ", patch_force = " + std::to_string(force) + "; all must be positive");
   }
-  std::size_t touchable = 0;
-  for (const auto flag : input.flags) {
-    const bool free = (flag & layout::node_fixed) == 0;
-    touchable += free && (flag & layout::node_touchable) != 0 ? 1 : 0;
-  }
-  for (const std::size_t node : input.column_nodes) {
-    if (node < count && (input.flags[node] & layout::node_domain) == 0) {
-      throw std::invalid_argument("compression: column node " + std::to_string(node) + " is not a domain node");
-    }
-  }
-  if (touchable != input.column_nodes.size()) {
+  if (wavelet.rows() == 0) throw std::invalid_argument("compression: no node is free and needed");
+  if (input.column_nodes != wavelet.nodes()) {
     throw std::invalid_argument("compression: " + std::to_string(input.column_nodes.size()) + " exact columns for " +
-                                std::to_string(touchable) + " free touchable nodes; give one column each");
+                                std::to_string(wavelet.rows()) + " domain nodes; give one column each, in node order");
   }
 }
 
-/// The constraint levels that exist: those from `coarsest` on with a column.
-std::vector<ConstraintLevel> constraint_levels(const CompressionInput& input) {
-  const auto finest = static_cast<std::uint32_t>(input.mesh.finest_level());
-  if (input.facts.coarsest_constraint_level > finest) {
-    throw std::invalid_argument("compression: coarsest_constraint_level is " +
-                                std::to_string(input.facts.coarsest_constraint_level) +
-                                "; the mesh's finest level is " + std::to_string(finest));
-  }
-  std::vector<ConstraintLevel> levels;
-  for (auto c = input.facts.coarsest_constraint_level; c <= finest; ++c) {
-    auto level = constraint_level(input.mesh, input.area, input.column_nodes, c);
-    if (!level.columns.empty()) levels.push_back(std::move(level));
-  }
-  return levels;
-}
-
-/// One pass over the exact columns for everything but their own coding.
-std::vector<CoarseColumns> gather(const CompressionInput& input, const std::vector<ConstraintLevel>& levels,
-                                  std::size_t rows, ContactPatches& patches, const Progress& progress) {
-  std::vector<CoarseColumns> coarse;
-  for (std::size_t i = 0; i + 1 < levels.size(); ++i) coarse.emplace_back(levels[i], rows);
-  const std::size_t total = input.column_nodes.size();
-  for (std::size_t first = 0; first < total; first += stream_columns) {
-    const std::size_t count = std::min(stream_columns, total - first);
-    const Eigen::MatrixXd block = input.columns(first, count);
-    if (block.rows() != static_cast<Eigen::Index>(3 * rows) || block.cols() != static_cast<Eigen::Index>(3 * count) ||
-        !block.allFinite()) {
-      throw std::invalid_argument("compression: exact columns " + std::to_string(first) + " to " +
-                                  std::to_string(first + count - 1) + " are not " + std::to_string(3 * rows) + " x " +
-                                  std::to_string(3 * count) + " finite numbers");
+// errors of one level against its exact compliance
+ConstraintLevelReport measure_coarse(const CompressionInput& input, const LinearWavelet& wavelet,
+                                     const CompliancePyramid& pyramid, const CompressedCompliance& compressed,
+                                     std::size_t level) {
+  const DenseCompliance& exact = pyramid.coarse[level];
+  ContactPatches patches(row_positions(input.mesh, wavelet, level), ExactSample::most_patches);
+  FieldError error;
+  Eigen::MatrixXd column(3 * exact.rows(), 3);
+  for (std::size_t j = 0; j < exact.rows(); ++j) {
+    for (std::size_t i = 0; i < exact.rows(); ++i) {
+      column.middleRows<3>(static_cast<Eigen::Index>(3 * i)) = exact.block(i, j);
     }
-    for (auto& columns : coarse) columns.add(block, first);
-    patches.add(block, first);
-    progress(static_cast<double>(first + count) / static_cast<double>(total), "gather coarse columns");
+    patches.add(column, j);
+    error.add(compressed, level, j, blocks_of(column, 0).data(), wavelet.integrals(level)[j]);
   }
-  return coarse;
+  return {.level = static_cast<std::uint32_t>(level),
+          .nodes = exact.rows(),
+          .rms_error = error.rms(),
+          .worst_column_error = error.worst_column(),
+          .patch_force_error = patches.worst_force_error(compressed, level)};
 }
 
-std::vector<CurvePoint> speed_against_error(ColumnCoder& coder, const std::vector<TransformedColumn>& sample,
-                                            std::size_t columns, Encoding encoding) {
-  std::vector<CurvePoint> curve;
-  const double scale = static_cast<double>(columns) / static_cast<double>(sample.size());
-  for (const double epsilon : curve_epsilons) {
-    encoding.epsilon = epsilon;
-    const Tally tally = coder.measure(sample, encoding);
-    const double blocks = scale * static_cast<double>(tally.blocks);
-    curve.push_back(
-        {.epsilon = epsilon,
-         .kept_blocks = blocks,
-         .bytes = scale * static_cast<double>(tally.bytes),
-         .rms_error = tally.rms(),
-         .worst_column_error = tally.worst_column,
-         .sum_work = static_cast<double>(LiftedLinear::components) * blocks / static_cast<double>(columns)});
+struct FinestErrors {
+  FieldError all, strong;
+};
+
+// errors of the finest level over all exact columns
+FinestErrors measure_finest(const CompressionInput& input, const CompressedCompliance& all,
+                            const CompressedCompliance& strong, const Progress& progress) {
+  FinestErrors errors;
+  const std::size_t rows = input.column_nodes.size(), finest = all.finest();
+  for (std::size_t first = 0; first < rows; first += stream_columns) {
+    const std::size_t count = std::min(stream_columns, rows - first);
+    const Eigen::MatrixXd block = input.columns(first, count);
+    for (std::size_t j = 0; j < count; ++j) {
+      const auto exact = blocks_of(block, j);
+      const double area = input.area[input.column_nodes[first + j]];
+      errors.all.add(all, finest, first + j, exact.data(), area);
+      errors.strong.add(strong, finest, first + j, exact.data(), area);
+    }
+    progress(static_cast<double>(first + count) / static_cast<double>(rows), "measure all columns");
   }
-  return curve;
+  return errors;
 }
 
-ConstraintLevelReport report_level(const ConstraintLevel& level, const CompressedLevel& compressed, std::size_t rows,
-                                   double force_error) {
-  return {.level = level.level,
-          .epsilon = compressed.encoding.epsilon,
-          .value_bytes = compressed.encoding.value_bytes,
-          .columns = compressed.tally.columns,
-          .tightened = compressed.tightened,
-          .kept_blocks = compressed.tally.blocks,
-          .dense_blocks = compressed.tally.columns * rows,
-          .bytes = compressed.tally.bytes,
-          .rms_error = compressed.tally.rms(),
-          .worst_column_error = compressed.tally.worst_column,
-          .force_error = force_error};
+float stored(double error) { return static_cast<float>(std::min(error, double{std::numeric_limits<float>::max()})); }
+
+void store_errors(const CompressionReport& report, ModelData& model) {
+  for (const auto& level : report.levels) {
+    auto& counts = model.levels[level.level].counts;
+    counts.rms_error = counts.field_rms_error = stored(level.rms_error);
+    counts.worst_column_error = counts.field_column_error = stored(level.worst_column_error);
+    counts.patch_force_error = stored(level.patch_force_error);
+  }
+  auto& finest = model.levels.back().counts;
+  finest.field_rms_error = stored(report.field_rms_error);
+  finest.field_column_error = stored(report.field_column_error);
+  model.info.threshold = report.encoding.threshold;
+  model.info.field_layers = report.field_layers;
+  model.info.lambda_min = report.lambda_min;
 }
 
-void store_level(ModelData& model, const SemiRegularMesh& mesh, const ConstraintLevel& level,
-                 CompressedLevel compressed, const ConstraintLevelReport& report) {
-  auto& data = model.levels[level.level];
-  data.counts.rms_error = static_cast<float>(report.rms_error);
-  data.counts.worst_column_error = static_cast<float>(report.worst_column_error);
-  // a model file holds finite numbers only
-  const double largest = static_cast<double>(std::numeric_limits<float>::max());
-  data.counts.force_error = static_cast<float>(std::min(report.force_error, largest));
-  data.columns = level.columns;
-  data.blocks = std::move(compressed.blocks);
-  std::size_t begin = 0;
-  for (const std::size_t end : mesh.vertex_end) {
-    data.representatives.emplace_back(level.representatives.begin() + static_cast<std::ptrdiff_t>(begin),
-                                      level.representatives.begin() + static_cast<std::ptrdiff_t>(end));
-    begin = end;
-  }
+[[noreturn]] void unreachable_accuracy(const Accuracy& wanted, const Trial& best) {
+  throw std::runtime_error(
+      "compression: rms = " + std::to_string(wanted.rms) + ", worst_column = " + std::to_string(wanted.worst_column) +
+      ", patch_force = " + std::to_string(wanted.patch_force) + " cannot be met; the best found was " +
+      std::to_string(best.rms) + ", " + std::to_string(best.worst_column) + ", " + std::to_string(best.patch_force) +
+      ": ask for larger errors");
 }
+
+// An encoding of the whole model, measured on everything.
+struct Measured {
+  Trial trial;
+  FinestErrors errors;
+  double least_eigenvalue = 0;  // m/N, estimated; only of a trial that meets the accuracy
+};
+
+// One build. Its pyramid is made again with a lower floor if no encoding of the one at hand is accurate enough.
+class Build {
+ public:
+  Build(const CompressionInput& input, const Progress& progress)
+      : input_(input),
+        progress_(progress),
+        wavelet_(input.mesh, input.flags, input.area, input.lifted),
+        sample_(checked(input, wavelet_).mesh, wavelet_, input.area) {
+    model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
+    model_.provenance = input.provenance;
+    model_.info.field_layers = all_layers;
+    add_representatives(input.mesh, input.flags, model_);
+    report_.dense_bytes = 36 * wavelet_.rows() * wavelet_.rows();
+  }
+
+  [[nodiscard]] BuiltModel run() {
+    for (double floor = first_floor; !meets_with(floor); floor /= 4) {
+      if (floor <= least_floor) unreachable_accuracy(input_.accuracy, closest_);
+    }
+    store_errors(report_, model_);
+    if (progress_) progress_(1.0, "done");
+    return {std::move(model_), std::move(report_)};
+  }
+
+ private:
+  static const CompressionInput& checked(const CompressionInput& input, const LinearWavelet& wavelet) {
+    require_fit(input, wavelet);
+    return input;
+  }
+
+  // Reports on a part of the work; what is done again does not lead back.
+  [[nodiscard]] Progress part(double begin, double end) {
+    return [this, begin, end](double fraction, std::string_view stage) {
+      done_ = std::max(done_, begin + (end - begin) * fraction);
+      if (progress_) progress_(done_, stage);
+    };
+  }
+
+  [[nodiscard]] CompliancePyramid transform(double floor) {
+    const ColumnSource columns = [&](std::size_t first, std::size_t count) {
+      Eigen::MatrixXd block = input_.columns(first, count);
+      const bool fits = block.rows() == static_cast<Eigen::Index>(3 * wavelet_.rows());
+      if (floor == first_floor && fits) sample_.add(block, first);
+      return block;
+    };
+    return build_pyramid(wavelet_, columns, floor, part(0, 0.3));
+  }
+
+  // searches and measures until an encoding meets the accuracy on everything; false: none does with this floor
+  [[nodiscard]] bool meets_with(double floor) {
+    const CompliancePyramid pyramid = transform(floor);
+    const TrialBench bench{pyramid, model_, sample_.columns(), input_.step_work};
+    const ContactPatches searched = worst_patches(bench, sample_.patches(), search_patches, floor);
+    Accuracy aim = input_.accuracy;
+    aim.patch_force *= safety;
+    std::vector<Trial> trials;
+    for (int round = 0; round < rounds; ++round) {
+      const std::size_t known = trials.size();
+      Trial chosen = search_encoding(bench, searched, aim, floor, trials, part(0.3, 0.6));
+      report_.trials.insert(report_.trials.end(), trials.begin() + static_cast<std::ptrdiff_t>(known), trials.end());
+      closest_ = chosen;
+      if (!chosen.meets(aim)) return false;
+      const Accuracy field{.rms = field_safety * input_.accuracy.rms,
+                           .worst_column = field_safety * input_.accuracy.worst_column};
+      chosen.encoding = search_field_threshold(bench, field, chosen.encoding, part(0.6, 0.7));
+      encode_couplings(pyramid, chosen.encoding, model_);
+      const EncodedModel encoded(model_);
+      const CompressedCompliance all(encoded.view, all_layers);
+      const Measured measured = measure(encoded, all, chosen);
+      if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
+        describe(measured);
+        describe_levels(pyramid, encoded.view, all, measured.trial);
+        return true;
+      }
+      closest_ = measured.trial;
+      tighten(aim, measured);
+    }
+    return false;
+  }
+
+  [[nodiscard]] Measured measure(const EncodedModel& encoded, const CompressedCompliance& all, const Trial& chosen) {
+    const CompressedCompliance strong(encoded.view, strong_layers);
+    Measured measured{.trial = chosen, .errors = measure_finest(input_, all, strong, part(0.7, 0.8))};
+    measured.trial.bytes = encoded.bytes.size();
+    measured.trial.rms = measured.errors.all.rms();
+    measured.trial.worst_column = measured.errors.all.worst_column();
+    measured.trial.patch_force = sample_.patches().worst_force_error(all, wavelet_.finest());
+    if (measured.trial.meets(input_.accuracy)) {
+      measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.8, 0.9));
+    }
+    return measured;
+  }
+
+  // asks the next search for as much less as this one's choice fell short by
+  void tighten(Accuracy& aim, const Measured& measured) const {
+    const Trial& trial = measured.trial;
+    const Accuracy& wanted = input_.accuracy;
+    if (trial.meets(wanted)) {  // but it is not positive definite
+      aim.patch_force *= 0.5;
+      return;
+    }
+    aim.rms *= std::min(1.0, 0.98 * wanted.rms / trial.rms);
+    aim.worst_column *= std::min(1.0, 0.98 * wanted.worst_column / trial.worst_column);
+    aim.patch_force *= std::min(1.0, 0.97 * wanted.patch_force / trial.patch_force);
+  }
+
+  void describe(const Measured& measured) {
+    const auto& [all, strong] = measured.errors;
+    const bool strong_suffices =
+        strong.rms() <= input_.accuracy.rms && strong.worst_column() <= input_.accuracy.worst_column;
+    const FieldError& field = strong_suffices ? strong : all;
+    report_.encoding = measured.trial.encoding;
+    report_.trials.push_back(measured.trial);
+    report_.lambda_min = certificate_share * measured.least_eigenvalue;
+    report_.field_layers = strong_suffices ? strong_layers : all_layers;
+    report_.field_rms_error = field.rms();
+    report_.field_column_error = field.worst_column();
+    report_.patches = sample_.patches().size();
+  }
+
+  void describe_levels(const CompliancePyramid& pyramid, const ModelView& view, const CompressedCompliance& all,
+                       const Trial& finest) {
+    for (std::size_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
+      report_.levels.push_back(measure_coarse(input_, wavelet_, pyramid, all, level));
+    }
+    report_.levels.push_back({.level = static_cast<std::uint32_t>(wavelet_.finest()),
+                              .nodes = wavelet_.rows(),
+                              .rms_error = finest.rms,
+                              .worst_column_error = finest.worst_column,
+                              .patch_force_error = finest.patch_force});
+    for (auto& level : report_.levels) {
+      level.kept_blocks = view.level[level.level].counts->kept_blocks;
+      level.dense_blocks = view.level[level.level].counts->dense_blocks;
+    }
+  }
+
+  const CompressionInput& input_;
+  const Progress& progress_;
+  LinearWavelet wavelet_;
+  ExactSample sample_;
+  ModelData model_;
+  CompressionReport report_;
+  Trial closest_;  // the last that failed
+  double done_ = 0;
+};
 
 }  // namespace
 
-BuiltModel build_model(const CompressionInput& input, const Progress& progress) {
-  const LiftedLinear wavelet(input.mesh, input.flags, input.area);
-  require_fit(input);
-  const auto levels = constraint_levels(input);
-  const std::size_t rows = wavelet.rows();
-  const double stages = 1.0 + static_cast<double>(levels.size());
-  double stage = 0;
-  const Progress within = [&](double fraction, std::string_view name) {
-    if (progress) progress((stage + fraction) / stages, name);
-  };
-
-  ContactPatches patches(input.mesh, input.column_nodes, wavelet);
-  const auto coarse = gather(input, levels, rows, patches, within);
-
-  BuiltModel built{describe_mesh(input.mesh, input.flags, input.area, wavelet, input.facts), {}};
-  built.model.provenance = input.provenance;
-  built.report.dense_bytes = 36 * rows * input.column_nodes.size();
-  ColumnCoder coder(wavelet);
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    stage += 1;
-    const bool finest = i + 1 == levels.size();
-    const ColumnSource source = finest ? input.columns : coarse[i].source();
-    const auto sample = sample_columns(wavelet, levels[i], source, sample_size);
-    auto compressed = compress_level(coder, levels[i], source, sample, input.accuracy, within);
-    const double force_error = patches.worst_force_error(wavelet, levels[i], compressed);
-    if (finest) {
-      built.report.curve = speed_against_error(coder, sample, levels[i].columns.size(), compressed.encoding);
-      built.report.curve_columns = sample.size();
-      built.model.info.epsilon = compressed.encoding.epsilon;
-    }
-    built.report.levels.push_back(report_level(levels[i], compressed, rows, force_error));
-    store_level(built.model, input.mesh, levels[i], std::move(compressed), built.report.levels.back());
-  }
-  built.model.info.coarsest_constraint_level = levels.front().level;
-  return built;
-}
+BuiltModel build_model(const CompressionInput& input, const Progress& progress) { return Build(input, progress).run(); }
 
 }  // namespace greenloop::offline

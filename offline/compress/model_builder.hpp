@@ -8,7 +8,7 @@
 #include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
 #include "formats/writer.hpp"
-#include "offline/compress/level_compression.hpp"
+#include "offline/compress/encoding_search.hpp"
 
 namespace greenloop::offline {
 
@@ -17,38 +17,32 @@ struct CompressionInput {
   const SemiRegularMesh& mesh;                   ///< ordered by order_nodes
   const std::vector<std::uint32_t>& flags;       ///< layout::NodeFlag per node, closed by mark_domain
   const std::vector<double>& area;               ///< m^2 per node
-  const std::vector<std::size_t>& column_nodes;  ///< nodes with an exact column: all free touchable ones, increasing
+  const std::vector<std::size_t>& column_nodes;  ///< nodes with an exact column: the domain nodes, increasing
   ColumnSource columns;                          ///< their columns; rows are the domain nodes in node order
-  Accuracy accuracy;                             ///< to be met on every constraint level by itself
+  Accuracy accuracy;
+  bool lifted = true;      ///< lifted or unlifted Linear wavelets
   layout::Info facts{};    ///< from scene and solver: young, poisson, store_asymmetry, rate, max_contacts, step_work,
                            ///< coarsest_constraint_level; the rest is filled in
   std::string provenance;  ///< JSON text
+  std::function<std::uint64_t(std::span<const std::byte>)> step_work;  ///< of an encoded model; may be empty
 };
 
-/// How one constraint level came out.
+/// One constraint level: the model cut off after it.
 struct ConstraintLevelReport {
   std::uint32_t level = 0;
-  double epsilon = 0;
-  std::vector<std::uint32_t> value_bytes;  ///< per row level
-  std::size_t columns = 0, tightened = 0, kept_blocks = 0, dense_blocks = 0, bytes = 0;
-  double rms_error = 0, worst_column_error = 0;  ///< over all columns
-  double force_error = 0;
-};
-
-/// One point of the curve speed against error, finest constraint level, measured on sampled columns without lowering
-/// any column's threshold; blocks and bytes are scaled up to all columns.
-struct CurvePoint {
-  double epsilon = 0;
-  double kept_blocks = 0, bytes = 0;
-  double rms_error = 0, worst_column_error = 0;
-  double sum_work = 0;  ///< multiply-adds to sum one column of mean length, 9 per block
+  std::size_t nodes = 0, kept_blocks = 0, dense_blocks = 0;
+  double rms_error = 0, worst_column_error = 0, patch_force_error = 0;
 };
 
 struct CompressionReport {
-  std::vector<ConstraintLevelReport> levels;  ///< coarse to fine
-  std::vector<CurvePoint> curve;
-  std::size_t curve_columns = 0;  ///< columns the curve was measured on
-  std::size_t dense_bytes = 0;    ///< float32, 36 bytes per exact column and domain node
+  Encoding encoding;
+  std::uint32_t field_layers = 2;
+  double field_rms_error = 0, field_column_error = 0;  ///< with that many layers
+  double lambda_min = 0;                               ///< m/N, certified
+  std::size_t patches = 0;                             ///< patches that patch_force_error was measured on
+  std::vector<ConstraintLevelReport> levels;           ///< coarse to fine
+  std::vector<Trial> trials;                           ///< every encoding that was tried, coarse first
+  std::size_t dense_bytes = 0;                         ///< float32, 36 bytes per pair of domain nodes
 };
 
 struct BuiltModel {
@@ -57,10 +51,10 @@ struct BuiltModel {
 };
 
 /// Compresses the exact compliance into a model that meets `accuracy`, with every constraint level from
-/// facts.coarsest_constraint_level on that has a column. Streams the exact columns once for the coarser levels and up
-/// to six times for the finest. Memory: 36 bytes times rows times coarser columns (a third of the dense matrix in
-/// single precision) besides the result. Deterministic. Throws std::invalid_argument if the input does not fit
-/// together, std::runtime_error if the accuracy cannot be met. Offline only.
+/// facts.coarsest_constraint_level on. Streams the exact columns twice: once to transform them, once to measure all of
+/// them. Memory: a quarter of the dense matrix in single precision besides the result. Deterministic. Throws
+/// std::invalid_argument if the input does not fit together, std::runtime_error if the accuracy cannot be met or the
+/// result is not positive definite. Offline only.
 [[nodiscard]] BuiltModel build_model(const CompressionInput& input, const Progress& progress);
 
 }  // namespace greenloop::offline

@@ -1,7 +1,11 @@
 #include "offline/compress/model_tables.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 #include <utility>
+
+#include "offline/compress/representatives.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -18,17 +22,15 @@ std::vector<layout::NodeRecord> node_records(const SemiRegularMesh& mesh, const 
   return records;
 }
 
-std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& mesh, const LiftedLinear& wavelet,
+std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& mesh, const LinearWavelet& wavelet,
                                                          std::size_t level) {
   std::vector<layout::RefinementRecord> records;
   for (std::size_t node = mesh.vertex_end[level - 1]; node < mesh.vertex_end[level]; ++node) {
     const auto [a, b] = mesh.parents[node];
     records.push_back({{static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)}, {0.0F, 0.0F}});
   }
-  for (std::size_t row = wavelet.row_begin(level); row < wavelet.row_begin(level + 1); ++row) {
-    const auto& step = wavelet.steps()[row - wavelet.row_begin(1)];
-    auto& record = records[wavelet.nodes()[row] - mesh.vertex_end[level - 1]];
-    std::copy_n(step.lift, 2, record.lift);
+  for (const auto& odd : wavelet.odds(level)) {
+    std::copy_n(odd.lift, 2, records[wavelet.nodes()[odd.row] - mesh.vertex_end[level - 1]].lift);
   }
   return records;
 }
@@ -36,22 +38,45 @@ std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& 
 }  // namespace
 
 ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
-                        const std::vector<double>& area, const LiftedLinear& wavelet, const layout::Info& facts) {
+                        const std::vector<double>& area, const LinearWavelet& wavelet, const layout::Info& facts) {
   ModelData model;
   model.info = facts;
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
-  model.info.wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
+  model.info.wavelet =
+      static_cast<std::uint32_t>(wavelet.lifted() ? layout::Wavelet::lifted_linear : layout::Wavelet::linear);
   model.info.components = 3;
   for (const auto& triangle : mesh.base_triangles) {
     for (const int corner : triangle) model.base_triangles.push_back(static_cast<std::uint32_t>(corner));
   }
-  for (std::size_t q = 0; q < wavelet.levels(); ++q) {
+  for (std::size_t q = 0; q <= wavelet.finest(); ++q) {
     LevelData level;
     level.nodes = node_records(mesh, flags, area, q == 0 ? 0 : mesh.vertex_end[q - 1], mesh.vertex_end[q]);
     if (q > 0) level.refinement = refinement_records(mesh, wavelet, q);
     model.levels.push_back(std::move(level));
   }
   return model;
+}
+
+void add_representatives(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, ModelData& model) {
+  const std::uint32_t asked = model.info.coarsest_constraint_level;
+  std::uint32_t& coarsest = model.info.coarsest_constraint_level;
+  for (std::uint32_t level = asked; level < model.levels.size(); ++level) {
+    const auto all = representatives(mesh, flags, level);
+    if (std::all_of(all.begin(), all.end(), [](std::uint32_t r) { return r == layout::none; })) {
+      coarsest = level + 1;
+      continue;
+    }
+    std::size_t begin = 0;
+    for (const std::size_t end : mesh.vertex_end) {
+      model.levels[level].representatives.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                       all.begin() + static_cast<std::ptrdiff_t>(end));
+      begin = end;
+    }
+  }
+  if (coarsest >= model.levels.size()) {
+    throw std::invalid_argument("compression: no node is both free and touchable on constraint level " +
+                                std::to_string(asked) + " or finer");
+  }
 }
 
 }  // namespace greenloop::offline

@@ -6,7 +6,7 @@
 #include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
 #include "formats/writer.hpp"
-#include "offline/compress/lifted_linear.hpp"
+#include "offline/compress/linear_wavelet.hpp"
 
 namespace greenloop::offline {
 
@@ -14,7 +14,12 @@ namespace greenloop::offline {
 /// refinement. encode fills in the counts. `flags` and `area` per node; a fixed node is not touchable in the model.
 /// Work: linear in the nodes. Offline only.
 [[nodiscard]] ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
-                                      const std::vector<double>& area, const LiftedLinear& wavelet,
+                                      const std::vector<double>& area, const LinearWavelet& wavelet,
                                       const layout::Info& facts);
+
+/// Adds the representatives of every constraint level from model.info.coarsest_constraint_level on, and moves that up
+/// to the first level where a touchable node has one. Throws std::invalid_argument if there is none. Work: that of
+/// representatives, per level. Offline only.
+void add_representatives(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, ModelData& model);
 
 }  // namespace greenloop::offline

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -27,7 +28,7 @@ namespace {
 using nlohmann::json;
 
 // part of every fingerprint: raised when a stage starts to give other results for the same scene
-constexpr std::string_view pipeline_version = "greenloop 0.1.0";
+constexpr std::string_view pipeline_version = "greenloop 0.2.0";
 
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -41,6 +42,7 @@ std::string read_text(const std::filesystem::path& path) {
 std::string column_fingerprint(Scene scene, const std::string& mesh) {
   scene.coarsest_constraints = 0;
   scene.accuracy = {};
+  scene.wavelet = {};
   scene.budget = {};
   scene.store.reset();
   scene.store_name.clear();
@@ -77,10 +79,9 @@ GreenStoreContents store_contents(const Scene& scene, const BodyGeometry& body, 
   for (std::size_t i = 0; i < body.flags.size(); ++i) {
     const auto flags = body.flags[i];
     contents.flags.push_back(static_cast<std::uint8_t>(flags));
+    // the compliance is kept in two-sided wavelet coordinates: every row needs its column
     if ((flags & layout::node_domain) != 0) {
       contents.row_node.push_back(static_cast<int>(i));
-    }
-    if ((flags & layout::node_touchable) != 0) {
       contents.column_node.push_back(static_cast<int>(i));
     }
   }
@@ -132,34 +133,55 @@ json solve_missing_columns(GreenStore& store, ProgressBar& progress) {
           {"largest_asymmetry", report.largest_asymmetry}};
 }
 
+json trial_record(const Trial& trial) {
+  return {{"threshold", trial.encoding.threshold},
+          {"bytes", trial.bytes},
+          {"kept_blocks", trial.blocks},
+          {"rms_error", trial.rms},
+          {"worst_column_error", trial.worst_column},
+          {"worst_patch_force_error", std::min(trial.patch_force, 1e9)},
+          {"step_work", trial.step_work}};
+}
+
+/// What was tried, from fewer bytes to more.
+json frontier(const CompressionReport& report) {
+  auto trials = report.trials;
+  std::sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.bytes < b.bytes; });
+  json points = json::array();
+  for (const auto& trial : trials) points.push_back(trial_record(trial));
+  return points;
+}
+
 json compression_record(const CompressionReport& report) {
   json levels = json::array();
   for (const auto& level : report.levels) {
     levels.push_back({{"level", level.level},
-                      {"epsilon", level.epsilon},
-                      {"value_bytes", level.value_bytes},
-                      {"columns", level.columns},
+                      {"columns", level.nodes},
                       {"kept_blocks", level.kept_blocks},
                       {"dense_blocks", level.dense_blocks},
-                      {"bytes", level.bytes},
                       {"rms_error", level.rms_error},
                       {"worst_column_error", level.worst_column_error},
-                      {"force_error", level.force_error}});
+                      {"worst_patch_force_error", std::min(level.patch_force_error, 1e9)}});
   }
-  json curve = json::array();
-  for (const auto& point : report.curve) {
-    curve.push_back({{"epsilon", point.epsilon},
-                     {"kept_blocks", point.kept_blocks},
-                     {"bytes", point.bytes},
-                     {"rms_error", point.rms_error},
-                     {"worst_column_error", point.worst_column_error},
-                     {"sum_work", point.sum_work}});
-  }
-  return {{"epsilon", report.levels.back().epsilon},
+  return {{"threshold", report.encoding.threshold},
+          {"quantum", report.encoding.quantum},
+          {"field_layers", report.field_layers},
+          {"field_rms_error", report.field_rms_error},
+          {"field_column_error", report.field_column_error},
+          {"lambda_min", report.lambda_min},
+          {"patches", report.patches},
           {"dense_bytes", report.dense_bytes},
-          {"curve", curve},
-          {"curve_columns", report.curve_columns},
+          {"frontier", frontier(report)},
           {"constraint_levels", levels}};
+}
+
+/// Work units of a step at the finest level: all contacts of the scene, with a fresh factor and the whole field.
+std::uint64_t finest_step_work(std::span<const std::byte> bytes, std::uint32_t contacts) {
+  const auto opened = Model::open(bytes);
+  if (!opened) {
+    throw std::logic_error("compression: an encoded model does not open");
+  }
+  return Elastostatic::required(opened.model, {.max_contacts = contacts}).worst_work[opened.model.level_count() - 1];
 }
 
 layout::Info scene_facts(const Scene& scene, const json& solve) {
@@ -189,14 +211,21 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, const json& sol
                                    [&](std::size_t first, std::size_t count) {
                                      return store.read_columns(static_cast<int>(first), static_cast<int>(count));
                                    },
-                               .accuracy = {scene.accuracy.rms, scene.accuracy.worst_column},
+                               .accuracy = {.rms = scene.accuracy.rms,
+                                            .worst_column = scene.accuracy.worst_column,
+                                            .patch_force = scene.accuracy.patch_force},
+                               .lifted = scene.wavelet == WaveletChoice::lifted_linear,
                                .facts = scene_facts(scene, solve),
-                               .provenance = provenance};
+                               .provenance = provenance,
+                               .step_work =
+                                   [&](std::span<const std::byte> bytes) {
+                                     return finest_step_work(bytes, static_cast<std::uint32_t>(scene.budget.contacts));
+                                   }};
   auto built = build_model(input, [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
   const auto& finest = built.report.levels.back();
-  progress.end(fmt::format("{:.1f} times fewer blocks, RMS error {:.2f} %, worst column {:.1f} %",
+  progress.end(fmt::format("{:.1f} times fewer blocks, field {:.2f} % RMS, worst patch force {:.1f} %",
                            static_cast<double>(finest.dense_blocks) / static_cast<double>(finest.kept_blocks),
-                           100 * finest.rms_error, 100 * finest.worst_column_error));
+                           100 * built.report.field_rms_error, 100 * finest.patch_force_error));
   return built;
 }
 
@@ -250,6 +279,9 @@ json build_model_file(const BuildRequest& asked, ProgressBar& progress) {
   provenance["solve"].erase("solve_seconds");
   provenance["solve"].erase("columns_solved");
   auto built = compress(scene, store, record["solve"], provenance.dump(), progress);
+  provenance["frontier"] = frontier(built.report);
+  provenance["patches"] = built.report.patches;
+  built.model.provenance = provenance.dump();
   settle_step_work(scene, built.model);
   const auto bytes = encode(built.model);
   write_file(request.model, bytes);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -127,50 +126,48 @@ void read_stages(const Reader& reader, const json& root, BuildRecord& record) {
   }
 }
 
-std::optional<ErrorPoint> error_point(const Reader& reader, const json& point) {
-  const auto epsilon = reader.number(point, "epsilon"), rms = reader.number(point, "rms_error");
-  if (!epsilon || !rms || !(*rms > 0) || !std::isfinite(*rms)) return std::nullopt;
-  return ErrorPoint{.epsilon = *epsilon,
-                    .rms_error = *rms,
-                    .worst_column_error = reader.number(point, "worst_column_error"),
-                    .kept_blocks = reader.number(point, "kept_blocks"),
-                    .bytes = reader.number(point, "bytes"),
-                    .sum_work = reader.number(point, "sum_work")};
+/// A number that can stand on a logarithmic axis. The build writes 1e9 for the forces of an indefinite compliance.
+std::optional<double> positive(const Reader& reader, const json& point, const std::string& key) {
+  constexpr double no_answer = 1e9;
+  const auto value = reader.number(point, key);
+  return value && *value > 0 && (key != "worst_patch_force_error" || *value < no_answer) ? value : std::nullopt;
 }
 
-/// The constraint level that was compressed with the chosen threshold is a point of the curve as well.
-void append_chosen(const Reader& reader, const json& compression, BuildRecord& record) {
-  const json* levels = reader.array(compression, "constraint_levels");
-  const auto same = [&](double epsilon) { return record.epsilon && std::abs(epsilon - *record.epsilon) < 1e-9; };
-  const bool present = std::any_of(record.curve.begin(), record.curve.end(),
-                                   [&](const ErrorPoint& point) { return same(point.epsilon); });
-  if (levels == nullptr || present) return;
-  for (const json& level : *levels) {
-    reader.check_object(level, "constraint_levels");
-    auto point = error_point(reader, level);
-    if (!point || !same(point->epsilon)) continue;
-    const auto columns = reader.number(level, "columns");
-    if (point->kept_blocks && columns && *columns > 0) point->sum_work = 9 * *point->kept_blocks / *columns;
-    record.curve.push_back(*point);
-    return;
-  }
+std::optional<FrontierPoint> frontier_point(const Reader& reader, const json& point) {
+  const auto threshold = reader.number(point, "threshold");
+  if (!threshold) return std::nullopt;
+  return FrontierPoint{.threshold = *threshold,
+                       .rms_error = positive(reader, point, "rms_error"),
+                       .worst_column_error = positive(reader, point, "worst_column_error"),
+                       .worst_patch_force_error = positive(reader, point, "worst_patch_force_error"),
+                       .kept_blocks = positive(reader, point, "kept_blocks"),
+                       .bytes = positive(reader, point, "bytes"),
+                       .step_work = positive(reader, point, "step_work")};
+}
+
+void keep_one_per_threshold(std::vector<FrontierPoint>& frontier) {
+  const auto before = [](const FrontierPoint& a, const FrontierPoint& b) {
+    if (a.threshold != b.threshold) return a.threshold < b.threshold;
+    return a.worst_patch_force_error.value_or(0) > b.worst_patch_force_error.value_or(0);
+  };
+  std::stable_sort(frontier.begin(), frontier.end(), before);
+  const auto same = [](const FrontierPoint& a, const FrontierPoint& b) { return a.threshold == b.threshold; };
+  frontier.erase(std::unique(frontier.begin(), frontier.end(), same), frontier.end());
 }
 
 void read_compression(const Reader& reader, const json& root, BuildRecord& record) {
   const json* compression = reader.object(root, "compression");
   if (compression == nullptr) return;
-  record.epsilon = reader.number(*compression, "epsilon");
-  const auto columns = reader.number(*compression, "curve_columns");
-  if (columns && *columns >= 0) record.curve_columns = static_cast<unsigned long long>(*columns);
-  if (const json* curve = reader.array(*compression, "curve")) {
-    for (const json& point : *curve) {
-      reader.check_object(point, "curve");
-      if (const auto read = error_point(reader, point)) record.curve.push_back(*read);
+  record.threshold = reader.number(*compression, "threshold");
+  const auto patches = reader.number(*compression, "patches");
+  if (patches && *patches >= 0) record.patches = static_cast<unsigned long long>(*patches);
+  if (const json* frontier = reader.array(*compression, "frontier")) {
+    for (const json& point : *frontier) {
+      reader.check_object(point, "frontier");
+      if (const auto read = frontier_point(reader, point)) record.frontier.push_back(*read);
     }
   }
-  append_chosen(reader, *compression, record);
-  std::stable_sort(record.curve.begin(), record.curve.end(),
-                   [](const ErrorPoint& a, const ErrorPoint& b) { return a.epsilon < b.epsilon; });
+  keep_one_per_threshold(record.frontier);
 }
 
 }  // namespace

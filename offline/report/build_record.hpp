@@ -24,28 +24,31 @@ struct FactGroup {
   std::vector<Fact> facts;
 };
 
-/// One compression of the same Green's functions; what the record does not say is empty.
-struct ErrorPoint {
-  double epsilon = 0;
-  double rms_error = 0;
+/// One compression of the same Green's functions that the build tried; what the record does not say, or what is no
+/// positive number, is empty.
+struct FrontierPoint {
+  double threshold = 0;
+  std::optional<double> rms_error;
   std::optional<double> worst_column_error;
+  std::optional<double> worst_patch_force_error;
   std::optional<double> kept_blocks;
   std::optional<double> bytes;
-  std::optional<double> sum_work;  ///< units
+  std::optional<double> step_work;  ///< units
 };
 
 /// What `greenloop build` recorded about itself. Every part may be missing.
 struct BuildRecord {
   std::string scene;
   std::vector<StageTime> stages;
-  std::vector<FactGroup> groups;                    ///< of every other object in the record: "remesh", "solve", ...
-  std::optional<double> epsilon;                    ///< the chosen one
-  std::optional<unsigned long long> curve_columns;  ///< the curve is measured on so many columns
-  std::vector<ErrorPoint> curve;                    ///< by increasing epsilon, with the chosen one where it is recorded
+  std::vector<FactGroup> groups;              ///< of every other object in the record: "remesh", "solve", ...
+  std::optional<double> threshold;            ///< the chosen one
+  std::optional<unsigned long long> patches;  ///< that the chosen one's forces were measured on
+  std::vector<FrontierPoint> frontier;        ///< by increasing threshold, one point each
 };
 
 /// Reads the JSON file. Throws std::runtime_error naming file and key if it is no JSON or a present part has the wrong
-/// type; points without epsilon or with an RMS error that is not positive are left out of the curve.
+/// type. Points without threshold are left out; of several with one threshold the one whose patch forces are worse is
+/// kept, since it was measured on more patches.
 [[nodiscard]] BuildRecord load_build_record(const std::filesystem::path& path);
 
 /// The facts of a JSON text: its scalars under `title`, then one group per object in it, with the object's key as

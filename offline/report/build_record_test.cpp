@@ -17,9 +17,9 @@ TEST_CASE("a complete build record") {
     "scene": "bear.toml", "stages": [{"name": "remesh", "seconds": 2.5}],
     "remesh": {"base_vertices": 42, "smallest_angle_degrees": 21.5, "hausdorff_relative": 0.004},
     "solve": {"columns": 2100, "seconds": 33.25, "asymmetry": 1e-9},
-    "compression": {"epsilon": 0.02, "curve": [
-      {"epsilon": 0.1, "rms_error": 0.05, "bytes": 100, "sum_work": 10},
-      {"epsilon": 0.02, "rms_error": 0.01, "bytes": 300, "kept_blocks": 5, "worst_column_error": 0.04}]}})"));
+    "compression": {"threshold": 0.02, "patches": 64, "frontier": [
+      {"threshold": 0.1, "rms_error": 0.05, "bytes": 100, "step_work": 10, "worst_patch_force_error": 0.3},
+      {"threshold": 0.02, "rms_error": 0.01, "bytes": 300, "kept_blocks": 5, "worst_column_error": 0.04}]}})"));
   CHECK(record.scene == "bear.toml");
   REQUIRE(record.stages.size() == 1);
   CHECK(record.stages[0].seconds == 2.5);
@@ -31,29 +31,44 @@ TEST_CASE("a complete build record") {
   CHECK(remesh[2].value == "21.5\u202f°");
   REQUIRE(record.groups[1].facts.size() == 3);
   CHECK(record.groups[1].facts[2].name == "seconds");
-  CHECK(record.epsilon == 0.02);
-  REQUIRE(record.curve.size() == 2);
-  CHECK(record.curve[0].epsilon == 0.02);
-  CHECK(record.curve[0].worst_column_error == 0.04);
-  CHECK_FALSE(record.curve[0].sum_work);
-  CHECK(record.curve[1].sum_work == 10);
+  CHECK(record.threshold == 0.02);
+  CHECK(record.patches == 64);
+  REQUIRE(record.frontier.size() == 2);
+  CHECK(record.frontier[0].threshold == 0.02);
+  CHECK(record.frontier[0].worst_column_error == 0.04);
+  CHECK(record.frontier[0].kept_blocks == 5);
+  CHECK_FALSE(record.frontier[0].step_work);
+  CHECK(record.frontier[1].step_work == 10);
+  CHECK(record.frontier[1].worst_patch_force_error == 0.3);
 }
 
 TEST_CASE("every part of a build record may be missing") {
   const TemporaryFolder folder("build_record_test");
   const auto record = load_build_record(folder.write("b.json", R"({"stages": null, "compression": {}})"));
   CHECK(record.stages.empty());
-  CHECK(record.curve.empty());
-  CHECK_FALSE(record.epsilon);
+  CHECK(record.frontier.empty());
+  CHECK_FALSE(record.threshold);
 }
 
-TEST_CASE("points that cannot stand on a logarithmic axis are left out") {
+TEST_CASE("what cannot stand on a logarithmic axis is left out") {
   const TemporaryFolder folder("build_record_test");
-  const auto record = load_build_record(folder.write(
-      "b.json",
-      R"({"compression": {"curve": [{"epsilon": 0, "rms_error": 0}, {"rms_error": 1}, {"epsilon": 1, "rms_error": 0.5}]}})"));
-  REQUIRE(record.curve.size() == 1);
-  CHECK(record.curve[0].epsilon == 1);
+  const auto record = load_build_record(folder.write("b.json", R"({"compression": {"frontier": [{"rms_error": 1},
+    {"threshold": 1, "rms_error": 0, "bytes": 7, "worst_patch_force_error": 1e9}]}})"));
+  REQUIRE(record.frontier.size() == 1);
+  CHECK(record.frontier[0].bytes == 7);
+  CHECK_FALSE(record.frontier[0].rms_error);
+  CHECK_FALSE(record.frontier[0].worst_patch_force_error);
+}
+
+TEST_CASE("of several points with one threshold the one with the worse patch force is kept") {
+  const TemporaryFolder folder("build_record_test");
+  const auto record = load_build_record(folder.write("b.json", R"({"compression": {"frontier": [
+    {"threshold": 0.5, "worst_patch_force_error": 0.1}, {"threshold": 0.2, "worst_patch_force_error": 0.03},
+    {"threshold": 0.2, "worst_patch_force_error": 0.04}, {"threshold": 0.2, "worst_patch_force_error": 0.02}]}})"));
+  REQUIRE(record.frontier.size() == 2);
+  CHECK(record.frontier[0].threshold == 0.2);
+  CHECK(record.frontier[0].worst_patch_force_error == 0.04);
+  CHECK(record.frontier[1].worst_patch_force_error == 0.1);
 }
 
 TEST_CASE("a wrong build record is refused with file and key") {
@@ -65,20 +80,8 @@ TEST_CASE("a wrong build record is refused with file and key") {
   CHECK(mentions(refusal("[]"), "expected an object"));
   CHECK(mentions(refusal(R"({"stages": 3})"), "'stages' is number, expected an array"));
   CHECK(mentions(refusal(R"({"stages": [3]})"), "an element of 'stages' is number"));
-  CHECK(mentions(refusal(R"({"compression": {"epsilon": "x"}})"), "'epsilon' is string, expected a number"));
-}
-
-TEST_CASE("the chosen threshold joins the curve from its constraint level") {
-  const TemporaryFolder folder("build_record_test");
-  const auto record = load_build_record(folder.write("b.json", R"({"compression": {"epsilon": 0.3, "curve_columns": 192,
-    "curve": [{"epsilon": 0.4, "rms_error": 0.05, "bytes": 100}, {"epsilon": 0.2, "rms_error": 0.02, "bytes": 200}],
-    "constraint_levels": [{"level": 0, "epsilon": 0.35, "rms_error": 0.03, "columns": 2, "kept_blocks": 4},
-    {"level": 1, "epsilon": 0.3, "rms_error": 0.03, "columns": 10, "kept_blocks": 50, "bytes": 150}]}})"));
-  REQUIRE(record.curve.size() == 3);
-  CHECK(record.curve[1].epsilon == 0.3);
-  CHECK(record.curve[1].bytes == 150);
-  CHECK(record.curve[1].sum_work == 45);
-  CHECK(record.curve_columns == 192);
+  CHECK(mentions(refusal(R"({"compression": {"threshold": "x"}})"), "'threshold' is string, expected a number"));
+  CHECK(mentions(refusal(R"({"compression": {"frontier": [1]}})"), "an element of 'frontier' is number"));
 }
 
 TEST_CASE("provenance becomes groups of facts; what is no object becomes none") {

@@ -14,40 +14,72 @@ namespace {
 
 using layout::SectionKind;
 
-constexpr std::array<std::pair<SectionKind, const char*>, 9> kind_names{
+constexpr std::array<std::pair<SectionKind, const char*>, 8> kind_names{
     {{SectionKind::info, "info"},
      {SectionKind::provenance, "provenance"},
      {SectionKind::level, "levels"},
      {SectionKind::nodes, "nodes"},
      {SectionKind::base_triangles, "base triangles"},
      {SectionKind::refinement, "refinement"},
-     {SectionKind::columns, "columns"},
      {SectionKind::representatives, "representatives"},
-     {SectionKind::blocks, "wavelet blocks"}}};
+     {SectionKind::scales, "scales"}}};
+
+constexpr std::array<const char*, layout::strengths> coupling_names{"strong couplings", "medium couplings",
+                                                                    "weak couplings"};
 
 std::span<const layout::SectionEntry> section_entries(const ModelView& model) {
   return {reinterpret_cast<const layout::SectionEntry*>(model.header + 1), model.header->section_count};
 }
 
-std::string kind_name(std::uint32_t kind) {
-  for (const auto& [known, name] : kind_names) {
-    if (static_cast<std::uint32_t>(known) == kind) return name;
+std::string kind_name(const layout::SectionEntry& entry) {
+  if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings)) {
+    return coupling_names[entry.b % layout::strengths];
   }
-  return fmt::format("unknown kind {}", kind);
+  for (const auto& [known, name] : kind_names) {
+    if (static_cast<std::uint32_t>(known) == entry.kind) return name;
+  }
+  return fmt::format("unknown kind {}", entry.kind);
 }
 
-std::uint64_t block_bytes(const ModelView& model, std::uint32_t c) {
-  std::uint64_t bytes = 0;
+const layout::Level& finest_level(const ModelView& model) { return *model.level[model.levels - 1].counts; }
+
+/// Bytes of scales and couplings of mesh level q.
+std::uint64_t compliance_bytes(const ModelView& model, std::uint32_t q) {
+  const LevelView& level = model.level[q];
+  const std::uint32_t rows = level.domain_begin + level.counts->domain_count;
+  std::uint64_t bytes = level.details == nullptr ? 0 : level.counts->domain_count * sizeof(layout::Scale);
+  if (level.averages != nullptr) bytes += rows * sizeof(layout::Scale);
   for (const layout::SectionEntry& entry : section_entries(model)) {
-    if (entry.kind == static_cast<std::uint32_t>(SectionKind::blocks) && entry.a == c) bytes += entry.bytes;
+    if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings) && entry.a == q) bytes += entry.bytes;
   }
   return bytes;
 }
 
-const layout::Level& finest_constraint(const ModelView& model) {
-  std::uint32_t q = model.levels - 1;
-  while (q > 0 && model.level[q].counts->column_count == 0) --q;
-  return *model.level[q].counts;
+std::string wavelet_name(const ModelView& model) {
+  return model.info->wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
+}
+
+/// How many bits the couplings of each layer have, e.g. "16, 8, 4"; the widest if levels differ.
+std::string layer_bits(const ModelView& model) {
+  std::array<std::uint32_t, layout::strengths> bits{};
+  for (std::uint32_t q = 1; q < model.levels; ++q) {
+    for (const auto& partner : model.level[q].couplings) {
+      for (std::size_t s = 0; s < bits.size(); ++s) {
+        if (partner[s].columns > 0) bits[s] = std::max(bits[s], partner[s].value_bits);
+      }
+    }
+  }
+  std::string text;
+  for (const std::uint32_t width : bits) {
+    if (width > 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", width);
+  }
+  return text.empty() ? "16, one level only" : text;
+}
+
+std::string certificate(const ModelView& model) {
+  if (!(model.info->lambda_min > 0)) return "none";
+  return fmt::format("every eigenvalue is above {}\u202fm/N{}", readable(model.info->lambda_min, 3),
+                     model.levels < model.info->levels ? " (of the model before it was cut off)" : "");
 }
 
 std::string with_prefix(double value, const std::string& unit) {
@@ -78,19 +110,26 @@ FactGroup body_facts(const ModelView& model, const ModelSurface& surface) {
 }
 
 FactGroup compression_facts(const ModelView& model) {
-  const layout::Level& finest = finest_constraint(model);
+  const layout::Level& finest = finest_level(model);
   const auto dense = static_cast<double>(dense_bytes(model)), file = static_cast<double>(model.header->file_bytes);
   const double kept = static_cast<double>(std::max<std::uint64_t>(finest.kept_blocks, 1));
   return {"Compression",
           {{"model file", readable_bytes(file)},
-           {"dense columns, float32", readable_bytes(dense)},
+           {"dense compliance, float32", readable_bytes(dense)},
            {"smaller by", times(dense / file)},
            {"blocks kept",
             fmt::format("{} of {}", readable_count(finest.kept_blocks), readable_count(finest.dense_blocks))},
            {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
+           {"wavelet", wavelet_name(model)},
+           {"bits per value, strong to weak", layer_bits(model)},
            {"RMS error", readable_percent(finest.rms_error)},
            {"worst column's error", readable_percent(finest.worst_column_error)},
-           {"threshold ε", readable(model.info->epsilon)},
+           {"worst patch force's error", readable_percent(finest.patch_force_error)},
+           {"layers the field sums", fmt::format("{} of {}", model.info->field_layers, layout::strengths)},
+           {"field's RMS error", readable_percent(finest.field_rms_error)},
+           {"field's worst column", readable_percent(finest.field_column_error)},
+           {"positive definite", certificate(model)},
+           {"threshold", readable(model.info->threshold)},
            {"asymmetry of the exact columns", readable(model.info->store_asymmetry, 2)}}};
 }
 
@@ -110,7 +149,7 @@ std::vector<KindBytes> bytes_by_kind(const ModelView& model) {
   std::vector<KindBytes> kinds;
   std::uint64_t rest = model.header->file_bytes;
   for (const layout::SectionEntry& entry : section_entries(model)) {
-    const std::string name = kind_name(entry.kind);
+    const std::string name = kind_name(entry);
     auto at = std::find_if(kinds.begin(), kinds.end(), [&](const KindBytes& kind) { return kind.name == name; });
     if (at == kinds.end()) at = kinds.insert(kinds.end(), {name, 0});
     at->bytes += entry.bytes;
@@ -122,37 +161,46 @@ std::vector<KindBytes> bytes_by_kind(const ModelView& model) {
   return kinds;
 }
 
-std::uint64_t dense_bytes(const ModelView& model) { return finest_constraint(model).dense_blocks * 9 * sizeof(float); }
+std::uint64_t dense_bytes(const ModelView& model) { return finest_level(model).dense_blocks * 9 * sizeof(float); }
 
 std::vector<FactGroup> model_facts(const ModelView& model, const ModelSurface& surface) {
   return {body_facts(model, surface), compression_facts(model), loop_facts(model)};
 }
 
 Table level_table(const ModelView& model, const std::optional<TraceSummary>& trace) {
-  Table table{{"constraint level", "columns", "blocks per column", "of all blocks", "work per column", "block bytes",
-               "RMS error", "worst column", "patch force"},
+  Table table{{"constraint level", "nodes", "blocks", "of dense", "bytes", "RMS error", "worst column", "patch force"},
               {}};
   std::size_t answered = 0;
   if (trace) {
     table.head.emplace_back("cycles");
     for (const std::size_t count : trace->cycles_at_level) answered += count;
   }
+  std::uint64_t bytes = 0;
   for (std::uint32_t c = 0; c < model.levels; ++c) {
     const layout::Level& level = *model.level[c].counts;
-    if (level.column_count == 0) continue;
-    const double per_column = static_cast<double>(level.kept_blocks) / level.column_count;
+    bytes += compliance_bytes(model, c);
+    if (c < model.info->coarsest_constraint_level) continue;
     table.rows.push_back(
-        {fmt::format("{}", c), readable_count(level.column_count), readable(per_column, 4),
+        {fmt::format("{}", c), readable_count(model.level[c].domain_begin + level.domain_count),
+         readable_count(level.kept_blocks),
          readable_percent(static_cast<double>(level.kept_blocks) / static_cast<double>(level.dense_blocks)),
-         readable(9 * per_column, 4), readable_bytes(static_cast<double>(block_bytes(model, c))),
-         readable_percent(level.rms_error), readable_percent(level.worst_column_error),
-         readable_percent(level.force_error)});
+         readable_bytes(static_cast<double>(bytes)), readable_percent(level.rms_error),
+         readable_percent(level.worst_column_error), readable_percent(level.patch_force_error)});
     if (!trace) continue;
     const std::size_t used = c < trace->cycles_at_level.size() ? trace->cycles_at_level[c] : 0;
     table.rows.back().push_back(
         answered > 0 ? readable_percent(static_cast<double>(used) / static_cast<double>(answered)) : "–");
   }
   return table;
+}
+
+std::vector<LevelErrors> level_errors(const ModelView& model) {
+  std::vector<LevelErrors> errors;
+  for (std::uint32_t c = model.info->coarsest_constraint_level; c < model.levels; ++c) {
+    const layout::Level& level = *model.level[c].counts;
+    errors.push_back({c, level.rms_error, level.worst_column_error, level.patch_force_error});
+  }
+  return errors;
 }
 
 }  // namespace greenloop::offline

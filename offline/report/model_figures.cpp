@@ -22,80 +22,106 @@ Figure bar_figure(const std::string& name, const std::string& title, const std::
   return {name, title, caption, canvas.str()};
 }
 
-/// One panel of the error figure: a cost over the RMS error.
-struct CostCurve {
-  std::string quantity;
+using Quantity = std::optional<double> FrontierPoint::*;
+
+/// One panel of the frontier figure: a cost over an error.
+struct Panel {
+  std::string error;
+  std::string cost;
   std::string unit;
-  std::vector<ErrorPoint> points;
-  std::vector<double> costs;
+  std::vector<FrontierPoint> points;
+  std::vector<Point> data;
 };
 
-CostCurve cost_curve(const BuildRecord& record, const std::string& quantity, const std::string& unit,
-                     std::optional<double> ErrorPoint::*cost) {
-  CostCurve curve{quantity, unit, {}, {}};
-  for (const ErrorPoint& point : record.curve) {
-    if (!(point.*cost) || !(*(point.*cost) > 0)) continue;
-    curve.points.push_back(point);
-    curve.costs.push_back(*(point.*cost));
+Panel panel(const BuildRecord& record, const std::string& error, Quantity error_of, const std::string& cost,
+            const std::string& unit, Quantity cost_of) {
+  Panel result{error, cost, unit, {}, {}};
+  for (const FrontierPoint& point : record.frontier) {
+    if (!(point.*error_of) || !(point.*cost_of)) continue;
+    result.points.push_back(point);
+    result.data.push_back({*(point.*error_of), *(point.*cost_of)});
   }
-  return curve;
+  return result;
 }
 
-std::vector<CostCurve> cost_curves(const BuildRecord& record) {
-  std::vector<CostCurve> curves{cost_curve(record, "work of the sum", "units", &ErrorPoint::sum_work),
-                                cost_curve(record, "size", "B", &ErrorPoint::bytes)};
-  std::erase_if(curves, [](const CostCurve& curve) { return curve.points.size() < 2; });
-  return curves;
+std::vector<Panel> panels(const BuildRecord& record) {
+  const char* force = "worst patch force error";
+  const Quantity force_error = &FrontierPoint::worst_patch_force_error;
+  std::vector<Panel> all{panel(record, "RMS error", &FrontierPoint::rms_error, "size", "B", &FrontierPoint::bytes),
+                         panel(record, force, force_error, "size", "B", &FrontierPoint::bytes),
+                         panel(record, force, force_error, "work of a step", "units", &FrontierPoint::step_work)};
+  std::erase_if(all, [](const Panel& one) { return one.data.size() < 2; });
+  return all;
 }
 
-bool chosen(const BuildRecord& record, const ErrorPoint& point) {
-  return record.epsilon && std::abs(point.epsilon - *record.epsilon) <= 1e-9 * std::abs(*record.epsilon);
+bool chosen(const BuildRecord& record, const FrontierPoint& point) {
+  return record.threshold && std::abs(point.threshold - *record.threshold) <= 1e-9 * std::abs(*record.threshold);
 }
 
-/// Rings the chosen point; names its ε and that of others as far as their texts keep clear of each other.
+/// Rings the chosen point; names its threshold and that of others as far as their texts keep clear of each other.
 void label_thresholds(SvgCanvas& canvas, const SvgPlot& plot, const Rectangle& area, const BuildRecord& record,
-                      const std::vector<ErrorPoint>& points, const std::vector<Point>& data) {
-  constexpr double room = 58;
+                      const Panel& panel) {
+  constexpr double room = 48;
   std::vector<double> taken;
   const auto label = [&](std::size_t i, const std::string& colour, bool bold) {
-    const Point at = plot.at(data[i].x, data[i].y);
+    const Point at = plot.at(panel.data[i].x, panel.data[i].y);
     taken.push_back(at.x);
-    canvas.text({at.x + 9, at.y - 7}, fmt::format("ε = {}", readable(points[i].epsilon, 2)),
+    canvas.text({at.x + 9, at.y - 7}, readable(panel.points[i].threshold, 2),
                 {.paint = colour, .size = 11.5, .bold = bold});
   };
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    if (!chosen(record, points[i])) continue;
-    const Point at = plot.at(data[i].x, data[i].y);
+  for (std::size_t i = 0; i < panel.data.size(); ++i) {
+    if (!chosen(record, panel.points[i])) continue;
+    const Point at = plot.at(panel.data[i].x, panel.data[i].y);
     canvas.circle(at, 6.5, paint::page, {paint::vermilion, 2.4});
     canvas.circle(at, 3, paint::vermilion);
     label(i, paint::ink, true);
   }
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const double x = plot.at(data[i].x, data[i].y).x;
+  for (std::size_t i = 0; i < panel.data.size(); ++i) {
+    const double x = plot.at(panel.data[i].x, panel.data[i].y).x;
     const bool clear = std::none_of(taken.begin(), taken.end(), [&](double t) { return std::abs(t - x) < room; });
     if (clear && x < area.right() - 40) label(i, paint::muted, false);
   }
 }
 
-void draw_cost_curve(SvgCanvas& canvas, const Rectangle& area, const BuildRecord& record, const CostCurve& curve) {
-  std::vector<double> errors;
-  std::vector<Point> data;
-  for (std::size_t i = 0; i < curve.points.size(); ++i) {
-    errors.push_back(curve.points[i].rms_error);
-    data.push_back({errors.back(), curve.costs[i]});
+void draw_panel(SvgCanvas& canvas, const Rectangle& area, const BuildRecord& record, const Panel& panel) {
+  std::vector<double> errors, costs;
+  for (const Point& point : panel.data) {
+    errors.push_back(point.x);
+    costs.push_back(point.y);
   }
-  SvgPlot plot(canvas, area, logarithmic_axis("RMS error", "%", errors),
-               logarithmic_axis(curve.quantity, curve.unit, curve.costs));
-  std::vector<Point> by_error = data;
+  SvgPlot plot(canvas, area, logarithmic_axis(panel.error, "%", errors),
+               logarithmic_axis(panel.cost, panel.unit, costs));
+  std::vector<Point> by_error = panel.data;
   std::sort(by_error.begin(), by_error.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
   plot.curve(by_error, {paint::blue, 1.8});
-  plot.dots(data, 3.5, paint::blue);
-  label_thresholds(canvas, plot, area, record, curve.points, data);
-  std::vector<LegendEntry> legend{{curve.quantity + " over ε", {paint::blue, 2}}};
-  if (std::any_of(curve.points.begin(), curve.points.end(), [&](const ErrorPoint& p) { return chosen(record, p); })) {
+  plot.dots(panel.data, 3.5, paint::blue);
+  label_thresholds(canvas, plot, area, record, panel);
+  std::vector<LegendEntry> legend{{"tried", {paint::blue, 2}}};
+  if (std::any_of(panel.points.begin(), panel.points.end(),
+                  [&](const FrontierPoint& point) { return chosen(record, point); })) {
     legend.push_back({"chosen", {paint::vermilion}, true});
   }
   plot.legend(legend);
+}
+
+/// One curve of the level figure; errors of zero have no place on its axis.
+struct ErrorCurve {
+  const char* name;
+  const char* colour;
+  std::vector<Point> data;
+};
+
+std::vector<ErrorCurve> error_curves(const std::vector<LevelErrors>& levels) {
+  std::vector<ErrorCurve> curves{
+      {"RMS", paint::blue, {}}, {"worst column", paint::green, {}}, {"worst patch force", paint::vermilion, {}}};
+  for (const LevelErrors& level : levels) {
+    const double values[] = {level.rms, level.worst_column, level.patch_force};
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      if (values[i] > 0) curves[i].data.push_back({static_cast<double>(level.level), values[i]});
+    }
+  }
+  std::erase_if(curves, [](const ErrorCurve& curve) { return curve.data.empty(); });
+  return curves;
 }
 
 }  // namespace
@@ -113,26 +139,53 @@ Figure bytes_figure(const std::vector<KindBytes>& kinds) {
                     fmt::format("The model file's {} by kind of section.", readable_bytes(total)), bars);
 }
 
-bool has_error_curve(const BuildRecord& record) { return !cost_curves(record).empty(); }
+bool has_frontier(const BuildRecord& record) { return !panels(record).empty(); }
 
-Figure error_figure(const BuildRecord& record) {
-  constexpr double left = 74, top = 40, gap = 100, height = 250;
-  const auto curves = cost_curves(record);
-  const double width = (figure_width - left - 20 - gap) / 2;
+Figure frontier_figure(const BuildRecord& record) {
+  constexpr double left = 66, right = 16, top = 40, gap = 78, height = 230;
+  const auto drawn = panels(record);
+  const auto count = static_cast<double>(drawn.size());
+  const double width = (figure_width - left - right - gap * (count - 1)) / count;
   std::string caption =
-      "What the threshold ε buys: each point is the same set of Green's functions, compressed with another ε and "
-      "measured "
-      "against the exact columns. Down is cheaper, left is more exact.";
-  if (record.curve_columns)
-    caption += fmt::format(" Curve: {} sampled columns.", readable_count(*record.curve_columns));
-  if (record.epsilon) caption += fmt::format(" This model: ε = {}.", readable(*record.epsilon, 3));
-  SvgCanvas canvas(figure_width, top + height + 48, "Speed and size against error", caption);
+      "Each point is the same set of Green's functions compressed with another threshold, which is written beside it, "
+      "and measured against the exact columns. Down is cheaper, left is more exact.";
+  if (record.patches) caption += fmt::format(" Patch forces: {} patches.", readable_count(*record.patches));
+  if (record.threshold) caption += fmt::format(" This model: {}.", readable(*record.threshold, 3));
+  SvgCanvas canvas(figure_width, top + height + 48, "Size and speed against error", caption);
   double x = left;
-  for (const CostCurve& curve : curves) {
-    draw_cost_curve(canvas, {x, top, curves.size() == 1 ? 2 * width + gap : width, height}, record, curve);
+  for (const Panel& one : drawn) {
+    draw_panel(canvas, {x, top, width, height}, record, one);
     x += width + gap;
   }
-  return {"error", "Speed and size against error", caption, canvas.str()};
+  return {"frontier", "Size and speed against error", caption, canvas.str()};
+}
+
+bool has_level_errors(const std::vector<LevelErrors>& levels) { return !error_curves(levels).empty(); }
+
+Figure level_errors_figure(const std::vector<LevelErrors>& levels) {
+  constexpr double left = 74, top = 40, height = 200;
+  const std::string title = "Error of each constraint level";
+  const std::string caption =
+      "The compliance of each constraint level against the exact one: all of it, its worst column, and the nodal "
+      "forces "
+      "that hold its worst patch.";
+  SvgCanvas canvas(figure_width, top + height + 48, title, caption);
+  const auto curves = error_curves(levels);
+  std::vector<double> values;
+  for (const ErrorCurve& curve : curves) {
+    for (const Point& point : curve.data) values.push_back(point.y);
+  }
+  const PlotAxis across{
+      .label = "constraint level", .min = levels.front().level - 0.3, .max = levels.back().level + 0.3, .whole = true};
+  SvgPlot plot(canvas, {left, top, figure_width - left - 20, height}, across, logarithmic_axis("error", "%", values));
+  std::vector<LegendEntry> legend;
+  for (const ErrorCurve& curve : curves) {
+    plot.curve(curve.data, {curve.colour, 1.8});
+    plot.dots(curve.data, 3.5, curve.colour);
+    legend.push_back({curve.name, {curve.colour, 2}});
+  }
+  plot.legend(legend);
+  return {"level_errors", title, caption, canvas.str()};
 }
 
 Figure stages_figure(const std::vector<StageTime>& stages) {

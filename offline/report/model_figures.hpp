@@ -11,12 +11,18 @@ namespace greenloop::offline {
 /// Where the file's bytes go, by kind of section.
 [[nodiscard]] Figure bytes_figure(const std::vector<KindBytes>& kinds);
 
-/// Speed and size against error over the threshold, the chosen one marked; a side without data is left out.
-/// `record.curve` has at least two points, and some of them work or bytes.
-[[nodiscard]] Figure error_figure(const BuildRecord& record);
+/// Size over RMS error and over patch force error, work of a step over patch force error: what the build tried, the
+/// chosen one ringed. A panel of fewer than two points is left out; has_frontier(record) holds.
+[[nodiscard]] Figure frontier_figure(const BuildRecord& record);
 
-/// Whether error_figure has something to show.
-[[nodiscard]] bool has_error_curve(const BuildRecord& record);
+/// Whether frontier_figure has something to show.
+[[nodiscard]] bool has_frontier(const BuildRecord& record);
+
+/// The errors of each constraint level; has_level_errors(levels) holds.
+[[nodiscard]] Figure level_errors_figure(const std::vector<LevelErrors>& levels);
+
+/// Whether any error is above zero.
+[[nodiscard]] bool has_level_errors(const std::vector<LevelErrors>& levels);
 
 /// Seconds of each stage of the build; `stages` is not empty.
 [[nodiscard]] Figure stages_figure(const std::vector<StageTime>& stages);

@@ -53,9 +53,9 @@ std::vector<KeyFigure> key_figures(const Material& material) {
   keys.push_back({readable_count(material.model.node_count), "surface nodes"});
   keys.push_back({readable_bytes(file), "model file"});
   keys.push_back({readable(static_cast<double>(dense_bytes(material.model)) / file, 3) + "×", "smaller than dense"});
-  std::uint32_t finest = material.model.levels - 1;
-  while (finest > 0 && material.model.level[finest].counts->column_count == 0) --finest;
-  keys.push_back({readable_percent(material.model.level[finest].counts->rms_error), "RMS error"});
+  const layout::Level& finest = *material.model.level[material.model.levels - 1].counts;
+  keys.push_back({readable_percent(finest.field_rms_error), "RMS error of the field"});
+  keys.push_back({readable_percent(finest.patch_force_error), "worst error of a patch's forces"});
   return keys;
 }
 
@@ -103,12 +103,14 @@ void add_figure(Figure figure, HtmlPage& page, std::vector<Figure>& figures) {
 }
 
 void add_model(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
-  if (material.build && has_error_curve(*material.build)) add_figure(error_figure(*material.build), page, figures);
+  if (material.build && has_frontier(*material.build)) add_figure(frontier_figure(*material.build), page, figures);
   page.heading("Constraint levels");
   page.table(
       level_table(material.model, material.summary),
-      "Errors against the exact columns; work in multiply-adds to add up one column; patch force: worst relative error "
-      "of the total force of a sampled patch held at that level.");
+      "Errors of a level's compliance against the exact one; blocks and bytes of scales and couplings from level "
+      "0 up to it; patch force: worst relative error of the nodal forces that hold a sampled 64-node patch.");
+  const auto errors = level_errors(material.model);
+  if (has_level_errors(errors)) add_figure(level_errors_figure(errors), page, figures);
   add_figure(bytes_figure(bytes_by_kind(material.model)), page, figures);
 }
 
@@ -137,9 +139,9 @@ std::vector<MissingInput> missing_inputs(const Material& material, const std::fi
   const std::string build =
       fmt::format("greenloop build scene.toml -o {}\ngreenloop report {} --build {}", name, name, record);
   if (!material.build) {
-    missing.push_back({"Speed against error and the build's own figures: no --build was given", build});
-  } else if (!has_error_curve(*material.build)) {
-    missing.push_back({"Speed against error: the build record has no curve over ε with work or bytes", build});
+    missing.push_back({"Size and speed against error and the build's own figures: no --build was given", build});
+  } else if (!has_frontier(*material.build)) {
+    missing.push_back({"Size and speed against error: the build record has no frontier of bytes or work", build});
   }
   return missing;
 }

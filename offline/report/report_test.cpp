@@ -11,9 +11,11 @@
 
 #include "formats/model_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
 #include "offline/report/loop_figures.hpp"
 #include "offline/report/model_facts.hpp"
+#include "offline/report/model_figures.hpp"
 #include "offline/report/report_command.hpp"
 #include "offline/report/temporary_file.hpp"
 
@@ -63,8 +65,9 @@ struct Sample {
   }
   [[nodiscard]] std::filesystem::path build() const {
     return folder.write("build.json", R"({"scene": "ball & <co>", "stages": [{"name": "solve", "seconds": 2}],
-      "compression": {"epsilon": 0.02, "curve": [{"epsilon": 0.01, "rms_error": 0.01, "bytes": 2000, "sum_work": 900},
-      {"epsilon": 0.02, "rms_error": 0.02, "bytes": 1000, "sum_work": 500}]}})");
+      "compression": {"threshold": 0.02, "frontier": [
+      {"threshold": 0.01, "rms_error": 0.01, "worst_patch_force_error": 0.03, "bytes": 2000, "step_work": 900},
+      {"threshold": 0.02, "rms_error": 0.02, "worst_patch_force_error": 0.05, "bytes": 1000, "step_work": 500}]}})");
   }
   [[nodiscard]] Report report(bool complete) const {
     ReportInputs inputs{.model = model, .trace = {}, .snapshot = {}, .build = {}};
@@ -95,7 +98,8 @@ TEST_CASE("the command writes the complete report and every figure, the same as 
     CHECK(svg.starts_with("<?xml"));
     CHECK_FALSE(has(svg, "var("));
   }
-  CHECK(names == std::vector<std::string>{"body", "force", "work", "levels", "meshes", "error", "bytes", "stages"});
+  CHECK(names == std::vector<std::string>{"body", "force", "work", "levels", "meshes", "frontier", "level_errors",
+                                          "bytes", "stages"});
   CHECK(report.missing.empty());
   CHECK(report.html.size() < 2'000'000);
   const std::string text = without_pictures(report.html);
@@ -117,20 +121,20 @@ TEST_CASE("what is missing is named with the command that makes it, and nothing 
   CHECK(has(report.missing[2].command, "ball.build.json"));
   CHECK(has(report.html, "Not in this report"));
   for (const char* name :
-       {"id=\"body\"", "id=\"force\"", "id=\"work\"", "id=\"levels\"", "id=\"error\"", "misses in"}) {
+       {"id=\"body\"", "id=\"force\"", "id=\"work\"", "id=\"levels\"", "id=\"frontier\"", "misses in"}) {
     CAPTURE(name);
     CHECK_FALSE(has(report.html, name));
   }
   CHECK(has(report.html, "id=\"meshes\""));
 }
 
-TEST_CASE("a build record without a curve is missing its curve only") {
+TEST_CASE("a build record without a frontier is missing its frontier only") {
   const Sample sample;
   const auto build = sample.folder.write("build.json", "{}");
   const auto report =
       make_report(sample.file.view, {.model = sample.model, .trace = {}, .snapshot = {}, .build = build});
   REQUIRE(report.missing.size() == 3);
-  CHECK(has(report.missing[2].what, "no curve"));
+  CHECK(has(report.missing[2].what, "no frontier"));
 }
 
 TEST_CASE("misses are said and crossed") {
@@ -199,15 +203,88 @@ TEST_CASE("bytes by kind add up to the file") {
   CHECK(kinds.back().bytes >= sizeof(layout::Header));
 }
 
-TEST_CASE("one row per constraint level with columns") {
+TEST_CASE("one row per constraint level, with its errors") {
   const Sample sample;
   const Table plain = level_table(sample.file.view, {});
   REQUIRE(plain.rows.size() == 2);
   CHECK(plain.rows[0][0] == "1");
   CHECK(plain.rows[1].size() == plain.head.size());
+  CHECK(plain.rows[1][1] == readable_count(sample.file.view.domain_count));
+  CHECK(plain.rows[1][2] == readable_count(sample.file.view.level[2].counts->kept_blocks));
+  CHECK(plain.rows[1][5] == readable_percent(sample.file.view.level[2].counts->rms_error));
   const Table used = level_table(sample.file.view, summarise(load_trace(sample.trace(100, 1))));
   CHECK(used.rows[1].size() == used.head.size());
   CHECK(used.rows[1].back() == "50\u202f%");
+}
+
+TEST_CASE("the finest constraint level's bytes are all scales and couplings") {
+  const Sample sample;
+  std::uint64_t sum = 0;
+  std::vector<std::string> names;
+  for (const KindBytes& kind : bytes_by_kind(sample.file.view)) {
+    names.push_back(kind.name);
+    if (kind.name == "scales" || has(kind.name, "couplings")) sum += kind.bytes;
+  }
+  for (const char* name : {"scales", "strong couplings", "medium couplings", "weak couplings", "representatives"}) {
+    CAPTURE(name);
+    CHECK(std::count(names.begin(), names.end(), name) == 1);
+  }
+  CHECK(level_table(sample.file.view, {}).rows[1][4] == readable_bytes(static_cast<double>(sum)));
+}
+
+TEST_CASE("facts say wavelet, bits, layers and certificate") {
+  const TemporaryFolder folder("report_test");
+  const auto fact = [&](const ModelData& data, std::string_view name) {
+    write_file(folder.path() / "facts.gloop", encode(data));
+    const ModelFile file = open_model_file(folder.path() / "facts.gloop");
+    for (const FactGroup& group : model_facts(file.view, model_surface(file.view))) {
+      for (const Fact& one : group.facts) {
+        if (one.name == name) return one.value;
+      }
+    }
+    return std::string();
+  };
+  ModelData data = synthetic_model({.strong_bits = 16, .field_layers = 2, .lifted = false});
+  CHECK(fact(data, "wavelet") == "linear");
+  CHECK(fact(data, "bits per value, strong to weak") == "16, 8, 4");
+  CHECK(fact(data, "layers the field sums") == "2 of 3");
+  CHECK(fact(data, "positive definite") == "none");
+  data.info.lambda_min = 2.5e-5;
+  CHECK(fact(data, "positive definite") == "every eigenvalue is above 2.5e-05\u202fm/N");
+  data = synthetic_model({.levels = 1});
+  CHECK(fact(data, "wavelet") == "lifted linear");
+  CHECK(fact(data, "bits per value, strong to weak") == "16, one level only");
+}
+
+TEST_CASE("the frontier has a panel for every pair of figures that two points have") {
+  BuildRecord record;
+  CHECK_FALSE(has_frontier(record));
+  record.frontier.resize(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    record.frontier[i].threshold = 0.1 * static_cast<double>(i + 1);
+    record.frontier[i].rms_error = record.frontier[i].threshold;
+  }
+  record.frontier[0].bytes = 10;
+  CHECK_FALSE(has_frontier(record));
+  record.frontier[1].bytes = 5;
+  REQUIRE(has_frontier(record));
+  CHECK(has(frontier_figure(record).svg, "RMS error"));
+  CHECK_FALSE(has(frontier_figure(record).svg, "patch force error"));
+  CHECK_FALSE(has(frontier_figure(record).svg, ">chosen<"));
+  record.threshold = 0.2;
+  for (FrontierPoint& point : record.frontier) point.worst_patch_force_error = point.step_work = point.threshold;
+  const Figure all = frontier_figure(record);
+  CHECK(has(all.svg, "work of a step"));
+  CHECK(has(all.svg, ">chosen<"));
+}
+
+TEST_CASE("level errors of zero have no place in the figure") {
+  CHECK_FALSE(has_level_errors({{.level = 0}, {.level = 1}}));
+  const Figure figure = level_errors_figure({{.level = 2, .rms = 0.01, .worst_column = 0.03}});
+  CHECK(has(figure.svg, "worst column"));
+  CHECK_FALSE(has(figure.svg, ">worst patch force<"));
+  CHECK_FALSE(has(figure.svg, "nan"));
+  CHECK_FALSE(has(figure.svg, "inf"));
 }
 
 TEST_CASE("an output that cannot be written is an error that names it") {

@@ -47,7 +47,10 @@ struct Remesh {
 struct AccuracyGoal {
   double rms = 0.02;          ///< ||error||_F / ||exact||_F over all columns, 0..1
   double worst_column = 0.1;  ///< largest block-wise relative error of any column, 0..1
+  double patch_force = 0.05;  ///< largest relative error of the nodal forces that hold a 64-node patch, 0..10
 };
+
+enum class WaveletChoice { lifted_linear, linear };
 
 struct StepBudget {
   double rate = 1000;                ///< steps per second [Hz]
@@ -65,6 +68,7 @@ struct Scene {
   std::vector<Region> read;      ///< none: everything that is not fixed
   int coarsest_constraints = 0;  ///< coarsest level offered for contacts, 0..remesh.levels
   AccuracyGoal accuracy;
+  WaveletChoice wavelet = WaveletChoice::lifted_linear;
   StepBudget budget;
   std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory
   std::string store_name;                      ///< as the scene says

@@ -181,9 +181,23 @@ void read_constraints(const Table& scene, int levels, int& coarsest) {
 
 void read_accuracy(const Table& scene, AccuracyGoal& accuracy) {
   constexpr Interval error{0, 1, true, true};
-  if (const auto table = section(scene, "accuracy", {"rms", "worst_column"})) {
+  if (const auto table = section(scene, "accuracy", {"rms", "worst_column", "patch_force"})) {
     set_if(accuracy.rms, table->number("rms", error));
     set_if(accuracy.worst_column, table->number("worst_column", error));
+    set_if(accuracy.patch_force, table->number("patch_force", {0, 10, true, true}));
+  }
+}
+
+void read_compression(const Table& scene, WaveletChoice& wavelet) {
+  const auto table = section(scene, "compression", {"wavelet"});
+  const auto name = table ? table->string("wavelet") : std::nullopt;
+  if (!name) {
+    return;
+  }
+  if (*name == "linear") {
+    wavelet = WaveletChoice::linear;
+  } else if (*name != "lifted linear") {
+    table->refuse("wavelet", "\"" + *name + "\" is no wavelet; there are \"lifted linear\" and \"linear\"");
   }
 }
 
@@ -223,7 +237,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   Problems problems(file.string());
   const Table table(toml, "",
                     {"surface", "volume", "remesh", "material", "fixed", "touched", "read", "constraints", "accuracy",
-                     "budget", "store"},
+                     "compression", "budget", "store"},
                     problems);
   Scene scene;
   read_mesh(table, file, scene.mesh);
@@ -238,6 +252,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   read_regions(table, "read", scene.read);
   read_constraints(table, scene.remesh.levels, scene.coarsest_constraints);
   read_accuracy(table, scene.accuracy);
+  read_compression(table, scene.wavelet);
   read_budget(table, scene.budget);
   read_store(table, file, scene);
   problems.throw_if_any();

@@ -65,6 +65,8 @@ TEST_CASE("the smallest scene gets the documented defaults") {
   CHECK(scene.coarsest_constraints == 0);
   CHECK(scene.accuracy.rms == 0.02);
   CHECK(scene.accuracy.worst_column == 0.1);
+  CHECK(scene.accuracy.patch_force == 0.05);
+  CHECK(scene.wavelet == WaveletChoice::lifted_linear);
   CHECK(scene.budget.rate == 1000);
   CHECK_FALSE(scene.budget.work);
   CHECK(scene.budget.contacts == 16);
@@ -98,6 +100,9 @@ TEST_CASE("every key is read") {
     [accuracy]
     rms = 0.01
     worst_column = 0.1
+    patch_force = 0.2
+    [compression]
+    wavelet = "linear"
     [budget]
     rate = "500 Hz"
     work = 123456
@@ -124,6 +129,8 @@ TEST_CASE("every key is read") {
   CHECK(scene.coarsest_constraints == 2);
   CHECK(scene.accuracy.rms == 0.01);
   CHECK(scene.accuracy.worst_column == 0.1);
+  CHECK(scene.accuracy.patch_force == 0.2);
+  CHECK(scene.wavelet == WaveletChoice::linear);
   CHECK(scene.budget.rate == 500);
   CHECK(scene.budget.work == 123456);
   CHECK(scene.budget.contacts == 64);
@@ -390,6 +397,26 @@ TEST_CASE("refused: an accuracy of zero") {
 
 TEST_CASE("refused: a worst column of one") {
   check_refused(smallest + "[accuracy]\nworst_column = 1.0\n", {"accuracy.worst_column: 1 is out of range"});
+}
+
+TEST_CASE("a patch force may be off by more than itself, but neither not at all nor tenfold") {
+  CHECK(parse_scene(smallest + "[accuracy]\npatch_force = 1.5\n", "s.toml").accuracy.patch_force == 1.5);
+  check_refused(smallest + "[accuracy]\npatch_force = 0\n", {"accuracy.patch_force: 0 is out of range"});
+  check_refused(smallest + "[accuracy]\npatch_force = 10\n", {"accuracy.patch_force: 10 is out of range"});
+}
+
+TEST_CASE("refused: a wavelet that is none") {
+  check_refused(smallest + "[compression]\nwavelet = \"haar\"\n", {"compression.wavelet: \"haar\" is no wavelet"});
+  check_refused(smallest + "[compression]\nwavelt = \"linear\"\n", {"did you mean \"wavelet\"?"});
+}
+
+TEST_CASE("patch force and wavelet are part of the canonical text") {
+  for (const char* key : {"[accuracy]\npatch_force = 0.2\n", "[compression]\nwavelet = \"linear\"\n"}) {
+    CAPTURE(key);
+    const auto canonical = canonical_text(parse_scene(smallest + key, "s.toml"));
+    CHECK(canonical != canonical_text(parse_scene(smallest, "s.toml")));
+    CHECK(canonical_text(parse_scene(canonical, "s.toml")) == canonical);
+  }
 }
 
 TEST_CASE("refused: a rate without unit") {

@@ -78,7 +78,13 @@ std::string material_text(const Material& material) {
 }
 
 std::string accuracy_text(const AccuracyGoal& accuracy) {
-  return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) + "\n";
+  return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) +
+         "\npatch_force = " + number(accuracy.patch_force) + "\n";
+}
+
+std::string compression_text(WaveletChoice wavelet) {
+  return std::string("\n[compression]\nwavelet = \"") +
+         (wavelet == WaveletChoice::linear ? "linear" : "lifted linear") + "\"\n";
 }
 
 std::string budget_text(const StepBudget& budget) {
@@ -94,7 +100,7 @@ std::string canonical_text(const Scene& scene) {
          regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) +
          regions_text("read", scene.read) +
          "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
-         accuracy_text(scene.accuracy) + budget_text(scene.budget) +
+         accuracy_text(scene.accuracy) + compression_text(scene.wavelet) + budget_text(scene.budget) +
          (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
 }
 

@@ -16,7 +16,7 @@ struct Rung {
   std::uint64_t work = 0;  ///< units, median over the sets, factor cached
   double step_us = 0;      ///< median
   double rms_error = 0;    ///< of the field, against the exact solution at the finest level
-  double force_error = 0;  ///< worst of the total force
+  double force_error = 0;  ///< worst of the contact forces
 };
 
 /// A contact count measured: a whole step (cached factor, forces, field of every node) beside its yardsticks.
@@ -30,7 +30,8 @@ struct FieldFigures {
   double same_set_dense_ratio = 0;  ///< the same with one set over and over, all of it in the cache
   double backsolve_ratio = 0;       ///< one sparse back-substitution / step
   double rms_error = 0;             ///< ||u^ - u||_F / ||u||_F over all sets, exact forces and columns
-  double force_error = 0;           ///< worst relative error of a set's total force
+  double force_error = 0;           ///< worst ||f^ - f|| / ||f|| of a set's contact forces
+  double total_force_error = 0;     ///< worst relative error of a set's total force
   std::uint64_t work = 0;           ///< units of a step, median over the sets
   std::vector<Rung> rungs;          ///< finest first
 };

@@ -71,8 +71,8 @@ class Mutator {
 TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
   MESSAGE("seed ", seed, ", ", mutations, " mutations");
   Mutator mutator({encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
-                   encode(synthetic_model({.levels = 2, .value_bytes = 2})),
-                   encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .dense = true}))});
+                   encode(synthetic_model({.levels = 3, .epsilon = 0.2})),
+                   encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .strong_bits = 16}))});
   int accepted = 0;
   std::array<int, 64> refused{};
   for (int i = 0; i < mutations; ++i) {
@@ -106,9 +106,11 @@ TEST_CASE("walk_view sees what verify must prevent") {
   parents[0].parent[1] += 6;
   CHECK_FALSE(walk_view(mutant.bytes(), view));
   parents[0].parent[1] -= 6;
-  const auto& blocks = *mutant.records<layout::BlocksHeader>(layout::SectionKind::blocks, 1, 1);
-  auto* index = mutant.records<std::uint16_t>(layout::SectionKind::blocks, 1, 1, blocks.index_offset);
-  index[3] = static_cast<std::uint16_t>(blocks.rows);
+  constexpr std::uint16_t same = layout::coupling_index(layout::Partner::same, layout::Strength::strong);
+  const auto& couplings = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, same);
+  auto* index = mutant.records<std::uint16_t>(layout::SectionKind::couplings, 1, same, couplings.index_offset);
+  REQUIRE(couplings.block_count > 3);
+  index[3] = 7;
   CHECK_FALSE(walk_view(mutant.bytes(), view));
 }
 

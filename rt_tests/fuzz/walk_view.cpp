@@ -26,8 +26,8 @@ class Walk {
       if (!level(q)) return false;
     }
     for (std::uint32_t c = 0; c < view_.levels; ++c) {
-      for (std::uint32_t r = 0; r < view_.levels; ++r) {
-        if (!representatives(c, r) || !blocks(c, r)) return false;
+      for (std::uint32_t q = 0; q < view_.levels; ++q) {
+        if (!representatives(c, q)) return false;
       }
     }
     return true;
@@ -35,7 +35,8 @@ class Walk {
 
  private:
   [[nodiscard]] std::uint32_t count(std::uint32_t q) const { return view_.level[q].counts->node_count; }
-  [[nodiscard]] std::uint32_t columns(std::uint32_t c) const { return view_.level[c].counts->column_count; }
+  [[nodiscard]] std::uint32_t domain(std::uint32_t q) const { return view_.level[q].counts->domain_count; }
+  [[nodiscard]] std::uint32_t domain_of_mesh(std::uint32_t q) const { return view_.level[q].domain_begin + domain(q); }
   [[nodiscard]] std::size_t triangle_corners() const {
     return std::size_t{3} * view_.level[0].counts->base_triangle_count;
   }
@@ -55,51 +56,91 @@ class Walk {
 
   bool level(std::uint32_t q) const {
     const LevelView& level = view_.level[q];
-    if (!array(level.counts, 1) || !array(level.nodes, count(q)) || (q > 0 && !array(level.refinement, count(q))) ||
-        !array(level.columns, columns(q))) {
+    if (!array(level.counts, 1) || !array(level.nodes, count(q)) || (q > 0 && !array(level.refinement, count(q)))) {
       return false;
     }
     const auto coarser = [&](const layout::RefinementRecord& record) {
       return record.parent[0] < level.node_begin && record.parent[1] < level.node_begin;
     };
     return all(level.nodes, count(q), [](const auto& node) { return std::isfinite(node.position[2] + node.area); }) &&
-           (q == 0 || all(level.refinement, count(q), coarser)) &&
-           all(level.columns, columns(q),
-               [&](const auto& column) { return column.node < level.node_begin + count(q); });
+           (q == 0 || all(level.refinement, count(q), coarser)) && scales(q) && all_couplings(q);
+  }
+
+  bool scales(std::uint32_t q) const {
+    const LevelView& level = view_.level[q];
+    const auto right = [](const layout::Scale& scale) {
+      return scale.root[0] > 0 && scale.diagonal[0] > 0 && std::isfinite(scale.root[5] + scale.diagonal[5]);
+    };
+    const bool has_averages = q == 0 || q + 2 < view_.levels;
+    if ((level.averages != nullptr) != has_averages || (level.details != nullptr) != (q > 0)) return false;
+    if (has_averages && (!array(level.averages, domain_of_mesh(q)) || !all(level.averages, domain_of_mesh(q), right))) {
+      return false;
+    }
+    return q == 0 || (array(level.details, domain(q)) && all(level.details, domain(q), right));
   }
 
   bool representatives(std::uint32_t c, std::uint32_t q) const {
-    const std::uint32_t* column_of = view_.representatives[c][q];
-    if (columns(c) == 0) return column_of == nullptr;
-    return array(column_of, count(q)) && all(column_of, count(q), [&](std::uint32_t column) {
-             return column < columns(c) || column == layout::none;
-           });
+    const std::uint32_t* node_of = view_.representatives[c][q];
+    if (c < view_.info->coarsest_constraint_level) return node_of == nullptr;
+    const std::uint32_t end = view_.level[c].node_begin + count(c);
+    return array(node_of, count(q)) &&
+           all(node_of, count(q), [&](std::uint32_t node) { return node < end || node == layout::none; });
   }
 
-  bool blocks(std::uint32_t c, std::uint32_t r) const {
-    const BlocksView& blocks = view_.blocks[c][r];
-    if (columns(c) == 0) return blocks.value == nullptr;
-    if (blocks.columns != columns(c) || !array(blocks.begin, blocks.columns + 1ull) ||
-        !array(blocks.scale, blocks.columns)) {
-      return false;
+  bool all_couplings(std::uint32_t q) const {
+    const std::uint32_t rows[] = {domain_of_mesh(q < 2 ? 0 : q - 2), q < 2 ? 0 : domain(q - 1), domain(q)};
+    for (std::size_t partner = 0; partner < 3; ++partner) {
+      for (std::size_t strength = 0; strength < layout::strengths; ++strength) {
+        const CouplingsView& couplings = view_.level[q].couplings[partner][strength];
+        const bool exists = partner == 2 ? q > 0 || strength == 0 : partner == 1 ? q > 1 : q > 0;
+        if (!exists && couplings.value == nullptr && couplings.columns == 0) continue;
+        if (!exists || couplings.columns != domain(q) || couplings.rows != rows[partner] ||
+            !sound(couplings, partner == 2)) {
+          return false;
+        }
+      }
     }
-    if (!all(blocks.scale, blocks.columns, [](float scale) { return std::isfinite(scale) && scale >= 0; }))
-      return false;
-    const std::uint64_t block_count = blocks.begin[blocks.columns];
-    return indices(blocks, block_count) &&
-           (blocks.value_bytes == 1 ? values(static_cast<const std::int8_t*>(blocks.value), block_count)
-                                    : values(static_cast<const std::int16_t*>(blocks.value), block_count));
+    return true;
   }
 
-  bool indices(const BlocksView& blocks, std::uint64_t block_count) const {
-    const auto in_rows = [&](auto row) { return row < blocks.rows; };
-    if (blocks.index_bytes == 0) return block_count == std::uint64_t{blocks.columns} * blocks.rows;
-    if (blocks.index_bytes == 2) {
-      const auto* index = static_cast<const std::uint16_t*>(blocks.index);
-      return array(index, block_count) && all(index, block_count, in_rows);
+  bool sound(const CouplingsView& couplings, bool triangular) const {
+    if (!array(couplings.begin, couplings.columns + 1ull) || !(couplings.quantum >= 0 && couplings.quantum <= 1)) {
+      return false;
     }
-    const auto* index = static_cast<const std::uint32_t*>(blocks.index);
-    return array(index, block_count) && all(index, block_count, in_rows);
+    const std::uint64_t block_count = couplings.begin[couplings.columns];
+    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+      if (couplings.begin[j] > couplings.begin[j + 1] || couplings.begin[j + 1] > block_count) return false;
+    }
+    if (!indices(couplings, block_count, triangular)) return false;
+    switch (couplings.value_bits) {
+      case 4:
+        return array(couplings.value, 5 * block_count + 16);
+      case 8:
+        return values(reinterpret_cast<const std::int8_t*>(couplings.value), block_count);
+      default:
+        return values(reinterpret_cast<const std::int16_t*>(couplings.value), block_count);
+    }
+  }
+
+  bool indices(const CouplingsView& couplings, std::uint64_t block_count, bool triangular) const {
+    if (couplings.index_bytes == 0) {
+      const std::uint64_t columns = couplings.columns;
+      return triangular && 2 * block_count == columns * columns - columns;
+    }
+    return couplings.index_bytes == 2
+               ? in_rows(couplings, static_cast<const std::uint16_t*>(couplings.index), block_count, triangular)
+               : in_rows(couplings, static_cast<const std::uint32_t*>(couplings.index), block_count, triangular);
+  }
+
+  template <class Index>
+  bool in_rows(const CouplingsView& couplings, const Index* index, std::uint64_t block_count, bool triangular) const {
+    if (!array(index, block_count)) return false;
+    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+      for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
+        if (index[b] >= (triangular ? j : couplings.rows)) return false;
+      }
+    }
+    return true;
   }
 
   // a kernel may load 16 bytes beyond the last value

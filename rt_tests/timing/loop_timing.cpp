@@ -8,7 +8,8 @@
 
 #include "formats/model_file.hpp"
 #include "runtime/body.hpp"
-#include "runtime/lu.hpp"
+#include "runtime/field.hpp"
+#include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -79,40 +80,41 @@ void time_steps(const TestModel& model, std::size_t count) {
 
 void time_kernels(const TestModel& model) {
   const ModelView& view = model.view();
-  const Limits limits{.max_contacts = 16, .cached_factors = 1};
-  const BodySizes sizes = measure_body(view, limits);
-  Arena counting;
-  place_body(counting, view, sizes);
-  AlignedBytes memory(static_cast<std::size_t>(counting.bytes()));
-  Arena arena(memory.data());
-  const Body& body = *place_body(arena, view, sizes);
+  const PlacedBody placed(view, 16);
+  Body& body = *placed.body;
   std::vector<Float4> x(view.node_count);
-
-  std::uint32_t c = view.levels - 1;
-  while (view.level[c].counts->column_count == 0) {
-    --c;
-  }
-  const std::uint32_t columns = view.level[c].counts->column_count;
-  std::vector<std::uint32_t> chosen(16);
-  std::uint64_t blocks = 0;
-  for (std::uint32_t k = 0; k < 16; ++k) {
-    chosen[k] = k * (columns / 16);
-    blocks += column_blocks(view, c, chosen[k], view.levels - 1);
-  }
-  const float force[3] = {1e-9F, 2e-9F, 3e-9F};
-  const double sum = median_nanoseconds(20, [&](int) {
-    for (const std::uint32_t j : chosen) {
-      add_column(view, c, j, force, view.levels - 1, x.data());
-    }
+  std::mt19937_64 random(3);
+  const auto contacts = patch(model, random, 16);
+  const std::uint32_t c = view.levels - 1;
+  resolve_contacts(contacts, view, body.facts, c, body.set);
+  const double touching = median_nanoseconds(20, [&](int) {
+    clear(body.touched);
+    touch(body.refinement, body.coefficients, c, body.set.column, body.set.columns, body.touched);
   });
-  std::fill(x.begin(), x.end(), splat3(1e-3F));
-  const double transform =
-      median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, view.levels - 1, x.data()); });
-  std::printf("%u nodes, %u in the domain, %u columns; 16 columns hold %llu blocks of %u bytes a value\n",
-              view.node_count, view.domain_count, columns, static_cast<unsigned long long>(blocks),
-              view.blocks[c][0].value_bytes);
-  std::printf("sum of 16 columns   %8.0f ns, %6.3f ns/block\n", sum, sum / static_cast<double>(blocks));
+  const SetCounts counts =
+      count_set(view, body.coefficients, body.couplings, body.set, body.touched, contacts.size(), body.cost[c]);
+  const double field = median_nanoseconds(20, [&](int) {
+    for (std::uint32_t k = 0; k < body.set.columns; ++k) {
+      body.force[body.set.column[k]] = splat3(1e-3F);
+    }
+    compute_field({body.refinement, body.coefficients, body.couplings}, body.touched, c, body.force, body.sum,
+                  x.data());
+  });
+  std::vector<Float4> matrix(144 * 16);
+  const double capacitance = median_nanoseconds(2, [&](int) {
+    assemble_capacitance({body.refinement, body.coefficients, body.couplings}, body.set, body.touched, body.capacitance,
+                         body.force, matrix.data());
+  });
+  const double transform = median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, c, {}, x.data()); });
+  const auto blocks = static_cast<double>(counts.blocks[c]);
+  std::printf("%u nodes, %u in the domain; 16 contacts touch %llu coefficients, %.0f blocks of the field\n",
+              view.node_count, view.domain_count, static_cast<unsigned long long>(counts.coefficients), blocks);
+  std::printf("touch               %8.0f ns\n", touching);
+  std::printf("field               %8.0f ns, %6.3f ns/block\n", field, field / blocks);
   std::printf("inverse transform   %8.0f ns, %6.3f ns/node\n", transform, transform / view.domain_count);
+  std::printf("capacitance column  %8.0f ns, %6.3f ns/block of %.0f\n", capacitance / body.set.columns,
+              capacitance / static_cast<double>(counts.column_blocks),
+              static_cast<double>(counts.column_blocks) / body.set.columns);
 }
 
 void run(const TestModel& model) {
@@ -130,7 +132,7 @@ int main(int argc, char** argv) {
   if (argc > 1) {
     run(TestModel(load_file(argv[1]).span()));
   } else {
-    run(TestModel(SyntheticOptions{.levels = 6, .value_bytes = 1, .epsilon = 0.03, .touchable_above = 0.7}));
+    run(TestModel(SyntheticOptions{.levels = 5, .field_layers = 1, .touchable_above = 0.5}));
   }
   return 0;
 }

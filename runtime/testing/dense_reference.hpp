@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <span>
 #include <vector>
 
@@ -9,9 +10,34 @@
 
 namespace greenloop {
 
-/// The columns that a file holds for constraint level c, decoded and inverse transformed in double precision straight
-/// from the definition: 3 * nodes by 3 * columns, m/N.
-[[nodiscard]] Eigen::MatrixXd decode_columns(const ModelView& view, std::uint32_t c);
+/// T_q^-1 by its definition: from the averages of level q-1 and the details of level q to the averages of level q,
+/// three rows and columns a domain node.
+[[nodiscard]] Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q);
+
+/// The compliances that a file stands for, as dense matrices in double precision by the definition in
+/// formats/layout.hpp: 3 rows and columns per domain node, by place in the domain. For tests: plain and slow.
+class DenseReference {
+ public:
+  explicit DenseReference(const ModelView& view);
+
+  /// Between the averages of level c, with 1 to 3 layers of couplings; m/N.
+  [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c, std::uint32_t layers) const {
+    return compliance_[layers - 1][c];
+  }
+  /// Displacement of the domain per force of level c, as far as the file knows: 3 domain by 3 |K(c)|.
+  [[nodiscard]] Eigen::MatrixXd field(std::uint32_t c, std::uint32_t layers) const;
+  /// The same with the layers that the file asks for.
+  [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
+  /// The averages of level q of displacements of the domain.
+  [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;
+
+ private:
+  const ModelView& view_;
+  std::vector<Eigen::SparseMatrix<double>> inverse_;         // T_l^-1
+  std::vector<Eigen::MatrixXd> coupled_[layout::strengths];  // B'_l: details l, by averages l-2 and details l-1
+  std::vector<Eigen::MatrixXd> compliance_[layout::strengths];
+  std::vector<Eigen::MatrixXd> field_;
+};
 
 struct DenseAnswer {
   Eigen::VectorXd force;         ///< 3 per contact, N
@@ -19,8 +45,9 @@ struct DenseAnswer {
   double condition = 0;          ///< of the capacitance matrix
 };
 
-/// The capacitance matrix algorithm on decoded columns, in double precision with a complete factorisation.
-[[nodiscard]] DenseAnswer solve_dense(const ModelView& view, std::uint32_t c, const Eigen::MatrixXd& columns,
+/// The capacitance matrix algorithm on dense matrices in double precision with a complete factorisation; the field with
+/// as many layers as the file asks for.
+[[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t c,
                                       std::span<const Contact> contacts);
 
 }  // namespace greenloop

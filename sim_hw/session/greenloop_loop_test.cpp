@@ -24,7 +24,7 @@ class Workspace {
     std::filesystem::create_directories(folder_);
     ModelData data = synthetic_model({.levels = 5, .touchable_above = -0.2});
     data.info.max_contacts = 16;
-    data.info.step_work = 60000;
+    data.info.step_work = 700000;
     write_file(model(), encode(data));
   }
   Workspace(const Workspace&) = delete;
@@ -75,8 +75,8 @@ TEST_CASE("in one process every cycle holds its budget, and every run has the sa
   CHECK(json["misses"] == 0);
   CHECK(json["late"] == 0);
   CHECK(json["allocations"] == 0);
-  CHECK(json["budget_work"] == 60000);
-  CHECK(json["worst_work"] <= 60000);
+  CHECK(json["budget_work"] == 700000);
+  CHECK(json["worst_work"] <= 700000);
   CHECK(json["worst_work"] > 0);
   CHECK(json["contacts_max"] >= 3);
   CHECK(json["force_max"] > 1.0);
@@ -122,12 +122,12 @@ TEST_CASE("where namespaces are refused, auto says so and runs in one process, a
 
 TEST_CASE("starved, it answers at coarser levels and misses nothing") {
   const auto fed = run_json({"--transport", "memq"});
-  const auto starved = run_json({"--transport", "memq", "--starve", "0.42"});
+  const auto starved = run_json({"--transport", "memq", "--starve", "0.06"});
   CHECK(cycles_below(fed, 4) == 0);
   CHECK(cycles_below(starved, 4) > 50);
   CHECK(starved["misses"] == 0);
-  CHECK(starved["budget_work"] == 25200);
-  CHECK(starved["worst_work"] <= 25200);
+  CHECK(starved["budget_work"] == 42000);
+  CHECK(starved["worst_work"] <= 42000);
   CHECK(starved["digest"] != fed["digest"]);
 }
 

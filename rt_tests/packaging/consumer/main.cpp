@@ -43,7 +43,11 @@ int main(int argc, char** argv) {
   if (!opened) {
     return 65;
   }
-  touched_node = opened.model.view().level[opened.model.level_count() - 1].columns[0].node;
+  const auto& finest = opened.model.view().level[opened.model.level_count() - 1];
+  touched_node = finest.node_begin;
+  while ((finest.nodes[touched_node - finest.node_begin].flags & greenloop::layout::node_touchable) == 0) {
+    ++touched_node;
+  }
   const int status = control_loop(file, sense, actuate);
   std::printf("status %d after %d cycles, total force %g N\n", status, cycles, total_force);
   return status == 0 && cycles == 101 && total_force > 0 ? 0 : 1;

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/writer.hpp"
+
+namespace greenloop {
+
+/// The wavelet transform of docs/theory.md on dense matrices over the domain nodes of a model, three rows and columns a
+/// node, coarse to fine. For tests only: plain and slow, to compare others with.
+class DenseWavelet {
+ public:
+  /// Of the nodes and the refinement of `model`.
+  explicit DenseWavelet(const ModelData& model);
+
+  /// L + 1.
+  [[nodiscard]] std::uint32_t levels() const { return static_cast<std::uint32_t>(end_.size()); }
+  /// Domain nodes of K(q).
+  [[nodiscard]] Eigen::Index end(std::uint32_t q) const { return end_[q]; }
+  /// Domain nodes of all levels coarser than q.
+  [[nodiscard]] Eigen::Index begin(std::uint32_t q) const { return q == 0 ? 0 : end_[q - 1]; }
+  /// The place of a node, given by its file index, in the domain; -1 outside.
+  [[nodiscard]] Eigen::Index domain_index(std::uint32_t node) const { return domain_index_[node]; }
+
+  /// x [3 end(q) x k] -> T_q x: averages on K(q-1), then the details of level q. Work: 12 end(q) k.
+  void forward(std::uint32_t q, Eigen::Ref<Eigen::MatrixXd> x) const;
+  /// x [3 end(q) x k] -> T_q^-1 x.
+  void inverse(std::uint32_t q, Eigen::Ref<Eigen::MatrixXd> x) const;
+  /// x [k x 3 end(q)] -> x T_q^T.
+  void forward_columns(std::uint32_t q, Eigen::Ref<Eigen::MatrixXd> x) const;
+  /// x [k x 3 end(q)] -> x T_q^-T.
+  void inverse_columns(std::uint32_t q, Eigen::Ref<Eigen::MatrixXd> x) const;
+
+ private:
+  struct Odd {
+    std::array<Eigen::Index, 2> parent;  // in the domain; -1 outside
+    std::array<double, 2> lift;
+  };
+  template <class Vector>
+  void step_forward(std::uint32_t q, Vector at) const;
+  template <class Vector>
+  void step_back(std::uint32_t q, Vector at) const;
+
+  std::vector<Eigen::Index> end_;
+  std::vector<Eigen::Index> domain_index_;
+  std::vector<Odd> odd_;  // by domain index; unused on level 0
+};
+
+/// U [3N x 3N] -> in place, in its lower half, the non-standard form of layout.hpp without scales: the rows of the
+/// details of level q hold their blocks with the averages of level max(q-2, 0), the details of level q-1 and each
+/// other. Returns the compliance between the averages of every level but the finest, by level. Work: 100 N^2 or so.
+std::vector<Eigen::MatrixXd> to_non_standard_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> compliance);
+
+/// The compliance (m/N) between the averages of level `c` that a model stands for, with its first `layers` layers of
+/// couplings (1: the strong ones; 3: all): 3x3 blocks over the domain nodes of K(c). Work: as above.
+[[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c,
+                                                 std::uint32_t layers = layout::strengths);
+
+/// The same for every level 0 .. levels-1.
+[[nodiscard]] std::vector<Eigen::MatrixXd> decoded_compliances(const ModelData& model,
+                                                               std::uint32_t layers = layout::strengths);
+
+}  // namespace greenloop

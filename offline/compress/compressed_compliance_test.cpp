@@ -1,0 +1,129 @@
+#include "offline/compress/compressed_compliance.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+#include <random>
+
+#include "formats/verify.hpp"
+#include "offline/compress/dense_reference.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+const test::Body& body() {
+  static const test::Body value = test::make_body(3);
+  return value;
+}
+
+// all three layers carry something
+const test::File& file(bool lifted) {
+  constexpr Encoding encoding{.threshold = 0.004, .quantum = 0.0005};
+  static const test::File with(test::model_of(body(), true, encoding));
+  static const test::File without(test::model_of(body(), false, encoding));
+  return lifted ? with : without;
+}
+
+Eigen::MatrixXd all_columns(const CompressedCompliance& compressed, std::size_t level) {
+  const std::size_t rows = compressed.rows(level);
+  Eigen::MatrixXd matrix(static_cast<Eigen::Index>(3 * rows), static_cast<Eigen::Index>(3 * rows));
+  for (std::size_t j = 0; j < rows; ++j) {
+    const auto column = compressed.column(level, j);
+    REQUIRE(column.size() == 9 * rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+      matrix.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) =
+          Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * i);
+    }
+  }
+  return matrix;
+}
+
+std::vector<double> noise(std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<double> x(count);
+  for (auto& value : x) value = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+  return x;
+}
+
+TEST_CASE("every level and every number of layers is the non-standard form evaluated densely") {
+  for (const bool lifted : {true, false}) {
+    Eigen::MatrixXd before;
+    for (std::uint32_t layers = lifted ? 0 : all_layers; layers <= all_layers; ++layers) {
+      CAPTURE(lifted);
+      CAPTURE(layers);
+      const auto expected = test::dense_compliances(file(lifted).view, layers);
+      const CompressedCompliance compressed(file(lifted).view, layers);
+      REQUIRE(compressed.finest() == 3);
+      for (std::size_t level = 0; level < 4; ++level) {
+        CAPTURE(level);
+        const Eigen::MatrixXd found = all_columns(compressed, level);
+        const double largest = expected[level].cwiseAbs().maxCoeff();
+        CHECK((found - expected[level]).cwiseAbs().maxCoeff() < 1e-6 * largest);
+        CHECK((found - found.transpose()).cwiseAbs().maxCoeff() < 1e-12 * largest);
+      }
+      if (before.size() > 0) CHECK((expected[3] - before).norm() > 1e-4 * before.norm());  // the layer matters
+      before = expected[3];
+    }
+  }
+}
+
+TEST_CASE("all layers come near the exact compliance, on every level") {
+  const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
+  const auto exact = test::dense_form(wavelet, body().compliance).averages;
+  const CompressedCompliance compressed(file(true).view, all_layers);
+  for (std::size_t level = 0; level < 4; ++level) {
+    CAPTURE(level);
+    CHECK((all_columns(compressed, level) - exact[level]).norm() < 0.02 * exact[level].norm());
+  }
+}
+
+TEST_CASE("several force patterns at once are the same as one after the other") {
+  const CompressedCompliance compressed(file(true).view, all_layers);
+  for (std::size_t level = 0; level < 4; ++level) {
+    const std::size_t rows = compressed.rows(level);
+    const auto f = noise(9 * rows, 5);
+    std::vector<double> together(9 * rows);
+    compressed.apply(level, 3, f.data(), together.data());
+    for (std::size_t pattern = 0; pattern < 3; ++pattern) {
+      std::vector<double> one(3 * rows), x(3 * rows);
+      for (std::size_t i = 0; i < rows; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) one[3 * i + k] = f[9 * i + 3 * pattern + k];
+      }
+      compressed.apply(level, 1, one.data(), x.data());
+      double worst = 0, largest = 0;
+      for (std::size_t i = 0; i < rows; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          worst = std::max(worst, std::abs(x[3 * i + k] - together[9 * i + 3 * pattern + k]));
+          largest = std::max(largest, std::abs(x[3 * i + k]));
+        }
+      }
+      CHECK(worst <= 1e-14 * largest);
+      CHECK(largest > 0);
+    }
+  }
+}
+
+TEST_CASE("a file cut off after a level stands for the same compliance there") {
+  const auto& whole = file(true);
+  const CompressedCompliance compressed(whole.view, all_layers);
+  for (std::uint32_t q = 0; q < 3; ++q) {
+    CAPTURE(q);
+    const AlignedBytes bytes(truncate_to_level({whole.bytes.data(), whole.bytes.data() + whole.bytes.size()}, q));
+    ModelView view;
+    REQUIRE(verify(bytes.span(), view).ok());
+    const CompressedCompliance cut(view, all_layers);
+    REQUIRE(cut.finest() == q);
+    const Eigen::MatrixXd expected = all_columns(compressed, q);
+    CHECK((all_columns(cut, q) - expected).norm() < 1e-14 * expected.norm());
+  }
+}
+
+TEST_CASE("a body of one level") {
+  const auto small = test::make_body(0);
+  const test::File model(test::model_of(small, true, {.threshold = 0.1, .quantum = 0.05}));
+  const Eigen::MatrixXd found = all_columns(CompressedCompliance(model.view, all_layers), 0);
+  CHECK((found - small.compliance).norm() < 1e-4 * small.compliance.norm());
+}
+
+}  // namespace
+}  // namespace greenloop::offline

@@ -1,0 +1,101 @@
+#include "offline/compress/contact_patches.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace greenloop::offline {
+namespace {
+
+std::vector<std::size_t> farthest_points(const std::vector<Eigen::Vector3d>& positions, std::size_t count) {
+  std::vector<double> distance(positions.size(), std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> chosen;
+  std::size_t next = 0;
+  while (chosen.size() < std::min(count, positions.size())) {
+    chosen.push_back(next);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      distance[i] = std::min(distance[i], (positions[i] - positions[next]).squaredNorm());
+    }
+    next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+  }
+  return chosen;
+}
+
+std::vector<std::size_t> nearest(const std::vector<Eigen::Vector3d>& positions, std::size_t centre, std::size_t count) {
+  std::vector<std::size_t> rows(positions.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  const auto distance = [&](std::size_t i) { return (positions[i] - positions[centre]).squaredNorm(); };
+  const auto end = rows.begin() + static_cast<std::ptrdiff_t>(std::min(count, rows.size()));
+  std::partial_sort(rows.begin(), end, rows.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(distance(a), a) < std::pair(distance(b), b);
+  });
+  rows.erase(end, rows.end());
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+// the nodal forces that hold every node at the unit displacements; empty if the compliance is not positive definite
+Eigen::MatrixXd holding_forces(const Eigen::MatrixXd& compliance) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(compliance);
+  if (factor.info() != Eigen::Success) return {};
+  return factor.solve(Eigen::Matrix3d::Identity().replicate(compliance.rows() / 3, 1));
+}
+
+}  // namespace
+
+ContactPatches::ContactPatches(const std::vector<Eigen::Vector3d>& positions, std::size_t count) {
+  for (const std::size_t centre : farthest_points(positions, count)) {
+    Patch patch{.rows = nearest(positions, centre, nodes_per_patch), .compliance = {}};
+    const auto size = static_cast<Eigen::Index>(3 * patch.rows.size());
+    patch.compliance = Eigen::MatrixXd::Zero(size, size);
+    patches_.push_back(std::move(patch));
+  }
+}
+
+void ContactPatches::add(const Eigen::MatrixXd& block, std::size_t first) {
+  const std::size_t end = first + static_cast<std::size_t>(block.cols()) / 3;
+  for (auto& patch : patches_) {
+    const auto begin = std::lower_bound(patch.rows.begin(), patch.rows.end(), first);
+    for (auto it = begin; it != patch.rows.end() && *it < end; ++it) {
+      for (std::size_t a = 0; a < patch.rows.size(); ++a) {
+        patch.compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), 3 * (it - patch.rows.begin())) =
+            block.block<3, 3>(static_cast<Eigen::Index>(3 * patch.rows[a]),
+                              static_cast<Eigen::Index>(3 * (*it - first)));
+      }
+    }
+  }
+}
+
+double ContactPatches::force_error(const CompressedCompliance& compressed, std::size_t level,
+                                   std::size_t number) const {
+  const Patch& patch = patches_[number];
+  Eigen::MatrixXd compliance(patch.compliance.rows(), patch.compliance.cols());
+  for (std::size_t b = 0; b < patch.rows.size(); ++b) {
+    const auto column = compressed.column(level, patch.rows[b]);
+    for (std::size_t a = 0; a < patch.rows.size(); ++a) {
+      compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
+          Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * patch.rows[a]);
+    }
+  }
+  const Eigen::MatrixXd exact = holding_forces(patch.compliance);
+  const Eigen::MatrixXd found = holding_forces(compliance);
+  if (found.size() == 0) return std::numeric_limits<double>::infinity();
+  return ((found - exact).colwise().norm().array() / exact.colwise().norm().array()).maxCoeff();
+}
+
+double ContactPatches::worst_force_error(const CompressedCompliance& compressed, std::size_t level) const {
+  double worst = 0;
+  for (std::size_t p = 0; p < patches_.size(); ++p) worst = std::max(worst, force_error(compressed, level, p));
+  return worst;
+}
+
+ContactPatches ContactPatches::choose(const std::vector<std::size_t>& patches) const {
+  ContactPatches chosen;
+  for (const std::size_t p : patches) chosen.patches_.push_back(patches_[p]);
+  return chosen;
+}
+
+}  // namespace greenloop::offline

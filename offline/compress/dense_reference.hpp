@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "formats/aligned_bytes.hpp"
+#include "formats/view.hpp"
+#include "formats/writer.hpp"
+#include "offline/compress/column_source.hpp"
+#include "offline/compress/coupling_coder.hpp"
+#include "offline/compress/linear_wavelet.hpp"
+#include "offline/compress/test_body.hpp"
+
+namespace greenloop::offline::test {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// T_l as a matrix, 3 numbers per row of K(level), from the wavelet's odd nodes by the definition.
+[[nodiscard]] Sparse forward_step(const LinearWavelet& wavelet, std::size_t level);
+
+/// T_l^-1.
+[[nodiscard]] Sparse backward_step(const LinearWavelet& wavelet, std::size_t level);
+
+/// The non-standard form of a compliance by dense products T_l U_l T_l^T, m/N.
+struct NonStandardForm {
+  std::vector<Eigen::MatrixXd> averages;  ///< [level] U_l
+  std::vector<Eigen::MatrixXd> details;   ///< [level] A_l; [0] is empty
+  std::vector<Eigen::MatrixXd> crossed;   ///< [level] B_l, its columns transformed once more if l > 1; [0] is empty
+};
+[[nodiscard]] NonStandardForm dense_form(const LinearWavelet& wavelet, const Eigen::MatrixXd& compliance);
+
+/// [level] what a model file stands for when cut off after that level, U^_level, by dense products from the coarsest
+/// level up, with the first `layers` layers of couplings.
+[[nodiscard]] std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view, std::uint32_t layers);
+
+/// Hands out columns of a dense compliance, which must outlive it.
+[[nodiscard]] ColumnSource columns_of(const Eigen::MatrixXd& compliance);
+
+/// A body's model before encoding, its couplings coded from a pyramid that keeps all that `encoding` does.
+[[nodiscard]] ModelData model_of(const Body& body, bool lifted, const Encoding& encoding);
+
+/// A verified model file.
+struct File {
+  explicit File(const ModelData& model);
+  AlignedBytes bytes;
+  ModelView view;
+};
+
+/// Young's modulus, contacts and a rate.
+[[nodiscard]] layout::Info facts();
+
+}  // namespace greenloop::offline::test

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "formats/aligned_bytes.hpp"
+#include "formats/view.hpp"
+#include "offline/compress/column_source.hpp"
+#include "offline/compress/contact_patches.hpp"
+#include "offline/compress/coupling_coder.hpp"
+
+namespace greenloop::offline {
+
+/// The errors a model may have against the exact compliance, all relative.
+struct Accuracy {
+  double rms = 0;           ///< of the field: FieldError::rms
+  double worst_column = 0;  ///< FieldError::worst_column
+  double patch_force = 0;   ///< ContactPatches::worst_force_error
+};
+
+/// An exact column to compare with.
+struct SampleColumn {
+  std::size_t row = 0;
+  double area = 0;            ///< m^2
+  std::vector<double> exact;  ///< rows blocks of 9
+};
+
+/// One way to encode a model, and what came of it on a sample of patches and columns.
+struct Trial {
+  Encoding encoding;
+  std::size_t bytes = 0, blocks = 0;
+  double rms = 0, worst_column = 0, patch_force = 0;
+  std::uint64_t step_work = 0;  ///< units
+
+  [[nodiscard]] bool meets(const Accuracy& accuracy) const {
+    return rms <= accuracy.rms && worst_column <= accuracy.worst_column && patch_force <= accuracy.patch_force;
+  }
+};
+
+/// What trials are made and measured with. The referenced objects must outlive the search.
+struct TrialBench {
+  const CompliancePyramid& pyramid;
+  const ModelData& tables;  ///< the model without scales and couplings
+  const std::vector<SampleColumn>& columns;
+  std::function<std::uint64_t(std::span<const std::byte>)> step_work;  ///< of an encoded model; may be empty
+};
+
+/// Encodes and measures one trial. Work: an encoding, 64 columns a patch and the sample's columns.
+[[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
+
+/// A model's bytes and what they stand for. Not copied or moved: the view points into the bytes.
+struct EncodedModel {
+  /// Throws std::logic_error if the encoded model does not verify.
+  explicit EncodedModel(const ModelData& model);
+  EncodedModel(const EncodedModel&) = delete;
+  EncodedModel& operator=(const EncodedModel&) = delete;
+  AlignedBytes bytes;
+  ModelView view;
+};
+
+/// The `count` patches whose forces suffer most from compression, to search encodings with. A coarse encoding ranks
+/// them; where it leaves more than `count` patches indefinite, which says nothing about their order, finer ones down to
+/// the threshold `floor` rank those. Work: 64 columns per patch and encoding.
+[[nodiscard]] ContactPatches worst_patches(const TrialBench& bench, const ContactPatches& patches, std::size_t count,
+                                           double floor);
+
+/// `encoding` with the largest field threshold whose strong couplings alone make a field that meets `accuracy` (rms and
+/// worst_column) on the sample's columns; without one if not even a threshold of 1/100 does. Work: some encodings and
+/// the sample's columns for each.
+[[nodiscard]] Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accuracy, Encoding encoding,
+                                              const Progress& progress);
+
+/// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2. If none
+/// does, the most accurate one. Adds every trial to `trials`; those that stand there, made with the same bench and
+/// patches, are not made again.
+[[nodiscard]] Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy,
+                                    double floor, std::vector<Trial>& trials, const Progress& progress);
+
+}  // namespace greenloop::offline

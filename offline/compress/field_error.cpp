@@ -1,0 +1,30 @@
+#include "offline/compress/field_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace greenloop::offline {
+
+void FieldError::add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact,
+                     double area) {
+  const auto found = compressed.column(level, j);
+  double error = 0, norm = 0, largest_error = 0, largest = 0;
+  for (std::size_t i = 0; i < compressed.rows(level); ++i) {
+    double block_error = 0, block_norm = 0;
+    for (std::size_t k = 9 * i; k < 9 * (i + 1); ++k) {
+      block_error += (found[k] - exact[k]) * (found[k] - exact[k]);
+      block_norm += exact[k] * exact[k];
+    }
+    error += block_error;
+    norm += block_norm;
+    largest_error = std::max(largest_error, block_error);
+    largest = std::max(largest, block_norm);
+  }
+  error_energy_ += area * area * error;
+  exact_energy_ += area * area * norm;
+  worst_column_ = std::max(worst_column_, std::sqrt(largest_error / largest));
+}
+
+double FieldError::rms() const { return std::sqrt(error_energy_ / exact_energy_); }
+
+}  // namespace greenloop::offline

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "offline/compress/compressed_compliance.hpp"
+
+namespace greenloop::offline {
+
+/// Errors of compressed columns against exact ones, traction form Xi = U diag(area): the measure of James and Pai 2003,
+/// section 9.
+class FieldError {
+ public:
+  /// Adds column `j` of `level`; `exact`: rows(level) blocks of 9, 3 c + r, m/N; `area` [m^2] of the column's node.
+  /// Work: one column.
+  void add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact, double area);
+
+  [[nodiscard]] double rms() const;            ///< ||Xi^ - Xi||_F / ||Xi||_F over the columns added
+  [[nodiscard]] double worst_column() const {  ///< max_j ||Xi^_j - Xi_j||_inf / ||Xi_j||_inf, block-wise Frobenius
+    return worst_column_;
+  }
+
+ private:
+  double error_energy_ = 0, exact_energy_ = 0, worst_column_ = 0;
+};
+
+}  // namespace greenloop::offline

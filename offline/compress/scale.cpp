@@ -1,0 +1,45 @@
+#include "offline/compress/scale.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+#include <string>
+
+namespace greenloop::offline {
+namespace {
+
+void store(const Eigen::Matrix3d& symmetric, float (&six)[6]) {
+  int k = 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) six[k++] = static_cast<float>(symmetric(i, j));
+  }
+}
+
+}  // namespace
+
+CoefficientScale::CoefficientScale(const Eigen::Matrix3d& diagonal, const Eigen::Matrix3d& conditional,
+                                   std::string_view role, std::size_t index) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(conditional);
+  if (!(solver.eigenvalues().minCoeff() > 0)) {
+    throw std::invalid_argument("compression: the compliance is not positive definite: " + std::string(role) + " " +
+                                std::to_string(index) + " has the conditional compliance " +
+                                std::to_string(solver.eigenvalues().minCoeff()) + " m/N");
+  }
+  root_ = solver.operatorSqrt();
+  inverse_ = solver.operatorInverseSqrt();
+  diagonal_ = inverse_ * diagonal * inverse_;
+}
+
+layout::Scale CoefficientScale::stored() const {
+  layout::Scale scale{};
+  store(root_, scale.root);
+  store(0.5 * (diagonal_ + diagonal_.transpose()), scale.diagonal);
+  return scale;
+}
+
+Eigen::Matrix3d symmetric_matrix(const float (&six)[6]) {
+  Eigen::Matrix3f matrix;
+  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+  return matrix.cast<double>();
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,164 @@
+#include "runtime/sparse_forces.hpp"
+
+#include "runtime/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+void add(Touched& touched, std::uint32_t level, std::uint32_t place) {
+  const bool known = touched.mark[place];
+  touched.list[level][touched.count[level]] = place;
+  touched.count[level] += known ? 0 : 1;
+  touched.mark[place] = true;
+}
+
+// calls visit(place of the odd neighbour, lift) for the neighbours in M(level) of an even node
+template <class Visit>
+void visit_neighbours(const Refinement& refinement, std::uint32_t level, std::uint32_t even, Visit visit) {
+  const LevelView& at = refinement.view->level[level];
+  const std::uint32_t* begin = refinement.lifting->begin[level] + even;
+  for (std::uint32_t n = begin[0]; n < begin[1]; ++n) {
+    const OddNeighbours& record = refinement.lifting->neighbours[level][n];
+    for (std::uint32_t k = 0; k < record.count; ++k) {
+      visit(record.node(k) - at.node_begin + at.domain_begin, record.lift[k]);
+    }
+  }
+}
+
+std::uint64_t neighbour_visits(const Refinement& refinement, std::uint32_t level, std::uint32_t even) {
+  const std::uint32_t* begin = refinement.lifting->begin[level] + even;
+  return std::uint64_t{OddNeighbours::most} * (begin[1] - begin[0]);
+}
+
+// the forces of level m are all there now: what the averages of level m see
+void list_averages(const Coefficients& coefficients, std::uint32_t m, Touched& touched) {
+  if (m == 0 || m > coefficients.last_averages) {
+    return;
+  }
+  const std::uint32_t group = Coefficients::averages(m);
+  for (std::uint32_t q = 0; q <= m; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      touched.list[group][touched.count[group]++] = coefficients.group[group].begin + touched.list[q][k];
+    }
+  }
+  touched.visits += touched.count[group];
+}
+
+void copy_averages(const Coefficients& coefficients, std::uint32_t m, const Touched& touched, Float4* force) {
+  const std::uint32_t group = Coefficients::averages(m);
+  for (std::uint32_t k = 0; m > 0 && k < touched.count[group]; ++k) {
+    const std::uint32_t coefficient = touched.list[group][k];
+    force[coefficient] = force[coefficient - coefficients.group[group].begin];
+  }
+}
+
+}  // namespace
+
+void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* level) noexcept {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& at = view.level[q];
+    for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
+      const std::uint32_t place = at.domain_begin + i;
+      level[place] = static_cast<std::uint8_t>(q);
+      for (std::uint32_t side = 0; side < 2; ++side) {
+        const std::uint32_t parent = q == 0 ? layout::none : at.refinement[i].parent[side];
+        parents[place].place[side] = q > 0 && in_domain(view, parent) ? domain_place(view, parent) : layout::none;
+      }
+    }
+  }
+}
+
+void Touched::carve(Arena& arena, const Coefficients& coefficients) noexcept {
+  // a rejected place is written behind the last accepted one
+  auto* lists = arena.take<std::uint32_t>(coefficients.count + std::uint64_t{Coefficients::groups});
+  mark = arena.take_zeroed<bool>(coefficients.count);
+  for (std::uint32_t g = 0; g < Coefficients::groups && lists != nullptr; ++g) {
+    list[g] = lists;
+    lists += coefficients.group[g].count + 1;
+  }
+}
+
+std::uint64_t Touched::coefficients() const noexcept {
+  std::uint64_t sum = 0;
+  for (const std::uint32_t of_group : count) {
+    sum += of_group;
+  }
+  return sum;
+}
+
+void touch(const Refinement& refinement, const Coefficients& coefficients, std::uint32_t c, const std::uint32_t* place,
+           std::uint32_t count, Touched& touched) noexcept {
+  touched.constraint_level = c;
+  touched.visits = count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    add(touched, refinement.level[place[i]], place[i]);
+  }
+  list_averages(coefficients, c, touched);
+  for (std::uint32_t level = c; level > 0; --level) {
+    touched.forced[level] = touched.count[level];
+    touched.visits += std::uint64_t{2} * touched.forced[level];
+    for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
+      for (const std::uint32_t parent : refinement.parents[touched.list[level][k]].place) {
+        if (parent != layout::none) {
+          add(touched, refinement.level[parent], parent);
+        }
+      }
+    }
+    for (std::uint32_t q = 0; q < level; ++q) {
+      touched.even[level][q] = touched.count[q];
+      for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+        touched.visits += neighbour_visits(refinement, level, touched.list[q][k]);
+        visit_neighbours(refinement, level, touched.list[q][k], [&](std::uint32_t odd, float lift) {
+          if (lift != 0) {
+            add(touched, level, odd);
+          }
+        });
+      }
+    }
+    list_averages(coefficients, level - 1, touched);
+  }
+}
+
+void clear(Touched& touched) noexcept {
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    for (std::uint32_t k = 0; Coefficients::has_diagonal(g) && k < touched.count[g]; ++k) {
+      touched.mark[touched.list[g][k]] = false;
+    }
+    touched.count[g] = 0;
+  }
+  touched.visits = 0;
+}
+
+void transform_forces(const Refinement& refinement, const Coefficients& coefficients, const Touched& touched,
+                      Float4* force) noexcept {
+  copy_averages(coefficients, touched.constraint_level, touched, force);
+  for (std::uint32_t level = touched.constraint_level; level > 0; --level) {
+    for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
+      const std::uint32_t odd = touched.list[level][k];
+      for (const std::uint32_t parent : refinement.parents[odd].place) {
+        if (parent != layout::none) {
+          force[parent] += splat(0.5F) * force[odd];
+        }
+      }
+    }
+    for (std::uint32_t q = 0; q < level; ++q) {
+      for (std::uint32_t k = 0; k < touched.even[level][q]; ++k) {
+        const std::uint32_t even = touched.list[q][k];
+        const Float4 of_even = force[even];
+        visit_neighbours(refinement, level, even,
+                         [&](std::uint32_t odd, float lift) { force[odd] -= splat(lift) * of_even; });
+      }
+    }
+    copy_averages(coefficients, level - 1, touched, force);
+  }
+}
+
+void clear_forces(const Touched& touched, Float4* force) noexcept {
+  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
+    for (std::uint32_t k = 0; k < touched.count[g]; ++k) {
+      force[touched.list[g][k]] = Float4{};
+    }
+  }
+}
+
+}  // namespace greenloop

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/view.hpp"
+#include "runtime/arena.hpp"
+#include "runtime/coefficients.hpp"
+#include "runtime/wavelet.hpp"
+
+namespace greenloop {
+
+// The transform of sparse nodal forces into wavelet coefficients, T_l^-T for l = c..1 (docs/theory.md):
+//   g_a = f_a + 1/2 (sum of f_m over odd neighbours m),   e_m = f_m - (sum of lift(m -> a) g_a over parents a),
+// in place, by place in the domain, since the places of K(l-1) come before those of M(l). With a unit force at one node
+// it gives the weights with which that node's displacement depends on every coefficient.
+
+/// The parents of every domain node by their place; layout::none outside the domain and on level 0.
+struct DomainParents {
+  std::uint32_t place[2];
+};
+
+/// What the transform looks up, by place.
+struct Refinement {
+  const ModelView* view = nullptr;
+  const Lifting* lifting = nullptr;
+  const DomainParents* parents = nullptr;  ///< [domain]
+  const std::uint8_t* level = nullptr;     ///< [domain] mesh level
+};
+
+/// Start-up; linear in the domain. parents, level: [domain].
+void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* level) noexcept;
+
+/// Which coefficients the forces on some nodes of K(c) reach.
+struct Touched {
+  std::uint32_t constraint_level = 0;
+  std::uint64_t visits = 0;                        ///< steps of the transform
+  std::uint32_t count[Coefficients::groups] = {};  ///< coefficients of each group
+  std::uint32_t* list[Coefficients::groups] = {};  ///< those coefficients
+  std::uint32_t forced[layout::max_levels] = {};   ///< nodes of M(l) with a force of level l, first in the list
+  std::uint32_t even[layout::max_levels][layout::max_levels] = {};  ///< [l][q] nodes of M(q) with a force of level l-1
+  bool* mark = nullptr;                                             ///< [domain], false between uses
+
+  /// Arrays out of `arena`; null while it counts.
+  void carve(Arena& arena, const Coefficients& coefficients) noexcept;
+
+  /// Coefficients over all groups.
+  [[nodiscard]] std::uint64_t coefficients() const noexcept;
+};
+
+/// Finds the coefficients that forces on `place` [count], distinct nodes of K(c), reach. `touched` must be clear. For
+/// the loop; work: 2 units per visit.
+void touch(const Refinement& refinement, const Coefficients& coefficients, std::uint32_t c, const std::uint32_t* place,
+           std::uint32_t count, Touched& touched) noexcept;
+
+/// Forgets them. For the loop; work: one unit per coefficient.
+void clear(Touched& touched) noexcept;
+
+/// Transforms forces in place. force: [coefficients], nodal forces on the touched places of K(c), 0 elsewhere. For the
+/// loop; work: 3 units per visit.
+void transform_forces(const Refinement& refinement, const Coefficients& coefficients, const Touched& touched,
+                      Float4* force) noexcept;
+
+/// Zeroes the touched coefficients. For the loop; work: one unit per coefficient.
+void clear_forces(const Touched& touched, Float4* force) noexcept;
+
+}  // namespace greenloop
