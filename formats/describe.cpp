@@ -53,9 +53,6 @@ constexpr std::array rules{
     RuleText{VerifyRule::inconsistent, "inconsistent", "two parts of the file contradict each other", rebuild},
 };
 
-constexpr std::array partners{"averages", "parents", "same"};
-constexpr std::array layers{"strong", "medium", "weak"};
-
 const RuleText& text_of(VerifyRule rule) {
   return *std::find_if(rules.begin(), rules.end() - 1, [&](const RuleText& text) { return text.rule == rule; });
 }
@@ -85,11 +82,9 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
     case SectionKind::representatives:
       return fmt::format("Representatives({}, {})", a, b);
     case SectionKind::scales:
-      return fmt::format("Scales({}, {})", a == 0 ? "averages" : "details", b);
+      return fmt::format("Scales({})", a);
     case SectionKind::couplings:
-      return fmt::format("Couplings({}, {}, {})", a,
-                         b / layout::strengths < partners.size() ? partners[b / layout::strengths] : "?",
-                         layers[b % layout::strengths]);
+      return fmt::format("Couplings({}, {})", a, b);
   }
   return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);
 }

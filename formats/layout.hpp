@@ -15,11 +15,8 @@
 //       Refinement(q)                                    only q > 0: RefinementRecord [node_count(q)]
 //       Representatives(c, q) for c = first..q           u32 [node_count(q)]: node of K(c) that stands for a node
 //       Representatives(q, r) for r = 0..q-1             u32 [node_count(r)]
-//       Scales(averages, q-2)                            only q > 2: Scale [domain nodes of K(q-2)]
-//       Scales(averages, 0) or Scales(details, q)        q = 0, or q > 0: Scale [domain nodes of K(0), of M(q)]
-//       Couplings(q, partner, strong) for each partner   q = 0: same; q = 1: averages, same; q > 1: all three
-//       Couplings(q, partner, medium) for each partner   only q > 0
-//       Couplings(q, partner, weak) for each partner     only q > 0
+//       Scales(q)                                        Scale [domain_count(q)]
+//       Couplings(q, layer) for each layer               CouplingsHeader and its arrays
 //
 // `first` is Info::coarsest_constraint_level; levels below it have no Representatives. A touchable node is represented
 // on constraint level c by a domain node of K(c), by itself if it is one; any other node by `none`.
@@ -28,14 +25,13 @@
 // is stored: free and needed by the scene, closed under free parents) comes first. All other nodes do not move or are
 // not read; their displacement is zero.
 //
-// The compliance U of the domain nodes (m/N) in two-sided wavelet coordinates, in non-standard form. With the averages
-// and details that the forward transform finds on level l (lift, then predict, backwards),
-//   U_l = T_l^-1 [ U_{l-1}  B_l^T ;  B_l  A_l ] T_l^-T,   U_L = U,
-// where A_l couples details with details, B_l details of level l with averages of level l-1; the columns of B_l are
-// transformed once more, into averages of level l-2 and details of level l-1. Every such coefficient i has a scale, the
-// symmetric root R_i of its conditional compliance (what is left of its diagonal block once its neighbours are held);
-// what is stored of the block (i, j) is R_i^-1 U_ij R_j^-1 in whole quanta, and nothing where it is small. The scaled
-// diagonal blocks stand beside the scales. See docs/theory.md and docs/compression.md.
+// The compliance U of the domain nodes (m/N) in two-sided wavelet coordinates, W U W^T with the forward transform
+//   W = T_1 ... T_L      (T_l: predict, then lift, on K(l))
+// that turns nodal displacements into averages on level 0 and details on M(1) .. M(L): one coefficient a domain node,
+// numbered alike. A coefficient i has a scale, the symmetric root R_i of its conditional compliance (what is left of
+// its diagonal block once the coefficients of its level are held); what is stored of the block (i, j), i < j, is R_i^-1
+// (W U W^T)_ij R_j^-1 in whole quanta, and nothing where it is small. The scaled diagonal blocks stand beside the
+// scales. See docs/theory.md and docs/compression.md.
 
 #include <cstddef>
 #include <cstdint>
@@ -59,29 +55,20 @@ enum class SectionKind : std::uint32_t {
   base_triangles = 5,   ///< u32[3 * count]
   refinement = 6,       ///< (q) RefinementRecord[]
   representatives = 8,  ///< (c, q) u32[]
-  scales = 10,          ///< (Role, level) Scale[]
-  couplings = 11,       ///< (q, coupling_index(partner, strength)) CouplingsHeader and its arrays
+  scales = 10,          ///< (q) Scale[]
+  couplings = 11,       ///< (q, layer) CouplingsHeader and its arrays
 };
 
-/// What a wavelet coefficient stands for.
-enum class Role : std::uint16_t { averages = 0, details = 1 };
-
-/// With which coefficients the coefficients of a level are coupled. The level's own are its details, or the averages if
-/// it is level 0.
-enum class Partner : std::uint16_t {
-  averages = 0,  ///< the averages of level q-2, or of level 0 if q = 1
-  parents = 1,   ///< the details of level q-1
-  same = 2,      ///< those of the level itself, each with the ones before it
+/// Couplings are stored in layers by what needs them and by size. Fields are made of the first three alone; forces need
+/// all. A file has every section, even an empty one.
+struct Layer {
+  std::uint32_t value_bits;  ///< of one element of a block
+  bool field;                ///< part of fields
 };
 
-/// Couplings are stored in three layers by size: a sum over the larger ones alone is already a good field.
-enum class Strength : std::uint16_t { strong = 0, medium = 1, weak = 2 };
-
-inline constexpr std::uint16_t strengths = 3;
-
-constexpr std::uint16_t coupling_index(Partner partner, Strength strength) {
-  return static_cast<std::uint16_t>(strengths * static_cast<unsigned>(partner) + static_cast<unsigned>(strength));
-}
+inline constexpr std::uint32_t layers = 5;
+inline constexpr Layer layer[layers] = {{16, true}, {8, true}, {4, true}, {8, false}, {4, false}};
+inline constexpr std::uint32_t field_layers = 3;  ///< the first ones
 
 struct Header {
   char magic[8];
@@ -128,8 +115,8 @@ struct Info {
   std::uint64_t step_work;     ///< work units per step the scene asked for
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
-  std::uint32_t field_layers;             ///< layers of couplings, strong ones first, that meet the field's accuracy
-  std::uint8_t reserved[148];
+  float quantum[layers];                  ///< of the scaled values of each layer of couplings, in [0, 1]
+  std::uint8_t reserved[132];
 };
 static_assert(sizeof(Info) == 256);
 
@@ -145,8 +132,8 @@ struct Level {
   float rms_error;             ///< ||U^ - U||_F / ||U||_F, all couplings
   float worst_column_error;    ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius, all couplings
   float patch_force_error;     ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
-  float field_rms_error;       ///< rms_error with Info::field_layers layers
-  float field_column_error;    ///< worst_column_error with Info::field_layers layers
+  float field_rms_error;       ///< rms_error of fields
+  float field_column_error;    ///< worst_column_error of fields
   std::uint32_t reserved[3];
 };
 static_assert(sizeof(Level) == 64);
@@ -174,34 +161,31 @@ static_assert(sizeof(RefinementRecord) == 16);
 /// The scale of a coefficient: two symmetric positive definite matrices xx, xy, xz, yy, yz, zz.
 struct Scale {
   float root[6];      ///< R; (m/N)^(1/2)
-  float diagonal[6];  ///< R^-1 U_ii R^-1; of averages above level 0 it is not used
+  float diagonal[6];  ///< R^-1 (W U W^T)_ii R^-1
 };
 static_assert(sizeof(Scale) == 48);
 
 /// Sparse 3x3 blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
 ///   begin  u32 [n + 1]     first block of each column
-///   index  u16|u32 [m]     row, increasing within a column; absent if index_bytes = 0
+///   index  u16|u32 [m]     row, increasing within a column
 ///   value  [m]             blocks, then >= 16 zero bytes; element k = 3 c + r of a block: scaled displacement r of the
-///                          row per scaled force c of the column, in quanta
-///            value_bits 4  5 bytes a block: element k is nibble k, low nibble first, -7..7; the tenth nibble is 0
-///            value_bits 8  9 bytes a block, -127..127
-///            value_bits 16 18 bytes a block, -32767..32767
-/// Columns are the coefficients of the level, rows those of the partner, both by their place among the domain nodes of
-/// M(l) (details) or K(l) (averages). Partner::same: rows lie before their column, and the block of the other half is
-/// the transpose. Every array starts at the first multiple of 64 after the one before it.
-/// index_bytes = 0 (level 0, in 16 bits; no other): column j keeps every row 0..j-1, begin[j] = j (j - 1) / 2,
-/// index_offset = 0.
+///                          row per scaled force c of the column, in quanta of the layer
+///            4 bits        5 bytes a block: element k is nibble k, low nibble first, -7..7; the tenth nibble is 0
+///            8 bits        9 bytes a block, -127..127
+///            16 bits       18 bytes a block, -32767..32767
+/// Columns are the coefficients of the level, by their place among the domain nodes of M(q); rows are coefficients that
+/// lie before the column's, by their place among all domain nodes: the block of the other half is the transpose. Every
+/// array starts at the first multiple of 64 after the one before it.
 struct CouplingsHeader {
   std::uint32_t columns;
-  std::uint32_t rows;
-  std::uint32_t value_bits;   ///< 4, 8 or 16
-  std::uint32_t index_bytes;  ///< 0, 2 or 4
+  std::uint32_t rows;         ///< domain nodes of K(q)
+  std::uint32_t index_bytes;  ///< 2 or 4
+  std::uint32_t reserved0;
   std::uint64_t block_count;
   std::uint64_t begin_offset;  ///< from the start of the section, as are the others
   std::uint64_t index_offset;
   std::uint64_t value_offset;
-  float quantum;  ///< of scaled values, in [0, 1]
-  std::uint32_t reserved[3];
+  std::uint32_t reserved[4];
 };
 static_assert(sizeof(CouplingsHeader) == 64);
 

@@ -6,10 +6,7 @@
 namespace greenloop {
 namespace {
 
-using layout::Partner;
-using layout::Role;
 using layout::SectionKind;
-using layout::Strength;
 
 // The sections of a file in the one order layout.hpp allows.
 class SectionWalk {
@@ -38,8 +35,8 @@ class SectionWalk {
     return next(SectionKind::level, q, 0, verify_level) && next(SectionKind::nodes, q, 0, verify_nodes) &&
            (q == 0 ? next(SectionKind::base_triangles, 0, 0, verify_base_triangles)
                    : next(SectionKind::refinement, q, 0, verify_refinement)) &&
-           representatives(q) && scales(q) && couplings(q, Strength::strong) && couplings(q, Strength::medium) &&
-           couplings(q, Strength::weak) && verify_counts(q, context_);
+           representatives(q) && next(SectionKind::scales, q, 0, verify_scales) && couplings(q) &&
+           verify_counts(q, context_);
   }
 
   // (c, q) for c = first..q, then (q, r) for r = 0..q-1, of the constraint levels that contacts may be resolved on
@@ -54,20 +51,11 @@ class SectionWalk {
     return true;
   }
 
-  bool scales(std::uint32_t q) {
-    return (q <= 2 || next(Role::averages, q - 2)) && (q == 0 ? next(Role::averages, 0) : next(Role::details, q));
-  }
-  bool next(Role role, std::uint32_t q) {
-    return next(SectionKind::scales, static_cast<std::uint32_t>(role), q, verify_scales);
-  }
-
-  bool couplings(std::uint32_t q, Strength strength) {
-    if (q == 0 && strength != Strength::strong) return true;
-    return (q == 0 || next(q, Partner::averages, strength)) && (q <= 1 || next(q, Partner::parents, strength)) &&
-           next(q, Partner::same, strength);
-  }
-  bool next(std::uint32_t q, Partner partner, Strength strength) {
-    return next(SectionKind::couplings, q, layout::coupling_index(partner, strength), verify_couplings);
+  bool couplings(std::uint32_t q) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      if (!next(SectionKind::couplings, q, layer, verify_couplings)) return false;
+    }
+    return true;
   }
 
   SectionTable& table_;

@@ -8,7 +8,6 @@ namespace greenloop {
 namespace {
 
 using layout::CouplingsHeader;
-using layout::Partner;
 
 constexpr std::uint64_t values_per_block = 9;
 constexpr std::uint64_t tail_bytes = 16;  // a wide load of the last block stays inside the section
@@ -25,66 +24,43 @@ constexpr std::uint64_t bytes_per_block(std::uint32_t value_bits) {
 struct Extent {
   std::uint64_t begin_end, index, index_end, value, value_end;
 
-  explicit Extent(const CouplingsHeader& header)
+  Extent(const CouplingsHeader& header, std::uint32_t value_bits)
       : begin_end(sizeof(CouplingsHeader) + (std::uint64_t{header.columns} + 1) * sizeof(std::uint32_t)),
-        index(header.index_bytes == 0 ? 0 : align(begin_end)),
-        index_end(header.index_bytes == 0 ? begin_end : index + header.block_count * header.index_bytes),
+        index(align(begin_end)),
+        index_end(index + header.block_count * header.index_bytes),
         value(align(index_end)),
-        value_end(value + header.block_count * bytes_per_block(header.value_bits)) {}
+        value_end(value + header.block_count * bytes_per_block(value_bits)) {}
 };
 
 // What the place of a section says about it.
 struct Expected {
-  std::uint32_t columns, rows;
-  bool triangular;  // rows lie before their column
-  bool base;        // level 0: every block, 16 bits, no index
+  std::uint32_t columns, rows, value_bits;
 
-  Expected(const Section& section, const ModelView& view) {
-    const std::uint32_t q = section.a;
-    const auto partner = static_cast<Partner>(section.b / layout::strengths);
-    columns = view.level[q].counts->domain_count;
-    rows = partner == Partner::same      ? columns
-           : partner == Partner::parents ? view.level[q - 1].counts->domain_count
-                                         : domain_of_mesh(view, q < 2 ? 0 : q - 2);
-    triangular = partner == Partner::same;
-    base = q == 0;
-  }
+  Expected(const Section& section, const ModelView& view)
+      : columns(view.level[section.a].counts->domain_count),
+        rows(domain_of_mesh(view, section.a)),
+        value_bits(layout::layer[section.b].value_bits) {}
 
   // the blocks there can be
   [[nodiscard]] std::uint64_t all_blocks() const {
-    if (!triangular) return std::uint64_t{columns} * rows;
-    return columns == 0 ? 0 : std::uint64_t{columns} * (columns - 1) / 2;
+    const std::uint64_t before = rows - columns;
+    return columns == 0 ? 0 : columns * before + std::uint64_t{columns} * (columns - 1) / 2;
   }
-  [[nodiscard]] std::uint32_t rows_of(std::uint32_t column) const { return triangular ? column : rows; }
+  [[nodiscard]] std::uint32_t rows_of(std::uint32_t column) const { return rows - columns + column; }
 };
 
-bool verify_form(SectionCheck& check, const CouplingsHeader& header, const Expected& expected) {
+bool verify_header(SectionCheck& check, const CouplingsHeader& header, const Expected& expected) {
   const auto is = [&](const char* field, std::uint32_t value, std::uint32_t right) {
     return check.require(value == right, VerifyRule::inconsistent, field, 0, value, right);
   };
-  const auto one_of = [&](const char* field, std::uint32_t value, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    return check.require(value == a || value == b || value == c, VerifyRule::bad_enum, field, 0, value, c);
-  };
-  return is("columns", header.columns, expected.columns) && is("rows", header.rows, expected.rows) &&
-         one_of("value_bits", header.value_bits, 4, 8, 16) && one_of("index_bytes", header.index_bytes, 0, 2, 4) &&
-         (!expected.base || is("value_bits", header.value_bits, 16)) &&
-         check.require((header.index_bytes == 0) == expected.base, VerifyRule::inconsistent, "index_bytes", 0,
-                       header.index_bytes, expected.base ? 0 : 4) &&
-         check.require(header.index_bytes != 2 || header.rows <= 65536, VerifyRule::inconsistent, "index_bytes", 0, 2,
-                       4);
-}
-
-bool verify_header(SectionCheck& check, const CouplingsHeader& header, const Expected& expected) {
   const std::uint64_t most = std::min(expected.all_blocks(), std::uint64_t{layout::none});
-  const auto blocks = static_cast<double>(header.block_count);
-  return verify_form(check, header, expected) &&
-         check.require(header.block_count <= most, VerifyRule::out_of_range, "block_count", 0, blocks,
-                       static_cast<double>(most)) &&
-         check.require(!expected.base || header.block_count == expected.all_blocks(), VerifyRule::inconsistent,
-                       "block_count", 0, blocks, static_cast<double>(expected.all_blocks())) &&
-         check.require(std::isfinite(header.quantum), VerifyRule::not_finite, "quantum", 0, header.quantum, 1) &&
-         check.require(header.quantum >= 0 && header.quantum <= 1, VerifyRule::out_of_range, "quantum", 0,
-                       header.quantum, header.quantum < 0 ? 0 : 1);
+  return is("columns", header.columns, expected.columns) && is("rows", header.rows, expected.rows) &&
+         check.require(header.index_bytes == 2 || header.index_bytes == 4, VerifyRule::bad_enum, "index_bytes", 0,
+                       header.index_bytes, 4) &&
+         check.require(header.index_bytes != 2 || header.rows <= 65536, VerifyRule::inconsistent, "index_bytes", 0, 2,
+                       4) &&
+         check.require(header.block_count <= most, VerifyRule::out_of_range, "block_count", 0,
+                       static_cast<double>(header.block_count), static_cast<double>(most));
 }
 
 bool verify_extent(SectionCheck& check, const Section& section, const CouplingsHeader& header, const Extent& extent) {
@@ -104,7 +80,7 @@ bool verify_gaps(SectionCheck& check, const Section& section, const Extent& exte
     const std::span gap(section.data + begin, static_cast<std::size_t>(end - begin));
     return check.require(all_zero(gap), VerifyRule::padding_not_zero, "padding", begin, 1, 0);
   };
-  return (extent.index == 0 || zero(extent.begin_end, extent.index)) && zero(extent.index_end, extent.value) &&
+  return zero(extent.begin_end, extent.index) && zero(extent.index_end, extent.value) &&
          zero(extent.value_end, section.bytes);
 }
 
@@ -116,8 +92,8 @@ bool verify_begin(SectionCheck& check, const CouplingsHeader& header, const Expe
       return false;
     }
     const std::uint32_t kept = begin[j + 1] - begin[j], most = expected.rows_of(j);
-    if (!check.require(expected.base ? kept == most : kept <= most, VerifyRule::inconsistent, "begin", j + 1u,
-                       begin[j + 1], static_cast<double>(std::uint64_t{begin[j]} + most))) {
+    if (!check.require(kept <= most, VerifyRule::inconsistent, "begin", j + 1u, begin[j + 1],
+                       static_cast<double>(std::uint64_t{begin[j]} + most))) {
       return false;
     }
   }
@@ -177,7 +153,7 @@ bool verify_blocks(SectionCheck& check, const CouplingsView& view, const Couplin
       !verify_index(check, header, expected, view.begin, static_cast<const std::uint32_t*>(view.index))) {
     return false;
   }
-  switch (view.value_bits) {
+  switch (expected.value_bits) {
     case 4:
       return verify_nibbles(check, header, view.value);
     case 8:
@@ -198,25 +174,23 @@ bool verify_couplings(const Section& section, VerifyContext& context) {
   const auto& header = *section.as<CouplingsHeader>();
   const Expected expected(section, context.view);
   if (!verify_header(check, header, expected) ||
-      !check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(header.reserved))),
-                     VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
+      !check.require(
+          !context.reserved_is_zero || (header.reserved0 == 0 && all_zero(std::as_bytes(std::span(header.reserved)))),
+          VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
     return false;
   }
-  const Extent extent(header);
+  const Extent extent(header, expected.value_bits);
   if (!verify_extent(check, section, header, extent) || !verify_gaps(check, section, extent)) return false;
 
-  const CouplingsView view{
-      header.columns,
-      header.rows,
-      header.value_bits,
-      header.index_bytes,
-      header.quantum,
-      reinterpret_cast<const std::uint32_t*>(section.data + header.begin_offset),
-      header.index_bytes == 0 ? nullptr : static_cast<const void*>(section.data + header.index_offset),
-      section.data + header.value_offset};
+  const CouplingsView view{header.columns,
+                           header.rows,
+                           header.index_bytes,
+                           reinterpret_cast<const std::uint32_t*>(section.data + header.begin_offset),
+                           static_cast<const void*>(section.data + header.index_offset),
+                           section.data + header.value_offset};
   if (!verify_blocks(check, view, header, expected)) return false;
   context.kept_blocks += header.block_count;
-  context.view.level[section.a].couplings[section.b / layout::strengths][section.b % layout::strengths] = view;
+  context.view.level[section.a].couplings[section.b] = view;
   return true;
 }
 

@@ -55,6 +55,16 @@ const NodeRecord& node_at(const ModelView& view, std::uint32_t index) {
   return view.level[q].nodes[index - view.level[q].node_begin];
 }
 
+bool verify_quanta(SectionCheck& check, const layout::Info& info) {
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    if (!require_at_least(check, "quantum", layer, info.quantum[layer], 0) ||
+        !require_at_most(check, "quantum", layer, info.quantum[layer], 1)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool verify_box(SectionCheck& check, const layout::Info& info) {
   for (std::uint32_t k = 0; k < 3; ++k) {
     if (!require_finite(check, "box_min", k, info.box_min[k]) ||
@@ -87,7 +97,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
          require_at_least(check, "max_contacts", 0, info.max_contacts, 1) &&
          require_at_most(check, "coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          require_equal(check, "finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
-         require_enum(check, "field_layers", info.field_layers, layout::strengths) &&
+         verify_quanta(check, info) &&
          check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
                        VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
 }
@@ -323,9 +333,8 @@ bool verify_positive_definite(SectionCheck& check, const char* field, const floa
 
 bool verify_scales(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  LevelView& level = context.view.level[section.b];
-  const bool details = section.a == static_cast<std::uint16_t>(layout::Role::details);
-  const std::uint32_t count = details ? level.counts->domain_count : domain_of_mesh(context.view, section.b);
+  LevelView& level = context.view.level[section.a];
+  const std::uint32_t count = level.counts->domain_count;
   const auto* scales = section.as<Scale>();
   if (!require_size(check, section, count, sizeof(Scale))) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -334,7 +343,7 @@ bool verify_scales(const Section& section, VerifyContext& context) {
       return false;
     }
   }
-  (details ? level.details : level.averages) = scales;
+  level.scales = scales;
   context.kept_blocks += count;
   return true;
 }

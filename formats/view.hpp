@@ -8,16 +8,14 @@
 
 namespace greenloop {
 
-/// Couplings(q, partner, strength) in place: see layout::CouplingsHeader.
+/// Couplings(q, layer) in place: see layout::CouplingsHeader.
 struct CouplingsView {
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;
-  std::uint32_t value_bits = 0;
   std::uint32_t index_bytes = 0;
-  float quantum = 0;
   const std::uint32_t* begin = nullptr;  ///< [columns + 1]
-  const void* index = nullptr;           ///< u16 or u32 by index_bytes; null if dense
-  const std::byte* value = nullptr;      ///< by value_bits
+  const void* index = nullptr;           ///< u16 or u32 by index_bytes
+  const std::byte* value = nullptr;      ///< by the layer's value_bits
 };
 
 /// One level of the mesh, in place.
@@ -28,9 +26,8 @@ struct LevelView {
   std::uint32_t domain_begin = 0;  ///< domain nodes of all coarser levels
   const layout::NodeRecord* nodes = nullptr;
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
-  const layout::Scale* details = nullptr;                ///< scales of the details [domain nodes]; null on level 0
-  const layout::Scale* averages = nullptr;  ///< of the averages [domain nodes of K(q)]; null above level max(L-2, 0)
-  CouplingsView couplings[3][layout::strengths];  ///< [Partner][Strength]; no columns where there is no such section
+  const layout::Scale* scales = nullptr;                 ///< [domain nodes]
+  CouplingsView couplings[layout::layers];
 };
 
 /// A verified model file, in place: pointers into the caller's bytes, which must outlive it and stay unchanged.

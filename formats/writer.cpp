@@ -19,11 +19,8 @@ namespace greenloop {
 namespace {
 
 using layout::CouplingsHeader;
-using layout::Partner;
-using layout::Role;
 using layout::SectionEntry;
 using layout::SectionKind;
-using layout::Strength;
 using Bytes = std::vector<std::byte>;
 
 constexpr std::size_t tail_bytes = 16;
@@ -74,46 +71,39 @@ Bytes nibbles(const std::vector<std::int16_t>& values, const std::string& what) 
   return bytes;
 }
 
-Bytes encode_values(const CouplingsData& data, const std::string& what) {
-  switch (data.value_bits) {
+Bytes encode_values(const std::vector<std::int16_t>& values, std::uint32_t bits, const std::string& what) {
+  switch (bits) {
     case 4:
-      return nibbles(data.value, what);
+      return nibbles(values, what);
     case 8:
-      return narrowed<std::int8_t>(data.value, what);
+      return narrowed<std::int8_t>(values, what);
     default:
-      return bytes_of(data.value);
+      return bytes_of(values);
   }
 }
 
-Bytes encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows, bool dense,
+Bytes encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows, std::uint32_t value_bits,
                        const std::string& name) {
   require_size(name + ".begin", data.begin.size(), columns + std::size_t{1});
-  require(data.value_bits == 4 || data.value_bits == 8 || data.value_bits == 16,
-          fmt::format("{}.value_bits = {}, expected 4, 8 or 16", name, data.value_bits));
   const std::size_t blocks = data.begin.back();
-  require_size(name + ".index", data.index.size(), dense ? 0 : blocks);
+  require_size(name + ".index", data.index.size(), blocks);
   require_size(name + ".value", data.value.size(), 9 * blocks);
 
   CouplingsHeader header{};
   header.columns = columns;
   header.rows = rows;
-  header.value_bits = data.value_bits;
-  header.index_bytes = dense ? 0 : rows <= 65536 ? 2 : 4;
+  header.index_bytes = rows <= 65536 ? 2 : 4;
   header.block_count = blocks;
-  header.quantum = data.quantum;
 
   Bytes bytes(sizeof(CouplingsHeader));
   header.begin_offset = bytes.size();
   append(bytes, bytes_of(data.begin));
   pad(bytes);
-  if (header.index_bytes != 0) {
-    header.index_offset = bytes.size();
-    append(bytes,
-           header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));
-    pad(bytes);
-  }
+  header.index_offset = bytes.size();
+  append(bytes, header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));
+  pad(bytes);
   header.value_offset = bytes.size();
-  append(bytes, encode_values(data, name + ".value"));
+  append(bytes, encode_values(data.value, value_bits, name + ".value"));
   bytes.resize(bytes.size() + tail_bytes);
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes;
@@ -163,15 +153,10 @@ class SectionList {
     }
     for (std::uint32_t c = 0; c <= q; ++c) add_representatives(c, q);
     for (std::uint32_t r = 0; r < q; ++r) add_representatives(q, r);
-    if (q > 2) add_scales(Role::averages, q - 2);
-    add_scales(q == 0 ? Role::averages : Role::details, q);
-    require(q > 0 ? level.averages.empty() || q + 2 < levels() : level.details.empty(),
-            fmt::format("levels[{}].{} belongs to no section", q, q > 0 ? "averages" : "details"));
-    for (const Strength strength : {Strength::strong, Strength::medium, Strength::weak}) {
-      for (const Partner partner : {Partner::averages, Partner::parents, Partner::same}) {
-        add_couplings(q, partner, strength);
-      }
-    }
+    require_size(fmt::format("levels[{}].scales", q), level.scales.size(), domain_count(q));
+    add(SectionKind::scales, q, 0, bytes_of(level.scales));
+    kept_blocks_ += level.scales.size();
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) add_couplings(q, layer);
     sections_[place] = section(SectionKind::level, q, 0, bytes_of_one(completed_counts(q)));  // now they are known
   }
 
@@ -186,28 +171,11 @@ class SectionList {
     add(SectionKind::representatives, c, q, bytes_of(constraint.representatives[q]));
   }
 
-  void add_scales(Role role, std::uint32_t q) {
-    const bool details = role == Role::details;
-    const auto& scales = details ? model_.levels[q].details : model_.levels[q].averages;
-    require_size(fmt::format("levels[{}].{}", q, details ? "details" : "averages"), scales.size(),
-                 details ? domain_count(q) : domain_of_mesh(q));
-    add(SectionKind::scales, static_cast<std::uint32_t>(role), q, bytes_of(scales));
-    kept_blocks_ += scales.size();
-  }
-
-  void add_couplings(std::uint32_t q, Partner partner, Strength strength) {
-    const CouplingsData& data =
-        model_.levels[q].couplings[static_cast<std::size_t>(partner)][static_cast<std::size_t>(strength)];
-    const std::uint16_t b = layout::coupling_index(partner, strength);
-    const std::string name = section_name(SectionKind::couplings, q, b);
-    const bool exists = partner == Partner::same      ? q > 0 || strength == Strength::strong
-                        : partner == Partner::parents ? q > 1
-                                                      : q > 0;
-    if (!exists) return require_size(name + ".begin", data.begin.size(), 0);
-    const std::uint32_t rows = partner == Partner::same      ? domain_count(q)
-                               : partner == Partner::parents ? domain_count(q - 1)
-                                                             : domain_of_mesh(q < 2 ? 0 : q - 2);
-    add(SectionKind::couplings, q, b, encode_couplings(data, domain_count(q), rows, q == 0, name));
+  void add_couplings(std::uint32_t q, std::uint32_t layer) {
+    const CouplingsData& data = model_.levels[q].couplings[layer];
+    const std::string name = section_name(SectionKind::couplings, q, layer);
+    add(SectionKind::couplings, q, layer,
+        encode_couplings(data, domain_count(q), domain_of_mesh(q), layout::layer[layer].value_bits, name));
     kept_blocks_ += data.begin.back();
   }
 

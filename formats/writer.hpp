@@ -12,12 +12,10 @@
 
 namespace greenloop {
 
-/// Couplings of one level, partner and strength before encoding; see layout::CouplingsHeader.
+/// Couplings of one level and layer before encoding; see layout::CouplingsHeader.
 struct CouplingsData {
-  std::uint32_t value_bits = 8;  ///< 4, 8 or 16
-  float quantum = 0;
-  std::vector<std::uint32_t> begin;  ///< columns + 1; empty where the file has no such section
-  std::vector<std::uint32_t> index;  ///< rows; stored in 2 bytes where they fit; empty on level 0, which keeps all
+  std::vector<std::uint32_t> begin;  ///< columns + 1
+  std::vector<std::uint32_t> index;  ///< rows; stored in 2 bytes where they fit
   std::vector<std::int16_t> value;   ///< 9 per block, by columns
 };
 
@@ -28,9 +26,8 @@ struct LevelData {
   std::vector<layout::RefinementRecord> refinement;  ///< empty on level 0
   /// [mesh level][node in that level], every mesh level; empty below the coarsest constraint level
   std::vector<std::vector<std::uint32_t>> representatives;
-  std::vector<layout::Scale> details;   ///< [domain nodes]; empty on level 0
-  std::vector<layout::Scale> averages;  ///< [domain nodes of K(q)]; empty above level max(L-2, 0)
-  std::array<std::array<CouplingsData, layout::strengths>, 3> couplings;  ///< [layout::Partner][layout::Strength]
+  std::vector<layout::Scale> scales;  ///< [domain nodes]
+  std::array<CouplingsData, layout::layers> couplings;
 };
 
 /// A whole model before encoding. Offline only.

@@ -50,18 +50,16 @@ class DenseWavelet {
   std::vector<Odd> odd_;  // by domain index; unused on level 0
 };
 
-/// U [3N x 3N] -> in place, in its lower half, the non-standard form of layout.hpp without scales: the rows of the
-/// details of level q hold their blocks with the averages of level max(q-2, 0), the details of level q-1 and each
-/// other. Returns the compliance between the averages of every level but the finest, by level. Work: 100 N^2 or so.
-std::vector<Eigen::MatrixXd> to_non_standard_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> compliance);
+/// U [3N x 3N] -> W U W^T in place, the two-sided wavelet form of layout.hpp without scales. Work: 100 N^2 or so.
+void to_wavelet_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> compliance);
+
+/// Its inverse on the coefficients of levels 0..c, [3 end(c) x 3 end(c)]: the compliance between the averages of level
+/// c.
+void from_wavelet_form(const DenseWavelet& wavelet, std::uint32_t c, Eigen::Ref<Eigen::MatrixXd> form);
 
 /// The compliance (m/N) between the averages of level `c` that a model stands for, with its first `layers` layers of
-/// couplings (1: the strong ones; 3: all): 3x3 blocks over the domain nodes of K(c). Work: as above.
+/// couplings: 3x3 blocks over the domain nodes of K(c). Work: as above.
 [[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c,
-                                                 std::uint32_t layers = layout::strengths);
-
-/// The same for every level 0 .. levels-1.
-[[nodiscard]] std::vector<Eigen::MatrixXd> decoded_compliances(const ModelData& model,
-                                                               std::uint32_t layers = layout::strengths);
+                                                 std::uint32_t layers = layout::layers);
 
 }  // namespace greenloop

@@ -15,7 +15,7 @@ ModelData smallest_model() {
   model.info.rate = 1000;
   model.info.max_contacts = 1;
   model.info.step_work = 1000;
-  model.info.field_layers = 1;
+  model.info.quantum[0] = quantum;
   model.provenance = "{}";
   model.base_triangles = {0, 1, 2};
 
@@ -24,13 +24,10 @@ ModelData smallest_model() {
                  {{1, 0, 0}, third_of_triangle, layout::node_domain | layout::node_read},
                  {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
   level.representatives = {{0, layout::none, layout::none}};
-  level.averages.assign(2, {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
-                            .diagonal = {1, 0, 0, 1, 0, 1}});
-  CouplingsData& couplings = level.couplings[static_cast<std::size_t>(layout::Partner::same)][0];
-  couplings.value_bits = 16;
-  couplings.quantum = quantum;
-  couplings.begin = {0, 0, 1};
-  couplings.value = {256, 0, 0, 0, 256, 0, 0, 64, 256};
+  level.scales.assign(2, {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
+                          .diagonal = {1, 0, 0, 1, 0, 1}});
+  for (CouplingsData& layer : level.couplings) layer.begin = {0, 0, 0};
+  level.couplings[0] = {.begin = {0, 0, 1}, .index = {0}, .value = {256, 0, 0, 0, 256, 0, 0, 64, 256}};
   model.levels = {level};
   return model;
 }

@@ -14,7 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
-using layout::Partner;
 using Sphere = SyntheticSphere;
 
 constexpr double range = 0.05;     // m, of the kernel
@@ -58,12 +57,12 @@ void store(const Matrix3d& matrix, float (&six)[6]) {
   }
 }
 
-// Of the coefficients begin .. end-1, whose diagonal blocks stand in `blocks`.
-std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index end) {
+// Of the coefficients begin .. end-1.
+std::vector<layout::Scale> scales_of(const MatrixXd& form, Index begin, Index end) {
   const Eigen::Vector3d direction(1, -1, 0.5);
   std::vector<layout::Scale> scales;
   for (Index i = begin; i < end; ++i) {
-    const Matrix3d block = blocks.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
+    const Matrix3d block = form.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
     // a conditional compliance as if some neighbour were held along one direction; how many are is the writer's choice
     const Eigen::Vector3d held = block * direction;
     const Matrix3d conditional = 0.8 * (block - 0.5 / direction.dot(held) * held * held.transpose());
@@ -77,122 +76,100 @@ std::vector<layout::Scale> scales_of(const MatrixXd& blocks, Index begin, Index 
   return scales;
 }
 
-std::vector<Matrix3d> inverse_roots(const std::vector<layout::Scale>& scales) {
-  std::vector<Matrix3d> inverses;
-  inverses.reserve(scales.size());
-  for (const layout::Scale& scale : scales) inverses.emplace_back(symmetric(scale.root).inverse());
-  return inverses;
-}
-
-// One partner's couplings before they are quantised.
-struct ScaledBlocks {
-  std::vector<std::uint32_t> begin = {0}, index;
-  std::vector<float> value;
-
-  void add(std::uint32_t row, const Matrix3d& block) {
-    index.push_back(row);
-    for (Index k = 0; k < 9; ++k) value.push_back(static_cast<float>(block(k % 3, k / 3)));
-  }
-  void end_column() { begin.push_back(static_cast<std::uint32_t>(index.size())); }
-
-  [[nodiscard]] CouplingsData quantised(std::uint32_t bits) const {
-    float largest = 0;
-    for (const float x : value) largest = std::max(largest, std::abs(x));
-    const auto most = static_cast<float>((1 << (bits - 1)) - 1);
-    CouplingsData data{.value_bits = bits, .quantum = largest / most, .begin = begin, .index = index, .value = {}};
-    for (const float x : value) {
-      data.value.push_back(static_cast<std::int16_t>(std::clamp(std::round(x / data.quantum), -most, most)));
+double worst_column(const MatrixXd& decoded, const MatrixXd& exact) {
+  double worst = 0;
+  for (Index j = 0; j < exact.cols(); j += 3) {
+    double largest_error = 0, largest = 0;
+    for (Index i = 0; i < exact.rows(); i += 3) {
+      largest = std::max(largest, exact.block<3, 3>(i, j).norm());
+      largest_error = std::max(largest_error, (decoded.block<3, 3>(i, j) - exact.block<3, 3>(i, j)).norm());
     }
-    return data;
+    worst = std::max(worst, largest_error / largest);
   }
-};
+  return worst;
+}
 
 class Compression {
  public:
   Compression(ModelData& model, const SyntheticOptions& options) : model_(model), options_(options), wavelet_(model) {}
 
-  void run(MatrixXd compliance) {
-    exact_ = to_non_standard_form(wavelet_, compliance);
-    const std::uint32_t levels = wavelet_.levels();
-    for (std::uint32_t q = 0; q < levels; ++q) {
-      LevelData& level = model_.levels[q];
-      if (q == 0) level.averages = scales_of(compliance, 0, wavelet_.end(0));
-      if (q > 0) level.details = scales_of(compliance, wavelet_.begin(q), wavelet_.end(q));
-      if (q > 0 && q + 2 < levels) level.averages = scales_of(exact_[q], 0, wavelet_.end(q));
+  void run(const MatrixXd& compliance) {
+    MatrixXd form = compliance;
+    to_wavelet_form(wavelet_, form);
+    for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
+      auto& scales = model_.levels[q].scales;
+      scales = scales_of(form, wavelet_.begin(q), wavelet_.end(q));
+      for (const layout::Scale& scale : scales) inverse_.emplace_back(symmetric(scale.root).inverse());
     }
-    for (std::uint32_t q = 0; q < levels; ++q) add_couplings(q, compliance);
-  }
-
-  void measure(const Sphere& sphere) {
-    exact_.push_back(exact_compliance(sphere));
-    for (std::uint32_t layers = layout::strengths; layers >= options_.field_layers; --layers) {
-      const std::vector<MatrixXd> decoded = decoded_compliances(model_, layers);
-      for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
-        layout::Level& counts = model_.levels[q].counts;
-        counts.field_rms_error = static_cast<float>((decoded[q] - exact_[q]).norm() / exact_[q].norm());
-        counts.field_column_error = static_cast<float>(worst_column(decoded[q], exact_[q]));
-        if (layers < layout::strengths) continue;
-        counts.rms_error = counts.field_rms_error;
-        counts.worst_column_error = counts.field_column_error;
-      }
-    }
+    choose_quanta(form);
+    for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) add_couplings(q, form);
+    measure(compliance);
   }
 
  private:
-  static double worst_column(const MatrixXd& decoded, const MatrixXd& exact) {
-    double worst = 0;
-    for (Index j = 0; j < exact.cols(); j += 3) {
-      double largest_error = 0, largest = 0;
-      for (Index i = 0; i < exact.rows(); i += 3) {
-        largest = std::max(largest, exact.block<3, 3>(i, j).norm());
-        largest_error = std::max(largest_error, (decoded.block<3, 3>(i, j) - exact.block<3, 3>(i, j)).norm());
-      }
-      worst = std::max(worst, largest_error / largest);
-    }
-    return worst;
+  [[nodiscard]] Matrix3d scaled(const MatrixXd& form, Index i, Index j) const {
+    return inverse_[i] * form.block<3, 3>(3 * i, 3 * j) * inverse_[j];
   }
 
-  [[nodiscard]] std::size_t layer_of(double norm) const {
-    return norm >= options_.strong ? 0 : norm >= options_.medium ? 1 : 2;
+  void choose_quanta(const MatrixXd& form) {
+    double largest = 0;
+    for (Index j = 0; j < wavelet_.end(wavelet_.levels() - 1); ++j) {
+      for (Index i = 0; i < j; ++i) largest = std::max(largest, scaled(form, i, j).cwiseAbs().maxCoeff());
+    }
+    std::fill(std::begin(model_.info.quantum), std::end(model_.info.quantum), static_cast<float>(options_.quantum));
+    model_.info.quantum[0] = static_cast<float>(largest / 32767);
+  }
+
+  // the layer of fewest bits, 16 where no other holds the block
+  [[nodiscard]] std::uint32_t layer_of(const Matrix3d& block) const {
+    const bool field = block.norm() / std::sqrt(3.0) >= options_.field;
+    for (std::uint32_t layer = layout::layers; layer-- > 1;) {
+      const double most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
+      if (layout::layer[layer].field == field && block.cwiseAbs().maxCoeff() < most * options_.quantum) return layer;
+    }
+    return 0;
   }
 
   void add_couplings(std::uint32_t q, const MatrixXd& form) {
-    const auto& own = q == 0 ? model_.levels[0].averages : model_.levels[q].details;
-    if (q > 0) add_couplings(q, Partner::averages, model_.levels[q < 2 ? 0 : q - 2].averages, own, 0, form);
-    if (q > 1) add_couplings(q, Partner::parents, model_.levels[q - 1].details, own, wavelet_.begin(q - 1), form);
-    add_couplings(q, Partner::same, own, own, wavelet_.begin(q), form);
+    LevelData& level = model_.levels[q];
+    for (CouplingsData& layer : level.couplings) layer.begin = {0};
+    for (Index j = wavelet_.begin(q); j < wavelet_.end(q); ++j) {
+      for (Index i = 0; i < j; ++i) {
+        const Matrix3d block = scaled(form, i, j);
+        if (block.norm() / std::sqrt(3.0) < options_.epsilon) continue;
+        const std::uint32_t layer = layer_of(block);
+        level.couplings[layer].index.push_back(static_cast<std::uint32_t>(i));
+        for (Index k = 0; k < 9; ++k) {
+          level.couplings[layer].value.push_back(
+              static_cast<std::int16_t>(std::lround(block(k % 3, k / 3) / double{model_.info.quantum[layer]})));
+        }
+      }
+      for (CouplingsData& layer : level.couplings)
+        layer.begin.push_back(static_cast<std::uint32_t>(layer.index.size()));
+    }
   }
 
-  void add_couplings(std::uint32_t q, Partner partner, const std::vector<layout::Scale>& row_scales,
-                     const std::vector<layout::Scale>& column_scales, Index first_row, const MatrixXd& form) {
-    const auto rows = inverse_roots(row_scales), columns = inverse_roots(column_scales);
-    ScaledBlocks layers[layout::strengths];
-    for (std::size_t j = 0; j < columns.size(); ++j) {
-      for (std::size_t i = 0; i < (partner == Partner::same ? j : rows.size()); ++i) {
-        const Index column = 3 * (wavelet_.begin(q) + static_cast<Index>(j));
-        const Index row = 3 * (first_row + static_cast<Index>(i));
-        const Matrix3d block = rows[i] * form.block<3, 3>(column, row).transpose() * columns[j];
-        const double norm = block.norm() / std::sqrt(3.0);
-        if (q > 0 && norm < options_.epsilon) continue;
-        layers[q == 0 ? 0 : layer_of(norm)].add(static_cast<std::uint32_t>(i), block);
-      }
-      for (ScaledBlocks& layer : layers) layer.end_column();
-    }
-    auto& stored = model_.levels[q].couplings[static_cast<std::size_t>(partner)];
-    if (q == 0) {
-      stored[0] = layers[0].quantised(16);
-      stored[0].index.clear();
-    } else {
-      stored[0] = layers[0].quantised(options_.strong_bits);
-      stored[1] = layers[1].quantised(options_.medium_bits);
-      stored[2] = layers[2].quantised(options_.weak_bits);
+  void measure(const MatrixXd& compliance) {
+    for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
+      const Index end = 3 * wavelet_.end(q);
+      MatrixXd exact = compliance;
+      to_wavelet_form(wavelet_, exact);
+      exact.conservativeResize(end, end);
+      from_wavelet_form(wavelet_, q, exact);
+      const MatrixXd all = decoded_compliance(model_, q);
+      const MatrixXd field = decoded_compliance(model_, q, layout::field_layers);
+      layout::Level& counts = model_.levels[q].counts;
+      counts.rms_error = static_cast<float>((all - exact).norm() / exact.norm());
+      counts.worst_column_error = static_cast<float>(worst_column(all, exact));
+      counts.field_rms_error = static_cast<float>((field - exact).norm() / exact.norm());
+      counts.field_column_error = static_cast<float>(worst_column(field, exact));
     }
   }
 
   ModelData& model_;
   const SyntheticOptions& options_;
   DenseWavelet wavelet_;
-  std::vector<MatrixXd> exact_;  // by level
+  std::vector<Matrix3d> inverse_;  // of every coefficient's root
 };
 
 std::vector<std::vector<std::uint32_t>> representatives(const Sphere& sphere, std::uint32_t c) {
@@ -251,7 +228,6 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   model.info.max_contacts = 16;
   model.info.step_work = 1'000'000;
   model.info.coarsest_constraint_level = options.coarsest_constraint_level;
-  model.info.field_layers = options.field_layers;
   model.provenance = R"({"generator": "synthetic sphere"})";
   for (const auto& t : sphere.base) model.base_triangles.insert(model.base_triangles.end(), t.begin(), t.end());
   for (std::uint32_t q = 0; q < sphere.levels(); ++q) {
@@ -260,7 +236,6 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   }
   Compression compression(model, options);
   compression.run(exact_compliance(sphere));
-  compression.measure(sphere);
   return model;
 }
 

@@ -11,14 +11,10 @@ namespace greenloop {
 struct SyntheticOptions {
   std::uint32_t levels = 3;                     ///< 1..6 mesh levels: 6, 18, 66, 258, 1026, 4098 nodes
   std::uint32_t coarsest_constraint_level = 0;  ///< < levels
-  std::uint32_t strong_bits = 8;                ///< 4, 8 or 16
-  std::uint32_t medium_bits = 8;                ///< 4, 8 or 16
-  std::uint32_t weak_bits = 4;                  ///< 4, 8 or 16
-  std::uint32_t field_layers = 3;               ///< 1 to 3
   bool lifted = true;                           ///< else the plain Linear wavelet
-  double strong = 0.1;                          ///< scaled blocks of this norm over root 3 are strong couplings
-  double medium = 0.03;                         ///< of this norm, medium ones
+  double field = 0.01;                          ///< scaled blocks of this norm over root 3 make fields
   double epsilon = 0.005;                       ///< below this they are dropped; 0 keeps all
+  double quantum = 0.002;                       ///< of scaled values, but in 16 bits
   double touchable_above = 0;                   ///< nodes with z >= this times the radius may be contacts; at most 1
 };
 
