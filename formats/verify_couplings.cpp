@@ -20,7 +20,7 @@ constexpr std::uint64_t bytes_per_block(std::uint32_t value_bits) {
   return value_bits == 4 ? 5 : values_per_block * value_bits / 8;
 }
 
-// Where the arrays must stand. No overflow: columns and block_count are below 2^32, the other factors at most 18.
+// Where the arrays must stand. No overflow: columns and block_count are below 2^32, the other factors at most 36.
 struct Extent {
   std::uint64_t begin_end, index, index_end, value, value_end;
 
@@ -54,7 +54,8 @@ bool verify_header(SectionCheck& check, const CouplingsHeader& header, const Exp
     return check.require(value == right, VerifyRule::inconsistent, field, 0, value, right);
   };
   const std::uint64_t most = std::min(expected.all_blocks(), std::uint64_t{layout::none});
-  return is("columns", header.columns, expected.columns) && is("rows", header.rows, expected.rows) &&
+  return is("columns", header.columns, header.block_count > 0 ? expected.columns : 0) &&
+         is("rows", header.rows, expected.rows) &&
          check.require(header.index_bytes == 2 || header.index_bytes == 4, VerifyRule::bad_enum, "index_bytes", 0,
                        header.index_bytes, 4) &&
          check.require(header.index_bytes != 2 || header.rows <= 65536, VerifyRule::inconsistent, "index_bytes", 0, 2,
@@ -124,7 +125,8 @@ bool verify_values(SectionCheck& check, const CouplingsHeader& header, const Val
   constexpr Value forbidden = std::numeric_limits<Value>::min();
   const Value* found = std::find(value, value + count, forbidden);
   return check.require(found == value + count, VerifyRule::out_of_range, "value",
-                       static_cast<std::uint64_t>(found - value), forbidden, forbidden + 1);
+                       static_cast<std::uint64_t>(found - value), static_cast<double>(forbidden),
+                       static_cast<double>(forbidden) + 1);
 }
 
 bool verify_nibbles(SectionCheck& check, const CouplingsHeader& header, const std::byte* value) {
@@ -158,8 +160,10 @@ bool verify_blocks(SectionCheck& check, const CouplingsView& view, const Couplin
       return verify_nibbles(check, header, view.value);
     case 8:
       return verify_values(check, header, reinterpret_cast<const std::int8_t*>(view.value));
-    default:
+    case 16:
       return verify_values(check, header, reinterpret_cast<const std::int16_t*>(view.value));
+    default:
+      return verify_values(check, header, reinterpret_cast<const std::int32_t*>(view.value));
   }
 }
 

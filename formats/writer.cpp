@@ -61,7 +61,7 @@ Bytes narrowed(const std::vector<From>& values, const std::string& what) {
 }
 
 // two elements a byte, the low nibble first; ten nibbles a block, the last one zero
-Bytes nibbles(const std::vector<std::int16_t>& values, const std::string& what) {
+Bytes nibbles(const std::vector<std::int32_t>& values, const std::string& what) {
   Bytes bytes(values.size() / 9 * 5);
   for (std::size_t i = 0; i < values.size(); ++i) {
     require(values[i] >= -7 && values[i] <= 7, fmt::format("{}[{}] = {} does not fit in 4 bits", what, i, values[i]));
@@ -71,12 +71,14 @@ Bytes nibbles(const std::vector<std::int16_t>& values, const std::string& what) 
   return bytes;
 }
 
-Bytes encode_values(const std::vector<std::int16_t>& values, std::uint32_t bits, const std::string& what) {
+Bytes encode_values(const std::vector<std::int32_t>& values, std::uint32_t bits, const std::string& what) {
   switch (bits) {
     case 4:
       return nibbles(values, what);
     case 8:
       return narrowed<std::int8_t>(values, what);
+    case 16:
+      return narrowed<std::int16_t>(values, what);
     default:
       return bytes_of(values);
   }
@@ -90,14 +92,14 @@ Bytes encode_couplings(const CouplingsData& data, std::uint32_t columns, std::ui
   require_size(name + ".value", data.value.size(), 9 * blocks);
 
   CouplingsHeader header{};
-  header.columns = columns;
+  header.columns = blocks > 0 ? columns : 0;
   header.rows = rows;
   header.index_bytes = rows <= 65536 ? 2 : 4;
   header.block_count = blocks;
 
   Bytes bytes(sizeof(CouplingsHeader));
   header.begin_offset = bytes.size();
-  append(bytes, bytes_of(data.begin));
+  append(bytes, std::as_bytes(std::span(data.begin).first(header.columns + std::size_t{1})));
   pad(bytes);
   header.index_offset = bytes.size();
   append(bytes, header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));

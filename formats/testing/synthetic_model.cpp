@@ -101,7 +101,7 @@ class Compression {
       scales = scales_of(form, wavelet_.begin(q), wavelet_.end(q));
       for (const layout::Scale& scale : scales) inverse_.emplace_back(symmetric(scale.root).inverse());
     }
-    choose_quanta(form);
+    model_.info.quantum = static_cast<float>(options_.quantum);
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) add_couplings(q, form);
     measure(compliance);
   }
@@ -111,20 +111,11 @@ class Compression {
     return inverse_[i] * form.block<3, 3>(3 * i, 3 * j) * inverse_[j];
   }
 
-  void choose_quanta(const MatrixXd& form) {
-    double largest = 0;
-    for (Index j = 0; j < wavelet_.end(wavelet_.levels() - 1); ++j) {
-      for (Index i = 0; i < j; ++i) largest = std::max(largest, scaled(form, i, j).cwiseAbs().maxCoeff());
-    }
-    std::fill(std::begin(model_.info.quantum), std::end(model_.info.quantum), static_cast<float>(options_.quantum));
-    model_.info.quantum[0] = static_cast<float>(largest / 32767);
-  }
-
-  // the layer of fewest bits, 16 where no other holds the block
+  // the layer of fewest bits that holds the block; the widest, the first, holds all
   [[nodiscard]] std::uint32_t layer_of(const Matrix3d& block) const {
     const bool field = block.norm() / std::sqrt(3.0) >= options_.field;
     for (std::uint32_t layer = layout::layers; layer-- > 1;) {
-      const double most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
+      const double most = std::ldexp(1, static_cast<int>(layout::layer[layer].value_bits) - 1) - 1;
       if (layout::layer[layer].field == field && block.cwiseAbs().maxCoeff() < most * options_.quantum) return layer;
     }
     return 0;
@@ -141,7 +132,7 @@ class Compression {
         level.couplings[layer].index.push_back(static_cast<std::uint32_t>(i));
         for (Index k = 0; k < 9; ++k) {
           level.couplings[layer].value.push_back(
-              static_cast<std::int16_t>(std::lround(block(k % 3, k / 3) / double{model_.info.quantum[layer]})));
+              static_cast<std::int32_t>(std::lround(block(k % 3, k / 3) / double{model_.info.quantum})));
         }
       }
       for (CouplingsData& layer : level.couplings)

@@ -21,18 +21,18 @@ bool any(const double* f, std::size_t count) {
   return std::any_of(f, f + count, [](double x) { return x != 0; });
 }
 
-std::int16_t value_at(const CouplingsView& couplings, std::size_t block, std::size_t k) {
-  if (couplings.value_bits == 16) return reinterpret_cast<const std::int16_t*>(couplings.value)[9 * block + k];
-  if (couplings.value_bits == 8) return reinterpret_cast<const std::int8_t*>(couplings.value)[9 * block + k];
-  const auto byte = static_cast<unsigned>(couplings.value[5 * block + k / 2]);
+std::int32_t value_at(const std::byte* value, std::uint32_t bits, std::size_t block, std::size_t k) {
+  if (bits == 32) return reinterpret_cast<const std::int32_t*>(value)[9 * block + k];
+  if (bits == 16) return reinterpret_cast<const std::int16_t*>(value)[9 * block + k];
+  if (bits == 8) return reinterpret_cast<const std::int8_t*>(value)[9 * block + k];
+  const auto byte = static_cast<unsigned>(value[5 * block + k / 2]);
   const unsigned nibble = (k % 2 == 0 ? byte : byte >> 4) & 15;
-  return static_cast<std::int16_t>(nibble < 8 ? static_cast<int>(nibble) : static_cast<int>(nibble) - 16);
+  return nibble < 8 ? static_cast<int>(nibble) : static_cast<int>(nibble) - 16;
 }
 
-std::uint32_t row_at(const CouplingsView& couplings, std::size_t column, std::size_t block) {
+std::uint32_t row_at(const CouplingsView& couplings, std::size_t block) {
   if (couplings.index_bytes == 2) return static_cast<const std::uint16_t*>(couplings.index)[block];
-  if (couplings.index_bytes == 4) return static_cast<const std::uint32_t*>(couplings.index)[block];
-  return static_cast<std::uint32_t>(block - couplings.begin[column]);
+  return static_cast<const std::uint32_t*>(couplings.index)[block];
 }
 
 void append(const float (&six)[6], std::vector<float>& matrices) {
@@ -43,55 +43,39 @@ void append(const float (&six)[6], std::vector<float>& matrices) {
 }  // namespace
 
 CompressedCompliance::CompressedCompliance(const ModelView& view, std::uint32_t layers) : wavelet_(view) {
-  number_coefficients(view);
-  load_couplings(view, layers);
-}
-
-void CompressedCompliance::number_coefficients(const ModelView& view) {
-  const auto add = [this](const layout::Scale& scale, std::uint32_t needs) {
-    append(scale.root, root_);
-    append(scale.diagonal, diagonal_);
-    needs_level_.push_back(needs);
-  };
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& at = view.level[level];
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-      add(level == 0 ? at.averages[i] : at.details[i], level);
+      append(at.scales[i].root, root_);
+      append(at.scales[i].diagonal, diagonal_);
     }
   }
-  averages_.resize(view.levels);
-  for (std::uint32_t level = 1; level + 2 < view.levels; ++level) {
-    averages_[level] = {.begin = needs_level_.size(), .count = rows(level)};
-    for (std::size_t i = 0; i < rows(level); ++i) add(view.level[level].averages[i], level + 2);
-  }
+  link(load_couplings(view, layers));
 }
 
-void CompressedCompliance::load_couplings(const ModelView& view, std::uint32_t layers) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;  // row, column
+std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(const ModelView& view,
+                                                                             std::uint32_t layers) {
+  std::vector<Ends> ends;
   for (std::uint32_t level = 0; level < view.levels; ++level) {
-    const std::size_t own = level > 0 ? rows(level - 1) : 0;
-    const std::size_t parents = level > 1 ? rows(level - 2) : 0;
-    const std::size_t averages = level > 2 ? averages_[level - 2].begin : 0;
-    const std::size_t first_row[3] = {averages, parents, own};
-    for (std::size_t partner = 0; partner < 3; ++partner) {
-      for (std::uint32_t layer = 0; layer < layers; ++layer) {
-        const CouplingsView& couplings = view.level[level].couplings[partner][layer];
-        for (std::size_t j = 0; j < couplings.columns; ++j) {
-          for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-            ends.emplace_back(first_row[partner] + row_at(couplings, j, b), own + j);
-            for (std::size_t k = 0; k < 9; ++k) {
-              block_.push_back(couplings.quantum * static_cast<float>(value_at(couplings, b, k)));
-            }
+    for (std::uint32_t layer = 0; layer < layers; ++layer) {
+      const CouplingsView& couplings = view.level[level].couplings[layer];
+      const float quantum = view.info->quantum;
+      for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+        for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
+          ends.emplace_back(row_at(couplings, b), view.level[level].domain_begin + j);
+          for (std::size_t k = 0; k < 9; ++k) {
+            block_.push_back(quantum *
+                             static_cast<float>(value_at(couplings.value, layout::layer[layer].value_bits, b, k)));
           }
         }
       }
     }
   }
-  link(ends);
+  return ends;
 }
 
-void CompressedCompliance::link(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& ends) {
-  link_begin_.assign(needs_level_.size() + 1, 0);
+void CompressedCompliance::link(const std::vector<Ends>& ends) {
+  link_begin_.assign(wavelet_.rows() + 1, 0);
   for (const auto& [row, column] : ends) {
     ++link_begin_[row + 1];
     ++link_begin_[column + 1];
@@ -107,45 +91,31 @@ void CompressedCompliance::link(const std::vector<std::pair<std::uint32_t, std::
 }
 
 void CompressedCompliance::apply(std::size_t level, std::size_t columns, const double* f, double* x) const {
-  const std::size_t width = 3 * columns;
-  std::vector<double> force(needs_level_.size() * width, 0.0);
-  std::copy_n(f, rows(level) * width, force.begin());
-  for (std::size_t l = level; l > 0; --l) {
-    wavelet_.split_forces(l, width, force.data());
-    if (averages_[l - 1].count > 0 && l < level) {
-      std::copy_n(force.begin(), rows(l - 1) * width,
-                  force.begin() + static_cast<std::ptrdiff_t>(averages_[l - 1].begin * width));
-    }
-  }
+  const std::size_t width = 3 * columns, count = rows(level);
+  std::vector<double> force(f, f + count * width);
+  for (std::size_t l = level; l > 0; --l) wavelet_.split_forces(l, width, force.data());
 
   std::vector<double> sum(force.size(), 0.0);
   std::vector<double> scaled(width);
-  for (std::size_t i = 0; i < needs_level_.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double* own = force.data() + i * width;
-    if (needs_level_[i] > level || !any(own, width)) continue;
+    if (!any(own, width)) continue;
     std::fill(scaled.begin(), scaled.end(), 0.0);
     multiply(root_.data() + 9 * i, false, columns, own, scaled.data());
-    if (i < wavelet_.rows()) {
-      multiply(diagonal_.data() + 9 * i, false, columns, scaled.data(), sum.data() + i * width);
-    }
+    multiply(diagonal_.data() + 9 * i, false, columns, scaled.data(), sum.data() + i * width);
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
       const Link& link = links_[at];
-      if (needs_level_[link.other] > level) continue;
+      if (link.other >= count) continue;
       multiply(block_.data() + std::size_t{9} * link.block, link.transposed, columns, scaled.data(),
                sum.data() + std::size_t{link.other} * width);
     }
   }
 
-  std::vector<double> value(force.size(), 0.0);
-  for (std::size_t i = 0; i < needs_level_.size(); ++i) {
-    multiply(root_.data() + 9 * i, false, columns, sum.data() + i * width, value.data() + i * width);
+  std::fill_n(x, count * width, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    multiply(root_.data() + 9 * i, false, columns, sum.data() + i * width, x + i * width);
   }
-  for (std::size_t l = 1; l <= level; ++l) {
-    const Role& partners = averages_[l - 1];
-    for (std::size_t k = 0; k < partners.count * width; ++k) value[k] += value[partners.begin * width + k];
-    wavelet_.merge(l, width, value.data());
-  }
-  std::copy_n(value.begin(), rows(level) * width, x);
+  for (std::size_t l = 1; l <= level; ++l) wavelet_.merge(l, width, x);
 }
 
 std::vector<double> CompressedCompliance::column(std::size_t level, std::size_t j) const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "formats/view.hpp"
@@ -9,14 +10,12 @@
 
 namespace greenloop::offline {
 
-inline constexpr std::uint32_t all_layers = 3;  ///< of couplings, by layout::Strength
-
 /// The compliance that a model file stands for, in double precision: what the loop's answers are measured with and
-/// certified on. Non-standard form, see formats/layout.hpp. Offline only.
+/// certified on. Two-sided wavelet form, see formats/layout.hpp. Offline only.
 class CompressedCompliance {
  public:
-  /// `layers`: how many layers of couplings count, strong ones first; 3: all. The view must outlive this object.
-  /// Memory: about 80 bytes per coupling.
+  /// `layers`: how many layers of couplings count, the first ones: layout::field_layers or layout::layers. The view may
+  /// go. Memory: about 80 bytes per coupling.
   CompressedCompliance(const ModelView& view, std::uint32_t layers);
 
   [[nodiscard]] std::size_t finest() const { return wavelet_.finest(); }
@@ -37,23 +36,16 @@ class CompressedCompliance {
     std::uint32_t block;
     bool transposed;
   };
-  // averages of a level that are partners of finer details: their own coefficients after those of the domain rows
-  struct Role {
-    std::size_t begin = 0;
-    std::size_t count = 0;
-  };
+  using Ends = std::pair<std::uint32_t, std::uint32_t>;  // row, column
 
-  void number_coefficients(const ModelView& view);
-  void load_couplings(const ModelView& view, std::uint32_t layers);
-  void link(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& ends);
+  [[nodiscard]] std::vector<Ends> load_couplings(const ModelView& view, std::uint32_t layers);
+  void link(const std::vector<Ends>& ends);
 
   LinearWavelet wavelet_;
-  std::vector<Role> averages_;              // [level], empty for level 0 (whose averages are domain rows)
-  std::vector<std::uint32_t> needs_level_;  // [coefficient] it takes part from this level on
-  std::vector<float> root_, diagonal_;      // [coefficient] 9 numbers
-  std::vector<float> block_;                // [coupling] 9 numbers
-  std::vector<std::size_t> link_begin_;     // [coefficient + 1]
-  std::vector<Link> links_;
+  std::vector<float> root_, diagonal_;   // [coefficient] 9 numbers
+  std::vector<float> block_;             // [coupling] 9 numbers
+  std::vector<std::size_t> link_begin_;  // [coefficient + 1]
+  std::vector<Link> links_;              // by coefficient
 };
 
 }  // namespace greenloop::offline

@@ -3,59 +3,91 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
 namespace greenloop::offline {
 namespace {
 
-constexpr std::size_t most_neighbours = 24;
+constexpr std::size_t most_neighbours = 64;
 
-struct Neighbour {
-  float norm;
-  std::uint32_t coefficient;
-};
-
-// [coefficient] those it is coupled to, the strongest first
-std::vector<std::vector<Neighbour>> strongest(const CouplingCandidates& couplings) {
-  std::vector<std::vector<Neighbour>> neighbours(couplings.begin.size() - 1);
-  for (std::uint32_t j = 0; j + 1 < couplings.begin.size(); ++j) {
-    for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-      neighbours[j].push_back({couplings.norm[b], couplings.row[b]});
-      neighbours[couplings.row[b]].push_back({couplings.norm[b], j});
+// All couplings, scaled by the roots of the diagonal blocks.
+class ScaledCouplings {
+ public:
+  ScaledCouplings(const std::vector<Eigen::Matrix3d>& diagonal, const std::vector<CouplingCandidates>& levels) {
+    for (std::size_t i = 0; i < diagonal.size(); ++i) scales_.emplace_back(diagonal[i], diagonal[i], i);
+    for (const auto& level : levels) {
+      for (std::size_t j = 0; j + 1 < level.begin.size(); ++j) columns_.push_back({&level, j});
     }
   }
-  for (auto& list : neighbours) {
-    const auto end = list.begin() + static_cast<std::ptrdiff_t>(std::min(most_neighbours, list.size()));
-    std::partial_sort(list.begin(), end, list.end(), [](const Neighbour& a, const Neighbour& b) {
-      return std::pair(-a.norm, a.coefficient) < std::pair(-b.norm, b.coefficient);
-    });
-    list.erase(end, list.end());
-  }
-  return neighbours;
-}
 
-Eigen::Matrix3d coupling(const CouplingCandidates& couplings, std::uint32_t i, std::uint32_t j) {
-  if (i > j) return coupling(couplings, j, i).transpose();
-  const auto begin = couplings.row.begin() + static_cast<std::ptrdiff_t>(couplings.begin[j]);
-  const auto end = couplings.row.begin() + static_cast<std::ptrdiff_t>(couplings.begin[j + 1]);
-  const auto it = std::lower_bound(begin, end, i);
-  if (it == end || *it != i) return Eigen::Matrix3d::Zero();
-  return Eigen::Map<const Eigen::Matrix3f>(couplings.value.data() + 9 * (it - couplings.row.begin())).cast<double>();
-}
+  [[nodiscard]] std::size_t size() const { return scales_.size(); }
+  [[nodiscard]] const Eigen::Matrix3d& root(std::size_t i) const { return scales_[i].root(); }
+
+  /// Zero where there is none.
+  [[nodiscard]] Eigen::Matrix3d block(std::size_t i, std::size_t j) const {
+    if (i > j) return block(j, i).transpose();
+    const auto [level, column] = columns_[j];
+    const auto rows = level->row.begin();
+    const auto begin = rows + static_cast<std::ptrdiff_t>(level->begin[column]);
+    const auto end = rows + static_cast<std::ptrdiff_t>(level->begin[column + 1]);
+    const auto it = std::lower_bound(begin, end, i);
+    if (it == end || *it != i) return Eigen::Matrix3d::Zero();
+    return scaled(i, j, static_cast<std::size_t>(it - rows));
+  }
+
+  /// [coefficient] those it is coupled to, the strongest first.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> strongest() const {
+    std::vector<std::vector<std::pair<float, std::uint32_t>>> neighbours(size());  // minus the norm first
+    for (std::size_t j = 0; j < size(); ++j) {
+      const auto [level, column] = columns_[j];
+      for (std::size_t b = level->begin[column]; b < level->begin[column + 1]; ++b) {
+        const std::uint32_t i = level->row[b];
+        const auto norm = static_cast<float>(scaled(i, j, b).norm());
+        neighbours[j].emplace_back(-norm, i);
+        neighbours[i].emplace_back(-norm, static_cast<std::uint32_t>(j));
+      }
+    }
+    std::vector<std::vector<std::size_t>> result(size());
+    for (std::size_t i = 0; i < size(); ++i) {
+      auto& list = neighbours[i];
+      const auto end = list.begin() + static_cast<std::ptrdiff_t>(std::min(most_neighbours, list.size()));
+      std::partial_sort(list.begin(), end, list.end());
+      std::transform(list.begin(), end, std::back_inserter(result[i]), [](const auto& entry) { return entry.second; });
+      list = {};
+    }
+    return result;
+  }
+
+ private:
+  struct Column {
+    const CouplingCandidates* level;
+    std::size_t column;
+  };
+
+  [[nodiscard]] Eigen::Matrix3d scaled(std::size_t i, std::size_t j, std::size_t b) const {
+    return scales_[i].inverse() *
+           Eigen::Map<const Eigen::Matrix3f>(columns_[j].level->value.data() + 9 * b).cast<double>() *
+           scales_[j].inverse();
+  }
+
+  std::vector<CoefficientScale> scales_;
+  std::vector<Column> columns_;
+};
 
 // scaled; fewer neighbours where what the candidates leave out makes their matrix indefinite
-Eigen::Matrix3d conditional(const CouplingCandidates& couplings, std::uint32_t own,
-                            const std::vector<Neighbour>& neighbours) {
+Eigen::Matrix3d conditional(const ScaledCouplings& couplings, std::size_t own,
+                            const std::vector<std::size_t>& neighbours) {
   for (std::size_t count = neighbours.size(); count > 0; count /= 2) {
-    std::vector<std::uint32_t> members = {own};
-    for (std::size_t n = 0; n < count; ++n) members.push_back(neighbours[n].coefficient);
+    std::vector<std::size_t> members = {own};
+    members.insert(members.end(), neighbours.begin(), neighbours.begin() + static_cast<std::ptrdiff_t>(count));
     const auto size = static_cast<Eigen::Index>(members.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(3 * size, 3 * size);
     for (Eigen::Index a = 0; a < size; ++a) {
       for (Eigen::Index b = 0; b < a; ++b) {
         const Eigen::Matrix3d block =
-            coupling(couplings, members[static_cast<std::size_t>(a)], members[static_cast<std::size_t>(b)]);
+            couplings.block(members[static_cast<std::size_t>(a)], members[static_cast<std::size_t>(b)]);
         matrix.block<3, 3>(3 * a, 3 * b) = block;
         matrix.block<3, 3>(3 * b, 3 * a) = block.transpose();
       }
@@ -71,36 +103,14 @@ Eigen::Matrix3d conditional(const CouplingCandidates& couplings, std::uint32_t o
 }  // namespace
 
 std::vector<Eigen::Matrix3d> conditional_compliance(const std::vector<Eigen::Matrix3d>& diagonal,
-                                                    const CouplingCandidates& couplings) {
-  const auto neighbours = strongest(couplings);
+                                                    const std::vector<CouplingCandidates>& couplings) {
+  const ScaledCouplings scaled(diagonal, couplings);
+  const auto neighbours = scaled.strongest();
   std::vector<Eigen::Matrix3d> result;
-  for (std::uint32_t i = 0; i < diagonal.size(); ++i) {
-    const Eigen::Matrix3d root = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(diagonal[i]).operatorSqrt();
-    const Eigen::Matrix3d scaled = conditional(couplings, i, neighbours[i]);
-    result.push_back(root * (0.5 * (scaled + scaled.transpose())) * root);
-  }
-  return result;
-}
-
-std::vector<Eigen::Matrix3d> conditional_compliance(const DenseCompliance& compliance) {
-  const auto rows = static_cast<Eigen::Index>(compliance.rows());
-  Eigen::MatrixXd matrix(3 * rows, 3 * rows);
-  for (Eigen::Index j = 0; j < rows; ++j) {
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      matrix.block<3, 3>(3 * i, 3 * j) = compliance.block(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
-    }
-  }
-  const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
-  if (factor.info() != Eigen::Success) {
-    throw std::invalid_argument(
-        "compression: the compliance between the averages of a coarse level is not positive "
-        "definite; are the exact columns those of an elastic body?");
-  }
-  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(3 * rows, 3 * rows));
-  std::vector<Eigen::Matrix3d> result;
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const Eigen::Matrix3d block = inverse.block<3, 3>(3 * i, 3 * i);
-    result.push_back((0.5 * (block + block.transpose())).inverse());
+  result.reserve(scaled.size());
+  for (std::size_t i = 0; i < scaled.size(); ++i) {
+    const Eigen::Matrix3d block = conditional(scaled, i, neighbours[i]);
+    result.push_back(scaled.root(i) * (0.5 * (block + block.transpose())) * scaled.root(i));
   }
   return result;
 }

@@ -86,10 +86,18 @@ double ContactPatches::force_error(const CompressedCompliance& compressed, std::
   return ((found - exact).colwise().norm().array() / exact.colwise().norm().array()).maxCoeff();
 }
 
+std::vector<ContactPatches::Error> ContactPatches::force_errors(const CompressedCompliance& compressed,
+                                                                std::size_t level) const {
+  std::vector<Error> errors;
+  errors.reserve(patches_.size());
+  for (std::size_t p = 0; p < patches_.size(); ++p) errors.push_back({force_error(compressed, level, p), p});
+  std::sort(errors.begin(), errors.end(),
+            [](const Error& a, const Error& b) { return std::pair(-a.force, a.patch) < std::pair(-b.force, b.patch); });
+  return errors;
+}
+
 double ContactPatches::worst_force_error(const CompressedCompliance& compressed, std::size_t level) const {
-  double worst = 0;
-  for (std::size_t p = 0; p < patches_.size(); ++p) worst = std::max(worst, force_error(compressed, level, p));
-  return worst;
+  return patches_.empty() ? 0 : force_errors(compressed, level).front().force;
 }
 
 ContactPatches ContactPatches::choose(const std::vector<std::size_t>& patches) const {

@@ -28,6 +28,13 @@ class ContactPatches {
   /// not positive definite. Work: 64 columns.
   [[nodiscard]] double force_error(const CompressedCompliance& compressed, std::size_t level, std::size_t patch) const;
 
+  struct Error {
+    double force = 0;  ///< force_error
+    std::size_t patch = 0;
+  };
+  /// The errors of all patches, the worst first.
+  [[nodiscard]] std::vector<Error> force_errors(const CompressedCompliance& compressed, std::size_t level) const;
+
   /// The worst over all patches.
   [[nodiscard]] double worst_force_error(const CompressedCompliance& compressed, std::size_t level) const;
 

@@ -42,7 +42,7 @@ struct Trial {
 
 /// What trials are made and measured with. The referenced objects must outlive the search.
 struct TrialBench {
-  const CompliancePyramid& pyramid;
+  const WaveletCompliance& compliance;
   const ModelData& tables;  ///< the model without scales and couplings
   const std::vector<SampleColumn>& columns;
   std::function<std::uint64_t(std::span<const std::byte>)> step_work;  ///< of an encoded model; may be empty
@@ -61,21 +61,19 @@ struct EncodedModel {
   ModelView view;
 };
 
-/// The `count` patches whose forces suffer most from compression, to search encodings with. A coarse encoding ranks
-/// them; where it leaves more than `count` patches indefinite, which says nothing about their order, finer ones down to
-/// the threshold `floor` rank those. Work: 64 columns per patch and encoding.
-[[nodiscard]] ContactPatches worst_patches(const TrialBench& bench, const ContactPatches& patches, std::size_t count,
-                                           double floor);
+/// The `count` patches, by number, whose forces suffer most from an encoding of this threshold. Work: 64 columns per
+/// patch.
+[[nodiscard]] std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPatches& patches,
+                                                     std::size_t count, double threshold);
 
-/// `encoding` with the largest field threshold whose strong couplings alone make a field that meets `accuracy` (rms and
-/// worst_column) on the sample's columns; without one if not even a threshold of 1/100 does. Work: some encodings and
-/// the sample's columns for each.
+/// `encoding` with the largest field threshold whose field couplings alone meet `accuracy` (rms and worst_column) on
+/// the sample's columns; 0, so that all couplings make fields, if not even a threshold of 1/1000 does. Work: some
+/// encodings and the sample's columns for each.
 [[nodiscard]] Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accuracy, Encoding encoding,
                                               const Progress& progress);
 
 /// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2. If none
-/// does, the most accurate one. Adds every trial to `trials`; those that stand there, made with the same bench and
-/// patches, are not made again.
+/// does, the most accurate one. Adds every trial to `trials`.
 [[nodiscard]] Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy,
                                     double floor, std::vector<Trial>& trials, const Progress& progress);
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "offline/compress/certificate.hpp"
 #include "offline/compress/exact_sample.hpp"
@@ -15,11 +17,12 @@ namespace greenloop::offline {
 namespace {
 
 constexpr std::size_t search_patches = 16;  // the worst ones, which encodings are tried with
+constexpr double ranking_threshold = 0.005;
 constexpr std::size_t stream_columns = 64;  // read at a time
 constexpr double first_floor = 0.0005, least_floor = 1e-5;
-constexpr std::uint32_t strong_layers = 1;
-constexpr double field_safety = 0.7;       // of the field's errors over strong couplings, searched on a sample
-constexpr int rounds = 4;                  // of search and measurement per pyramid
+constexpr double field_safety = 0.9;  // of the field's errors, searched on a sample
+constexpr double least_field_threshold = 1e-3;
+constexpr int rounds = 6;                  // of search and measurement per transform
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
 
@@ -43,47 +46,51 @@ void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
 
 // errors of one level against its exact compliance
 ConstraintLevelReport measure_coarse(const CompressionInput& input, const LinearWavelet& wavelet,
-                                     const CompliancePyramid& pyramid, const CompressedCompliance& compressed,
+                                     const WaveletCompliance& exact, const CompressedCompliance& compressed,
                                      std::size_t level) {
-  const DenseCompliance& exact = pyramid.coarse[level];
   ContactPatches patches(row_positions(input.mesh, wavelet, level), ExactSample::most_patches);
   FieldError error;
-  Eigen::MatrixXd column(3 * exact.rows(), 3);
-  for (std::size_t j = 0; j < exact.rows(); ++j) {
-    for (std::size_t i = 0; i < exact.rows(); ++i) {
-      column.middleRows<3>(static_cast<Eigen::Index>(3 * i)) = exact.block(i, j);
+  const std::size_t rows = wavelet.row_end(level);
+  Eigen::MatrixXd blocks(3 * rows, 3);
+  for (std::size_t j = 0; j < rows; ++j) {
+    const auto column = exact_column(wavelet, exact, level, j);
+    for (std::size_t i = 0; i < rows; ++i) {
+      blocks.middleRows<3>(static_cast<Eigen::Index>(3 * i)) = Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * i);
     }
-    patches.add(column, j);
-    error.add(compressed, level, j, blocks_of(column, 0).data(), wavelet.integrals(level)[j]);
+    patches.add(blocks, j);
+    error.add(compressed, level, j, column.data(), wavelet.integrals(level)[j]);
   }
   return {.level = static_cast<std::uint32_t>(level),
-          .nodes = exact.rows(),
+          .nodes = rows,
           .rms_error = error.rms(),
           .worst_column_error = error.worst_column(),
           .patch_force_error = patches.worst_force_error(compressed, level)};
 }
 
-struct FinestErrors {
-  FieldError all, strong;
-};
-
-// errors of the finest level over all exact columns
-FinestErrors measure_finest(const CompressionInput& input, const CompressedCompliance& all,
-                            const CompressedCompliance& strong, const Progress& progress) {
-  FinestErrors errors;
-  const std::size_t rows = input.column_nodes.size(), finest = all.finest();
+// errors of the finest level over all exact columns, of each of several compressed compliances
+std::vector<FieldError> measure_finest(const CompressionInput& input,
+                                       std::initializer_list<const CompressedCompliance*> compressed,
+                                       const Progress& progress) {
+  std::vector<FieldError> errors(compressed.size());
+  const std::size_t rows = input.column_nodes.size();
   for (std::size_t first = 0; first < rows; first += stream_columns) {
     const std::size_t count = std::min(stream_columns, rows - first);
     const Eigen::MatrixXd block = input.columns(first, count);
     for (std::size_t j = 0; j < count; ++j) {
       const auto exact = blocks_of(block, j);
       const double area = input.area[input.column_nodes[first + j]];
-      errors.all.add(all, finest, first + j, exact.data(), area);
-      errors.strong.add(strong, finest, first + j, exact.data(), area);
+      auto error = errors.begin();
+      for (const auto* one : compressed) (error++)->add(*one, one->finest(), first + j, exact.data(), area);
     }
     progress(static_cast<double>(first + count) / static_cast<double>(rows), "measure all columns");
   }
   return errors;
+}
+
+void add_patches(const std::vector<std::size_t>& more, std::vector<std::size_t>& patches) {
+  patches.insert(patches.end(), more.begin(), more.end());
+  std::sort(patches.begin(), patches.end());
+  patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
 }
 
 float stored(double error) { return static_cast<float>(std::min(error, double{std::numeric_limits<float>::max()})); }
@@ -99,7 +106,6 @@ void store_errors(const CompressionReport& report, ModelData& model) {
   finest.field_rms_error = stored(report.field_rms_error);
   finest.field_column_error = stored(report.field_column_error);
   model.info.threshold = report.encoding.threshold;
-  model.info.field_layers = report.field_layers;
   model.info.lambda_min = report.lambda_min;
 }
 
@@ -114,11 +120,12 @@ void store_errors(const CompressionReport& report, ModelData& model) {
 // An encoding of the whole model, measured on everything.
 struct Measured {
   Trial trial;
-  FinestErrors errors;
+  FieldError field;
+  std::vector<std::size_t> worst_patches;
   double least_eigenvalue = 0;  // m/N, estimated; only of a trial that meets the accuracy
 };
 
-// One build. Its pyramid is made again with a lower floor if no encoding of the one at hand is accurate enough.
+// One build. The columns are transformed again with a lower floor if no encoding of the one at hand is accurate enough.
 class Build {
  public:
   Build(const CompressionInput& input, const Progress& progress)
@@ -128,7 +135,6 @@ class Build {
         sample_(checked(input, wavelet_).mesh, wavelet_, input.area) {
     model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
     model_.provenance = input.provenance;
-    model_.info.field_layers = all_layers;
     add_representatives(input.mesh, input.flags, model_);
     report_.dense_bytes = 36 * wavelet_.rows() * wavelet_.rows();
   }
@@ -156,62 +162,77 @@ class Build {
     };
   }
 
-  [[nodiscard]] CompliancePyramid transform(double floor) {
+  [[nodiscard]] WaveletCompliance transform(double floor) {
     const ColumnSource columns = [&](std::size_t first, std::size_t count) {
       Eigen::MatrixXd block = input_.columns(first, count);
       const bool fits = block.rows() == static_cast<Eigen::Index>(3 * wavelet_.rows());
       if (floor == first_floor && fits) sample_.add(block, first);
       return block;
     };
-    return build_pyramid(wavelet_, columns, floor, part(0, 0.3));
+    return transform_compliance(wavelet_, columns, floor, part(0, 0.3));
   }
 
   // searches and measures until an encoding meets the accuracy on everything; false: none does with this floor
   [[nodiscard]] bool meets_with(double floor) {
-    const CompliancePyramid pyramid = transform(floor);
-    const TrialBench bench{pyramid, model_, sample_.columns(), input_.step_work};
-    const ContactPatches searched = worst_patches(bench, sample_.patches(), search_patches, floor);
+    const WaveletCompliance compliance = transform(floor);
+    const TrialBench bench{compliance, model_, sample_.columns(), input_.step_work};
+    std::vector<std::size_t> searched = worst_patches(bench, sample_.patches(), search_patches, ranking_threshold);
     Accuracy aim = input_.accuracy;
     aim.patch_force *= safety;
-    std::vector<Trial> trials;
     for (int round = 0; round < rounds; ++round) {
-      const std::size_t known = trials.size();
-      Trial chosen = search_encoding(bench, searched, aim, floor, trials, part(0.3, 0.6));
-      report_.trials.insert(report_.trials.end(), trials.begin() + static_cast<std::ptrdiff_t>(known), trials.end());
+      Trial chosen =
+          search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.6));
       closest_ = chosen;
       if (!chosen.meets(aim)) return false;
       const Accuracy field{.rms = field_safety * input_.accuracy.rms,
                            .worst_column = field_safety * input_.accuracy.worst_column};
       chosen.encoding = search_field_threshold(bench, field, chosen.encoding, part(0.6, 0.7));
-      encode_couplings(pyramid, chosen.encoding, model_);
-      const EncodedModel encoded(model_);
-      const CompressedCompliance all(encoded.view, all_layers);
-      const Measured measured = measure(encoded, all, chosen);
+      const Measured measured = measure(compliance, chosen);
       if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
         describe(measured);
-        describe_levels(pyramid, encoded.view, all, measured.trial);
+        describe_levels(compliance, measured.trial);
         return true;
       }
       closest_ = measured.trial;
+      add_patches(measured.worst_patches, searched);
       tighten(aim, measured);
     }
     return false;
   }
 
-  [[nodiscard]] Measured measure(const EncodedModel& encoded, const CompressedCompliance& all, const Trial& chosen) {
-    const CompressedCompliance strong(encoded.view, strong_layers);
-    Measured measured{.trial = chosen, .errors = measure_finest(input_, all, strong, part(0.7, 0.8))};
-    measured.trial.bytes = encoded.bytes.size();
-    measured.trial.rms = measured.errors.all.rms();
-    measured.trial.worst_column = measured.errors.all.worst_column();
-    measured.trial.patch_force = sample_.patches().worst_force_error(all, wavelet_.finest());
-    if (measured.trial.meets(input_.accuracy)) {
-      measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.8, 0.9));
+  // Encodes. Where the sample promised too much of the field, more couplings make it.
+  [[nodiscard]] Measured measure(const WaveletCompliance& compliance, const Trial& chosen) {
+    Measured measured{.trial = chosen, .field = {}, .worst_patches = {}};
+    double& field_threshold = measured.trial.encoding.field_threshold;
+    for (bool first = true;; first = false) {
+      encode_couplings(compliance, measured.trial.encoding, model_);
+      const EncodedModel encoded(model_);
+      const CompressedCompliance field(encoded.view, layout::field_layers);
+      measured.trial.bytes = encoded.bytes.size();
+      if (first) {
+        const CompressedCompliance all(encoded.view, layout::layers);
+        const auto errors = measure_finest(input_, {&all, &field}, part(0.7, 0.8));
+        measured.field = errors[1];
+        measured.trial.rms = errors[0].rms();
+        measured.trial.worst_column = errors[0].worst_column();
+        const auto patches = sample_.patches().force_errors(all, wavelet_.finest());
+        measured.trial.patch_force = patches.front().force;
+        for (std::size_t p = 0; p < std::min(search_patches, patches.size()); ++p) {
+          measured.worst_patches.push_back(patches[p].patch);
+        }
+        if (!measured.trial.meets(input_.accuracy)) return measured;
+        measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.8, 0.9));
+      } else {
+        measured.field = measure_finest(input_, {&field}, part(0.9, 0.95))[0];
+      }
+      const bool field_meets =
+          measured.field.rms() <= input_.accuracy.rms && measured.field.worst_column() <= input_.accuracy.worst_column;
+      if (field_meets || field_threshold == 0) return measured;
+      field_threshold = field_threshold > least_field_threshold ? 0.7 * field_threshold : 0;
     }
-    return measured;
   }
 
-  // asks the next search for as much less as this one's choice fell short by
+  // asks the next search for as much less as this one's choice fell short by; patches it has learned of itself
   void tighten(Accuracy& aim, const Measured& measured) const {
     const Trial& trial = measured.trial;
     const Accuracy& wanted = input_.accuracy;
@@ -221,27 +242,22 @@ class Build {
     }
     aim.rms *= std::min(1.0, 0.98 * wanted.rms / trial.rms);
     aim.worst_column *= std::min(1.0, 0.98 * wanted.worst_column / trial.worst_column);
-    aim.patch_force *= std::min(1.0, 0.97 * wanted.patch_force / trial.patch_force);
   }
 
   void describe(const Measured& measured) {
-    const auto& [all, strong] = measured.errors;
-    const bool strong_suffices =
-        strong.rms() <= input_.accuracy.rms && strong.worst_column() <= input_.accuracy.worst_column;
-    const FieldError& field = strong_suffices ? strong : all;
     report_.encoding = measured.trial.encoding;
     report_.trials.push_back(measured.trial);
     report_.lambda_min = certificate_share * measured.least_eigenvalue;
-    report_.field_layers = strong_suffices ? strong_layers : all_layers;
-    report_.field_rms_error = field.rms();
-    report_.field_column_error = field.worst_column();
+    report_.field_rms_error = measured.field.rms();
+    report_.field_column_error = measured.field.worst_column();
     report_.patches = sample_.patches().size();
   }
 
-  void describe_levels(const CompliancePyramid& pyramid, const ModelView& view, const CompressedCompliance& all,
-                       const Trial& finest) {
+  void describe_levels(const WaveletCompliance& compliance, const Trial& finest) {
+    const EncodedModel encoded(model_);
+    const CompressedCompliance all(encoded.view, layout::layers);
     for (std::size_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
-      report_.levels.push_back(measure_coarse(input_, wavelet_, pyramid, all, level));
+      report_.levels.push_back(measure_coarse(input_, wavelet_, compliance, all, level));
     }
     report_.levels.push_back({.level = static_cast<std::uint32_t>(wavelet_.finest()),
                               .nodes = wavelet_.rows(),
@@ -249,8 +265,8 @@ class Build {
                               .worst_column_error = finest.worst_column,
                               .patch_force_error = finest.patch_force});
     for (auto& level : report_.levels) {
-      level.kept_blocks = view.level[level.level].counts->kept_blocks;
-      level.dense_blocks = view.level[level.level].counts->dense_blocks;
+      level.kept_blocks = encoded.view.level[level.level].counts->kept_blocks;
+      level.dense_blocks = encoded.view.level[level.level].counts->dense_blocks;
     }
   }
 

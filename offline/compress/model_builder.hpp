@@ -36,8 +36,7 @@ struct ConstraintLevelReport {
 
 struct CompressionReport {
   Encoding encoding;
-  std::uint32_t field_layers = 2;
-  double field_rms_error = 0, field_column_error = 0;  ///< with that many layers
+  double field_rms_error = 0, field_column_error = 0;  ///< of fields
   double lambda_min = 0;                               ///< m/N, certified
   std::size_t patches = 0;                             ///< patches that patch_force_error was measured on
   std::vector<ConstraintLevelReport> levels;           ///< coarse to fine

@@ -17,12 +17,13 @@ void store(const Eigen::Matrix3d& symmetric, float (&six)[6]) {
 }  // namespace
 
 CoefficientScale::CoefficientScale(const Eigen::Matrix3d& diagonal, const Eigen::Matrix3d& conditional,
-                                   std::string_view role, std::size_t index) {
+                                   std::size_t coefficient) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(conditional);
   if (!(solver.eigenvalues().minCoeff() > 0)) {
-    throw std::invalid_argument("compression: the compliance is not positive definite: " + std::string(role) + " " +
-                                std::to_string(index) + " has the conditional compliance " +
-                                std::to_string(solver.eigenvalues().minCoeff()) + " m/N");
+    throw std::invalid_argument("compression: the compliance is not positive definite: wavelet coefficient " +
+                                std::to_string(coefficient) + " has the conditional compliance " +
+                                std::to_string(solver.eigenvalues().minCoeff()) +
+                                " m/N; are the exact columns those of an elastic body?");
   }
   root_ = solver.operatorSqrt();
   inverse_ = solver.operatorInverseSqrt();

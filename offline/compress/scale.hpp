@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <string_view>
 
 #include "formats/layout.hpp"
 
@@ -13,9 +12,8 @@ namespace greenloop::offline {
 /// to that, not to the diagonal block; on thin parts the two differ a hundredfold.
 class CoefficientScale {
  public:
-  /// Both 3x3, m/N. Throws std::invalid_argument naming `role` and `index` if `conditional` is not positive definite.
-  CoefficientScale(const Eigen::Matrix3d& diagonal, const Eigen::Matrix3d& conditional, std::string_view role,
-                   std::size_t index);
+  /// Both 3x3, m/N. Throws std::invalid_argument naming the coefficient if `conditional` is not positive definite.
+  CoefficientScale(const Eigen::Matrix3d& diagonal, const Eigen::Matrix3d& conditional, std::size_t coefficient);
 
   [[nodiscard]] const Eigen::Matrix3d& root() const { return root_; }
   [[nodiscard]] const Eigen::Matrix3d& inverse() const { return inverse_; }
