@@ -58,23 +58,35 @@ Json provenance_of(const ModelView& view) {
   return parsed.is_discarded() ? Json(text) : parsed;
 }
 
+std::uint64_t coupling_count(const ModelView& view, std::uint32_t layer) {
+  std::uint64_t count = 0;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const CouplingsView& couplings = view.level[q].couplings[layer];
+    count += couplings.begin[couplings.columns];
+  }
+  return count;
+}
+
 std::string_view wavelet_name(std::uint32_t wavelet) {
   return wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
 }
 
-// stored blocks by the bits of their values
+// couplings by the bits of their values
 Json bits_of(const ModelView& view) {
   std::map<std::uint32_t, std::uint64_t> blocks;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    for (const auto& partner : view.level[q].couplings) {
-      for (const CouplingsView& couplings : partner) {
-        if (couplings.columns > 0) blocks[couplings.value_bits] += couplings.begin[couplings.columns];
-      }
-    }
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    const std::uint64_t count = coupling_count(view, layer);
+    if (count > 0) blocks[layout::layer[layer].value_bits] += count;
   }
   Json bits = Json::object();
   for (const auto& [width, count] : blocks) bits[std::to_string(width)] = count;
   return bits;
+}
+
+std::uint64_t field_couplings(const ModelView& view) {
+  std::uint64_t count = 0;
+  for (std::uint32_t layer = 0; layer < layout::field_layers; ++layer) count += coupling_count(view, layer);
+  return count;
 }
 
 // what the build tried, if the model is its work
@@ -101,7 +113,7 @@ Json inspection_of(const ModelFile& model) {
       {"rms_error", finest.rms_error},
       {"worst_column_error", finest.worst_column_error},
       {"worst_patch_force_error", finest.patch_force_error},
-      {"field_layers", info.field_layers},
+      {"field_couplings", field_couplings(view)},
       {"field_rms_error", finest.field_rms_error},
       {"field_column_error", finest.field_column_error},
       {"lambda_min", info.lambda_min},
@@ -151,9 +163,9 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                            ratio(found["dense_bytes"], found["bytes"]), bytes_text(found["dense_bytes"])));
   row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
-  row("field", fmt::format("{} RMS, {} in the worst column, with {} of {} layers of couplings",
+  row("field", fmt::format("{} RMS, {} in the worst column, with {} of the couplings",
                            percent(found["field_rms_error"]), percent(found["field_column_error"]),
-                           found["field_layers"].dump(), layout::strengths));
+                           found["field_couplings"].dump()));
   row("certificate", found["certificate"].get<bool>()
                          ? fmt::format("every eigenvalue of the compliance is above {:.3g} m/N (verify --certificate)",
                                        found["lambda_min"].get<double>())

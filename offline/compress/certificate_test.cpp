@@ -13,8 +13,8 @@ namespace {
 struct Case {
   explicit Case(const ModelData& model)
       : file(model),
-        compressed(file.view, all_layers),
-        least(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(test::dense_compliances(file.view, all_layers).back(),
+        compressed(file.view, layout::layers),
+        least(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(test::dense_compliances(file.view, layout::layers).back(),
                                                              Eigen::EigenvaluesOnly)
                   .eigenvalues()
                   .minCoeff()) {}
@@ -61,7 +61,7 @@ TEST_CASE("nothing is certified by a bound that is not positive") {
 
 TEST_CASE("an indefinite model is found out by both") {
   ModelData disturbed = model();
-  for (auto& layer : disturbed.levels[2].couplings[2]) layer.quantum *= 3;
+  disturbed.info.quantum *= 3;
   const Case given(disturbed);
   REQUIRE(given.least < 0);
   CHECK(estimate_least_eigenvalue(given.compressed, {}) <= 0);

@@ -15,8 +15,8 @@ namespace {
 struct Case {
   test::Body body = test::make_body(3);
   test::File file{test::model_of(body, true, {.threshold = 0.004, .quantum = 0.002})};
-  CompressedCompliance compressed{file.view, all_layers};
-  std::vector<Eigen::MatrixXd> dense = test::dense_compliances(file.view, all_layers);  // what the file stands for
+  CompressedCompliance compressed{file.view, layout::layers};
+  std::vector<Eigen::MatrixXd> dense = test::dense_compliances(file.view, layout::layers);  // what the file stands for
 };
 
 const Case& given() {
@@ -117,9 +117,9 @@ TEST_CASE("no more patches than nodes, no more nodes than there are") {
 
 TEST_CASE("a patch that is not positive definite has an infinite error") {
   auto model = test::model_of(given().body, true, {.threshold = 0.004, .quantum = 0.002});
-  for (auto& layer : model.levels[3].couplings[2]) layer.quantum *= 20;
+  model.info.quantum *= 20;
   const test::File file(model);
-  const CompressedCompliance indefinite(file.view, all_layers);
+  const CompressedCompliance indefinite(file.view, layout::layers);
   const auto patches = patches_of(given().body.compliance, 3, 10);
   CHECK(std::isinf(patches.worst_force_error(indefinite, 3)));
 }

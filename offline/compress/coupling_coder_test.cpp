@@ -11,19 +11,21 @@
 namespace greenloop::offline {
 namespace {
 
-constexpr std::size_t rows = 40, columns = 30;
-constexpr int averages = 0, parents = 1, same = 2;
-constexpr double largest_value[3] = {32767, 127, 7};
+constexpr std::size_t columns = 30, levels = 3;
+constexpr double own_size = 2;  // root of the scaled diagonal
 
-// blocks of sizes from far below a quantum to far above the medium layer's range
-CouplingCandidates candidates(bool strict_half) {
-  std::mt19937_64 random(11);
+double largest_value(std::uint32_t layer) {
+  return std::ldexp(1, static_cast<int>(layout::layer[layer].value_bits) - 1) - 1;
+}
+
+// blocks of sizes from far below a quantum to far above the 16 bits' range
+CouplingCandidates candidates(std::size_t first) {
+  std::mt19937_64 random(11 + first);
   const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
   CouplingCandidates result;
-  result.rows = strict_half ? columns : rows;
-  for (std::size_t j = 0; j < columns; ++j) {
-    for (std::size_t i = 0; i < (strict_half ? j : rows); ++i) {
-      const double size = std::pow(10.0, -5 + 5 * uniform());
+  for (std::size_t j = first; j < first + columns; ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      const double size = std::pow(10.0, -5 + 7 * uniform());
       double energy = 0;
       for (int k = 0; k < 9; ++k) {
         result.value.push_back(static_cast<float>(size * (2 * uniform() - 1)));
@@ -37,25 +39,21 @@ CouplingCandidates candidates(bool strict_half) {
   return result;
 }
 
-CompliancePyramid pyramid() {
-  CompliancePyramid result;
-  const Eigen::Matrix3d diagonal = 4e-6 * Eigen::Vector3d(1, 4, 9).asDiagonal().toDenseMatrix();
+WaveletCompliance compliance() {
+  WaveletCompliance result;
   const Eigen::Matrix3d conditional = 1e-6 * Eigen::Vector3d(1, 4, 9).asDiagonal().toDenseMatrix();
-  result.levels.resize(3);
-  result.levels[0].averages.assign(columns, {diagonal, conditional, "average", 0});
-  result.levels[0].partner[same] = candidates(true);
-  for (std::size_t level = 1; level < 3; ++level) {
-    result.levels[level].details.assign(columns, {diagonal, conditional, "detail", 0});
-    for (const int partner : {averages, parents, same}) {
-      if (level > 1 || partner != parents) result.levels[level].partner[partner] = candidates(partner == same);
+  for (std::size_t level = 0; level < levels; ++level) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      result.scales.emplace_back(own_size * own_size * conditional, conditional, result.scales.size());
     }
+    result.couplings.push_back(candidates(level * columns));
   }
   return result;
 }
 
-ModelData encoded(const CompliancePyramid& from, const Encoding& encoding) {
+ModelData encoded(const WaveletCompliance& from, const Encoding& encoding) {
   ModelData model;
-  model.levels.resize(from.levels.size());
+  model.levels.resize(from.couplings.size());
   encode_couplings(from, encoding, model);
   return model;
 }
@@ -75,94 +73,100 @@ double largest(const float* value) {
   return most;
 }
 
+// the layer that candidate b of column j stands in, checked; absent if it is dropped
+std::size_t check_block(const CouplingCandidates& source, std::size_t b, const LevelData& level, std::size_t j,
+                        const Encoding& encoding) {
+  const auto quantum = static_cast<double>(static_cast<float>(encoding.quantum));
+  const float* value = source.value.data() + 9 * b;
+  const auto norm = static_cast<double>(source.norm[b]);
+  std::size_t found = absent;
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    const auto& data = level.couplings[layer];
+    const std::size_t at = find(data, j, source.row[b]);
+    if (at == absent) continue;
+    CHECK(found == absent);
+    found = layer;
+    double most = 0;
+    for (std::size_t k = 0; k < 9; ++k) {
+      const double q = data.value[9 * at + k];
+      CHECK(std::abs(q * quantum - static_cast<double>(value[k])) <= 0.5000001 * quantum);
+      most = std::max(most, std::abs(q));
+    }
+    CHECK(most <= largest_value(layer));
+    const bool makes_field = norm >= encoding.field_threshold * own_size * own_size;
+    CHECK(layout::layer[layer].field == (makes_field || layout::layer[layer].value_bits > 8));
+    const std::uint32_t bits = layout::layer[layer].value_bits;
+    const double too_few = bits == 32 ? 32767 : bits == 16 ? 127 : bits == 8 ? 7 : 0;
+    CHECK(largest(value) >= (too_few + 0.4999) * quantum);
+  }
+  CHECK((found == absent) == (norm < encoding.threshold));
+  return found;
+}
+
 TEST_CASE("every block above the threshold stands once, in the fewest bits that hold it, within half a quantum") {
-  const auto from = pyramid();
-  const Encoding encoding{.threshold = 0.002, .quantum = 0.001};
-  const auto model = encoded(from, encoding);
-  std::array<std::size_t, 3> found{};
+  const auto from = compliance();
+  std::array<std::size_t, layout::layers> found{};
   std::size_t dropped = 0;
-  for (std::size_t level = 1; level < 3; ++level) {
-    for (const int partner : {averages, parents, same}) {
-      if (level == 1 && partner == parents) continue;
-      const auto& source = from.levels[level].partner[partner];
-      const auto& layers = model.levels[level].couplings[static_cast<std::size_t>(partner)];
+  for (const double field_threshold : {0.005, 0.001}) {
+    const Encoding encoding{.threshold = 0.002, .quantum = 0.001, .field_threshold = field_threshold};
+    const auto model = encoded(from, encoding);
+    CHECK(model.info.quantum == static_cast<float>(encoding.quantum));
+    for (std::size_t level = 0; level < levels; ++level) {
       for (std::size_t j = 0; j < columns; ++j) {
+        const auto& source = from.couplings[level];
         for (std::size_t b = source.begin[j]; b < source.begin[j + 1]; ++b) {
-          const float* value = source.value.data() + 9 * b;
-          std::size_t times = 0;
-          for (std::size_t layer = 0; layer < 3; ++layer) {
-            const auto& data = layers[layer];
-            const std::size_t at = find(data, j, source.row[b]);
-            if (at == absent) continue;
-            ++times;
+          const std::size_t layer = check_block(source, b, model.levels[level], j, encoding);
+          if (layer == absent) {
+            ++dropped;
+          } else {
             ++found[layer];
-            const auto quantum = static_cast<double>(data.quantum);
-            double most = 0;
-            for (std::size_t k = 0; k < 9; ++k) {
-              const double q = data.value[9 * at + k];
-              CHECK(std::abs(q * quantum - static_cast<double>(value[k])) <= 0.5000001 * quantum);
-              most = std::max(most, std::abs(q));
-            }
-            CHECK(most <= largest_value[layer]);
-            if (layer < 2) CHECK(largest(value) >= (largest_value[layer + 1] + 0.4999) * encoding.quantum);
           }
-          const bool keeps = static_cast<double>(source.norm[b]) >= encoding.threshold;
-          CHECK(times == (keeps ? 1 : 0));
-          dropped += keeps ? 0 : 1;
         }
       }
     }
   }
-  for (const std::size_t count : found) CHECK(count > 100);
+  for (const std::size_t count : found) CHECK(count > 50);
   CHECK(dropped > 100);
 }
 
-TEST_CASE("layers have their bits, one quantum, and rows that increase") {
-  const Encoding encoding{.threshold = 0.001, .quantum = 0.0005};
-  const auto model = encoded(pyramid(), encoding);
-  for (std::size_t level = 1; level < 3; ++level) {
-    for (const auto& partner : model.levels[level].couplings) {
-      constexpr std::uint32_t bits[3] = {16, 8, 4};
-      for (std::size_t layer = 0; layer < 3; ++layer) {
-        const auto& data = partner[layer];
-        if (level == 1 && &partner == &model.levels[level].couplings[parents]) {
-          CHECK(data.begin.empty());  // no such section
-          continue;
-        }
-        CHECK(data.value_bits == bits[layer]);
-        CHECK(data.quantum == static_cast<float>(encoding.quantum));
-        REQUIRE(data.begin.size() == columns + 1);
-        CHECK(data.begin.back() == data.index.size());
-        CHECK(data.value.size() == 9 * data.index.size());
-        for (std::size_t j = 0; j < columns; ++j) {
-          for (std::size_t b = data.begin[j] + 1; b < data.begin[j + 1]; ++b) CHECK(data.index[b - 1] < data.index[b]);
-        }
+TEST_CASE("rows increase within a column, in every layer") {
+  const auto model = encoded(compliance(), {.threshold = 0.001, .quantum = 0.0005, .field_threshold = 0.01});
+  for (const auto& level : model.levels) {
+    for (const auto& data : level.couplings) {
+      REQUIRE(data.begin.size() == columns + 1);
+      CHECK(data.begin.back() == data.index.size());
+      CHECK(data.value.size() == 9 * data.index.size());
+      for (std::size_t j = 0; j < columns; ++j) {
+        for (std::size_t b = data.begin[j] + 1; b < data.begin[j + 1]; ++b) CHECK(data.index[b - 1] < data.index[b]);
       }
     }
   }
 }
 
-TEST_CASE("strong couplings take a larger quantum rather than overflow") {
-  const auto model = encoded(pyramid(), {.threshold = 1e-6, .quantum = 1e-7});
-  const auto& layers = model.levels[2].couplings[averages];
-  CHECK(layers[0].quantum > 1e-5F);  // the largest block is nearly 1
-  CHECK(layers[1].quantum == 1e-7F);
-  int most = 0;
-  for (const std::int16_t q : layers[0].value) most = std::max(most, std::abs(int{q}));
-  CHECK(most == 32767);
+TEST_CASE("without a field threshold every block makes fields") {
+  const auto model = encoded(compliance(), {.threshold = 0.001, .quantum = 0.0005});
+  std::size_t field = 0;
+  for (const auto& level : model.levels) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      if (!layout::layer[layer].field) CHECK(level.couplings[layer].index.empty());
+      field += level.couplings[layer].index.size();
+    }
+  }
+  CHECK(field > 1000);
 }
 
 TEST_CASE("values at the edge of a layer's range never leave it") {
-  std::size_t edges = 0;
+  std::array<std::size_t, layout::layers> edges{};
   for (int i = 0; i < 3000; ++i) {
     const double quantum = 1e-3 * (1 + i * 1e-4);
-    CompliancePyramid from;
-    from.levels.resize(2);
-    auto& couplings = from.levels[1].partner[averages];
-    couplings.rows = 1;
-    for (const double edge : {7.5 * quantum, 127.5 * quantum}) {
+    WaveletCompliance from;
+    const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+    from.couplings.resize(1);
+    auto& couplings = from.couplings[0];
+    for (const double edge : {7.5 * quantum, 127.5 * quantum, 32767.5 * quantum}) {
       auto value = static_cast<float>(edge);
       for (int steps = 0; steps < 4; ++steps, value = std::nextafter(value, 0.0F)) {
+        from.scales.emplace_back(unit, unit, from.scales.size());
         couplings.row.push_back(0);
         couplings.norm.push_back(1);
         couplings.value.insert(couplings.value.end(), 9, value);
@@ -170,56 +174,31 @@ TEST_CASE("values at the edge of a layer's range never leave it") {
       }
     }
     const auto model = encoded(from, {.threshold = 1e-3, .quantum = quantum});
-    const auto& layers = model.levels[1].couplings[averages];
-    for (const std::int16_t q : layers[1].value) {
-      if (q > 127) FAIL("medium ", q, " with quantum ", quantum);
-      edges += q == 127 ? 1 : 0;
-    }
-    for (const std::int16_t q : layers[2].value) {
-      if (q > 7) FAIL("weak ", q, " with quantum ", quantum);
-      edges += q == 7 ? 1 : 0;
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      for (const std::int32_t q : model.levels[0].couplings[layer].value) {
+        if (q > largest_value(layer)) FAIL("layer ", layer, " has ", q, " with quantum ", quantum);
+        edges[layer] += q == largest_value(layer) ? 1 : 0;
+      }
     }
   }
-  CHECK(edges > 1000);
+  for (const std::uint32_t layer : {1U, 2U, 3U}) CHECK(edges[layer] > 1000);
 }
 
 TEST_CASE("blocks that round to zero are not stored") {
-  const auto model = encoded(pyramid(), {.threshold = 1e-6, .quantum = 0.01});
-  for (const auto& data : model.levels[2].couplings[averages]) {
+  const auto model = encoded(compliance(), {.threshold = 1e-6, .quantum = 0.01});
+  for (const auto& data : model.levels[2].couplings) {
     for (std::size_t b = 0; b < data.index.size(); ++b) {
       CHECK(std::any_of(data.value.begin() + static_cast<std::ptrdiff_t>(9 * b),
                         data.value.begin() + static_cast<std::ptrdiff_t>(9 * (b + 1)),
-                        [](std::int16_t q) { return q != 0; }));
+                        [](std::int32_t q) { return q != 0; }));
     }
   }
 }
 
-TEST_CASE("level 0 keeps every block in 16 bits, whatever the threshold") {
-  const auto from = pyramid();
-  const auto model = encoded(from, {.threshold = 0.4, .quantum = 0.2});
-  const auto& data = model.levels[0].couplings[same][0];
-  const auto& source = from.levels[0].partner[same];
-  CHECK(data.value_bits == 16);
-  CHECK(data.index.empty());
-  CHECK(std::equal(data.begin.begin(), data.begin.end(), source.begin.begin(), source.begin.end()));
-  REQUIRE(data.value.size() == source.value.size());
-  int most = 0;
-  for (std::size_t k = 0; k < data.value.size(); ++k) {
-    const auto quantum = static_cast<double>(data.quantum);
-    CHECK(std::abs(data.value[k] * quantum - static_cast<double>(source.value[k])) <= 0.5000001 * quantum);
-    most = std::max(most, std::abs(int{data.value[k]}));
-  }
-  CHECK(most == 32767);
-  for (std::size_t layer = 1; layer < 3; ++layer) CHECK(model.levels[0].couplings[same][layer].begin.empty());
-}
-
 TEST_CASE("scales are stored as root and scaled diagonal") {
-  const auto model = encoded(pyramid(), {.threshold = 0.1, .quantum = 0.05});
-  CHECK(model.levels[0].details.empty());
-  REQUIRE(model.levels[0].averages.size() == columns);
-  REQUIRE(model.levels[2].details.size() == columns);
-  CHECK(model.levels[2].averages.empty());
-  const auto& scale = model.levels[2].details[3];
+  const auto model = encoded(compliance(), {.threshold = 0.1, .quantum = 0.05});
+  REQUIRE(model.levels[2].scales.size() == columns);
+  const auto& scale = model.levels[2].scales[3];
   const float root[6] = {1e-3F, 0, 0, 2e-3F, 0, 3e-3F}, diagonal[6] = {4, 0, 0, 4, 0, 4};
   for (int k = 0; k < 6; ++k) {
     CHECK(std::abs(scale.root[k] - root[k]) < 1e-9F);

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "formats/verify.hpp"
-#include "offline/compress/compliance_pyramid.hpp"
 #include "offline/compress/model_tables.hpp"
+#include "offline/compress/wavelet_compliance.hpp"
 
 namespace greenloop::offline::test {
 namespace {
@@ -20,20 +20,6 @@ Eigen::Matrix3d symmetric(const float (&six)[6]) {
   }
   return matrix;
 }
-
-// block-diagonal
-Sparse diagonal(const layout::Scale* scales, std::size_t count, const float (layout::Scale::*six)[6]) {
-  Sparse matrix(at(count), at(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Matrix3d block = symmetric(scales[i].*six);
-    for (Eigen::Index c = 0; c < 3; ++c) {
-      for (Eigen::Index r = 0; r < 3; ++r) matrix.insert(at(i) + r, at(i) + c) = block(r, c);
-    }
-  }
-  return matrix;
-}
-
-Sparse roots(const layout::Scale* scales, std::size_t count) { return diagonal(scales, count, &layout::Scale::root); }
 
 // the two factors of a step, with `sign` 1, or of its inverse, with -1
 struct Factors {
@@ -56,47 +42,51 @@ Factors factors(const LinearWavelet& wavelet, std::size_t level, double sign) {
   return result;
 }
 
-double value_at(const CouplingsView& couplings, std::size_t block, std::size_t k) {
-  if (couplings.value_bits == 16) {
-    std::int16_t value = 0;
-    std::memcpy(&value, couplings.value + 18 * block + 2 * k, 2);
-    return value;
-  }
-  if (couplings.value_bits == 8) return static_cast<std::int8_t>(couplings.value[9 * block + k]);
-  const int nibble = std::to_integer<int>((couplings.value[5 * block + k / 2] >> (k % 2 == 0 ? 0 : 4)) & std::byte{15});
+template <class Stored>
+double number_at(const std::byte* value, std::size_t n) {
+  Stored number = 0;
+  std::memcpy(&number, value + sizeof(Stored) * n, sizeof(Stored));
+  return number;
+}
+
+double value_at(const std::byte* value, std::uint32_t bits, std::size_t block, std::size_t k) {
+  if (bits == 32) return number_at<std::int32_t>(value, 9 * block + k);
+  if (bits == 16) return number_at<std::int16_t>(value, 9 * block + k);
+  if (bits == 8) return number_at<std::int8_t>(value, 9 * block + k);
+  const int nibble = std::to_integer<int>((value[5 * block + k / 2] >> (k % 2 == 0 ? 0 : 4)) & std::byte{15});
   return nibble > 7 ? nibble - 16 : nibble;
 }
 
-std::size_t row_at(const CouplingsView& couplings, std::size_t column, std::size_t block) {
+std::size_t row_at(const CouplingsView& couplings, std::size_t block) {
   if (couplings.index_bytes == 2) return static_cast<const std::uint16_t*>(couplings.index)[block];
-  if (couplings.index_bytes == 4) return static_cast<const std::uint32_t*>(couplings.index)[block];
-  return block - couplings.begin[column];
+  return static_cast<const std::uint32_t*>(couplings.index)[block];
 }
 
-// scaled couplings of a level with one partner: rows x columns
-Eigen::MatrixXd couplings(const LevelView& level, layout::Partner partner, std::uint32_t layers, std::size_t rows,
-                          std::size_t columns) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(at(rows), at(columns));
-  for (std::uint32_t layer = 0; layer < layers; ++layer) {
-    const CouplingsView& from = level.couplings[static_cast<int>(partner)][layer];
-    for (std::size_t j = 0; j < from.columns; ++j) {
-      for (std::size_t b = from.begin[j]; b < from.begin[j + 1]; ++b) {
-        for (std::size_t k = 0; k < 9; ++k) {
-          matrix(at(row_at(from, j, b)) + static_cast<Eigen::Index>(k % 3), at(j) + static_cast<Eigen::Index>(k / 3)) +=
-              static_cast<double>(from.quantum) * value_at(from, b, k);
+// W U^ W^T
+Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
+  const Eigen::Index size = at(view.domain_count);
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(size, size), scaled = root;
+  for (std::uint32_t level = 0; level < view.levels; ++level) {
+    const LevelView& from = view.level[level];
+    for (std::size_t i = 0; i < from.counts->domain_count; ++i) {
+      const Eigen::Index place = at(from.domain_begin + i);
+      root.block<3, 3>(place, place) = symmetric(from.scales[i].root);
+      scaled.block<3, 3>(place, place) = symmetric(from.scales[i].diagonal);
+    }
+    for (std::uint32_t layer = 0; layer < layers; ++layer) {
+      const CouplingsView& couplings = from.couplings[layer];
+      for (std::size_t j = 0; j < couplings.columns; ++j) {
+        for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
+          for (std::size_t k = 0; k < 9; ++k) {
+            const Eigen::Index row = at(row_at(couplings, b)) + static_cast<Eigen::Index>(k % 3);
+            const Eigen::Index column = at(from.domain_begin + j) + static_cast<Eigen::Index>(k / 3);
+            const double value = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
+            scaled(row, column) = scaled(column, row) = static_cast<double>(view.info->quantum) * value;
+          }
         }
       }
     }
   }
-  return matrix;
-}
-
-// couplings of a level's own coefficients with each other, diagonal blocks included
-Eigen::MatrixXd own(const LevelView& level, const layout::Scale* scales, std::uint32_t layers) {
-  const std::size_t count = level.counts->domain_count;
-  const Eigen::MatrixXd half = couplings(level, layout::Partner::same, layers, count, count);
-  const Sparse root = roots(scales, count);
-  const Eigen::MatrixXd scaled = half + half.transpose() + diagonal(scales, count, &layout::Scale::diagonal);
   return root * scaled * root;
 }
 
@@ -112,46 +102,47 @@ Sparse backward_step(const LinearWavelet& wavelet, std::size_t level) {
   return predict * lift;
 }
 
-NonStandardForm dense_form(const LinearWavelet& wavelet, const Eigen::MatrixXd& compliance) {
-  const std::size_t levels = wavelet.finest() + 1;
-  NonStandardForm form{.averages = std::vector<Eigen::MatrixXd>(levels),
-                       .details = std::vector<Eigen::MatrixXd>(levels),
-                       .crossed = std::vector<Eigen::MatrixXd>(levels)};
-  form.averages.back() = compliance;
+Sparse forward_transform(const LinearWavelet& wavelet, std::size_t level) {
+  const Eigen::Index size = at(wavelet.row_end(level));
+  Sparse all(size, size);
+  all.setIdentity();
+  for (std::size_t l = level; l > 0; --l) {
+    const Sparse step = forward_step(wavelet, l);
+    Sparse padded(size, size);
+    padded.setIdentity();
+    for (Eigen::Index outer = 0; outer < step.outerSize(); ++outer) {
+      for (Sparse::InnerIterator it(step, outer); it; ++it) padded.coeffRef(it.row(), it.col()) = it.value();
+    }
+    all = Sparse(padded * all);
+  }
+  return all;
+}
+
+std::vector<Eigen::MatrixXd> level_compliances(const LinearWavelet& wavelet, const Eigen::MatrixXd& compliance) {
+  std::vector<Eigen::MatrixXd> levels(wavelet.finest() + 1);
+  levels.back() = compliance;
   for (std::size_t level = wavelet.finest(); level > 0; --level) {
     const Sparse step = forward_step(wavelet, level);
-    const Eigen::MatrixXd all = step * form.averages[level] * step.transpose();
-    const Eigen::Index evens = at(wavelet.row_end(level - 1)), odds = all.rows() - evens;
-    form.averages[level - 1] = all.topLeftCorner(evens, evens);
-    form.details[level] = all.bottomRightCorner(odds, odds);
-    form.crossed[level] = all.bottomLeftCorner(odds, evens);
-    if (level > 1) form.crossed[level] = form.crossed[level] * forward_step(wavelet, level - 1).transpose();
+    const Eigen::Index evens = at(wavelet.row_end(level - 1));
+    levels[level - 1] = Eigen::MatrixXd(step * levels[level] * step.transpose()).topLeftCorner(evens, evens);
   }
-  return form;
+  return levels;
 }
 
 std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view, std::uint32_t layers) {
   const LinearWavelet wavelet(view);
-  std::vector<Eigen::MatrixXd> result = {own(view.level[0], view.level[0].averages, layers)};
-  for (std::size_t level = 1; level < view.levels; ++level) {
-    const LevelView& from = view.level[level];
-    const std::size_t odds = from.counts->domain_count, evens = wavelet.row_end(level - 1);
-    const std::size_t below = level > 1 ? level - 2 : 0, averages = wavelet.row_end(below);
-    const Sparse root = roots(from.details, odds);
-    Eigen::MatrixXd crossed(at(odds), at(evens));  // B_l
-    crossed.leftCols(at(averages)) = root *
-                                     couplings(from, layout::Partner::averages, layers, averages, odds).transpose() *
-                                     roots(view.level[below].averages, averages);
-    if (level > 1) {
-      crossed.rightCols(at(evens - averages)) =
-          root * couplings(from, layout::Partner::parents, layers, evens - averages, odds).transpose() *
-          roots(view.level[level - 1].details, evens - averages);
-      crossed = crossed * backward_step(wavelet, level - 1).transpose();
+  const Eigen::MatrixXd form = stored_form(view, layers);
+  std::vector<Eigen::MatrixXd> result;
+  for (std::size_t level = 0; level < view.levels; ++level) {
+    const Eigen::Index size = at(wavelet.row_end(level));
+    Eigen::MatrixXd x = form.topLeftCorner(size, size);
+    for (std::size_t l = 1; l <= level; ++l) {
+      const Eigen::Index end = at(wavelet.row_end(l));
+      const Sparse back = backward_step(wavelet, l);
+      x.topRows(end) = Eigen::MatrixXd(back * x.topRows(end));
+      x.leftCols(end) = Eigen::MatrixXd(x.leftCols(end) * back.transpose());
     }
-    Eigen::MatrixXd all(at(evens + odds), at(evens + odds));
-    all << result.back(), crossed.transpose(), crossed, own(from, from.details, layers);
-    const Sparse back = backward_step(wavelet, level);
-    result.emplace_back(back * all * back.transpose());
+    result.push_back(x);
   }
   return result;
 }
@@ -166,8 +157,8 @@ ModelData model_of(const Body& body, bool lifted, const Encoding& encoding) {
   const LinearWavelet wavelet(body.mesh, body.flags, body.area, lifted);
   ModelData model = describe_mesh(body.mesh, body.flags, body.area, wavelet, facts());
   add_representatives(body.mesh, body.flags, model);
-  model.info.field_layers = 3;
-  encode_couplings(build_pyramid(wavelet, columns_of(body.compliance), 0.5 * encoding.threshold, {}), encoding, model);
+  encode_couplings(transform_compliance(wavelet, columns_of(body.compliance), 0.25 * encoding.threshold, {}), encoding,
+                   model);
   return model;
 }
 

@@ -24,22 +24,21 @@ using Sparse = Eigen::SparseMatrix<double>;
 /// T_l^-1.
 [[nodiscard]] Sparse backward_step(const LinearWavelet& wavelet, std::size_t level);
 
-/// The non-standard form of a compliance by dense products T_l U_l T_l^T, m/N.
-struct NonStandardForm {
-  std::vector<Eigen::MatrixXd> averages;  ///< [level] U_l
-  std::vector<Eigen::MatrixXd> details;   ///< [level] A_l; [0] is empty
-  std::vector<Eigen::MatrixXd> crossed;   ///< [level] B_l, its columns transformed once more if l > 1; [0] is empty
-};
-[[nodiscard]] NonStandardForm dense_form(const LinearWavelet& wavelet, const Eigen::MatrixXd& compliance);
+/// W on the rows of K(level), 3 numbers per row: T_1 .. T_level.
+[[nodiscard]] Sparse forward_transform(const LinearWavelet& wavelet, std::size_t level);
 
-/// [level] what a model file stands for when cut off after that level, U^_level, by dense products from the coarsest
-/// level up, with the first `layers` layers of couplings.
+/// [level] the exact compliance between the averages of that level, m/N.
+[[nodiscard]] std::vector<Eigen::MatrixXd> level_compliances(const LinearWavelet& wavelet,
+                                                             const Eigen::MatrixXd& compliance);
+
+/// [level] what a model file stands for when cut off after that level, by dense products, with the first `layers`
+/// layers of couplings.
 [[nodiscard]] std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view, std::uint32_t layers);
 
 /// Hands out columns of a dense compliance, which must outlive it.
 [[nodiscard]] ColumnSource columns_of(const Eigen::MatrixXd& compliance);
 
-/// A body's model before encoding, its couplings coded from a pyramid that keeps all that `encoding` does.
+/// A body's model before encoding, its couplings coded from candidates down to a quarter of what `encoding` keeps.
 [[nodiscard]] ModelData model_of(const Body& body, bool lifted, const Encoding& encoding);
 
 /// A verified model file.

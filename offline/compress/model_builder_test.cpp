@@ -70,9 +70,9 @@ Errors dense_errors(const Eigen::MatrixXd& found, const Eigen::MatrixXd& exact, 
 
 TEST_CASE("the model meets the accuracies, measured on a dense evaluation of its bytes") {
   const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
-  const auto exact = test::dense_form(wavelet, body().compliance).averages;
-  const auto found = test::dense_compliances(file().view, 3);
-  const auto field = test::dense_compliances(file().view, built().report.field_layers);
+  const auto exact = test::level_compliances(wavelet, body().compliance);
+  const auto found = test::dense_compliances(file().view, layout::layers);
+  const auto field = test::dense_compliances(file().view, layout::field_layers);
   REQUIRE(built().report.levels.size() == 4);
   for (const auto& level : built().report.levels) {
     CAPTURE(level.level);
@@ -98,7 +98,7 @@ TEST_CASE("forces of all patches meet their accuracy, and it is used up") {
   const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
   ContactPatches patches(row_positions(body().mesh, wavelet, 3), ExactSample::most_patches);
   patches.add(body().compliance, 0);
-  const double error = patches.worst_force_error(CompressedCompliance(file().view, 3), 3);
+  const double error = patches.worst_force_error(CompressedCompliance(file().view, layout::layers), 3);
   CHECK(error <= accuracy.patch_force);
   CHECK(error > 0.3 * accuracy.patch_force);
   CHECK(built().report.levels.back().patch_force_error == doctest::Approx(error).epsilon(1e-6));
@@ -106,7 +106,7 @@ TEST_CASE("forces of all patches meet their accuracy, and it is used up") {
 }
 
 TEST_CASE("the certified bound lies below the least eigenvalue") {
-  const auto found = test::dense_compliances(file().view, 3).back();
+  const auto found = test::dense_compliances(file().view, layout::layers).back();
   const double least =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(found, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
   CHECK(built().report.lambda_min > 0.3 * least);
@@ -116,7 +116,7 @@ TEST_CASE("the certified bound lies below the least eigenvalue") {
 
 TEST_CASE("cut off after any level it is a valid model, as accurate as reported") {
   const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
-  const auto exact = test::dense_form(wavelet, body().compliance).averages;
+  const auto exact = test::level_compliances(wavelet, body().compliance);
   for (std::uint32_t q = 0; q < 3; ++q) {
     CAPTURE(q);
     const AlignedBytes part(truncate_to_level(encode(built().model), q));
@@ -124,7 +124,8 @@ TEST_CASE("cut off after any level it is a valid model, as accurate as reported"
     ModelView view;
     const auto verdict = verify(part.span(), view);
     REQUIRE_MESSAGE(verdict.ok(), describe(verdict));
-    const auto errors = dense_errors(test::dense_compliances(view, 3).back(), exact[q], wavelet.integrals(q));
+    const auto errors =
+        dense_errors(test::dense_compliances(view, layout::layers).back(), exact[q], wavelet.integrals(q));
     CHECK(static_cast<double>(view.level[q].counts->rms_error) == doctest::Approx(errors.rms).epsilon(1e-3));
     CHECK(errors.rms < 2 * accuracy.rms);
   }
@@ -133,7 +134,7 @@ TEST_CASE("cut off after any level it is a valid model, as accurate as reported"
 TEST_CASE("the report counts what is in the file") {
   const auto& report = built().report;
   for (const auto& level : report.levels) {
-    CHECK(level.nodes == CompressedCompliance(file().view, 3).rows(level.level));
+    CHECK(level.nodes == CompressedCompliance(file().view, layout::layers).rows(level.level));
     CHECK(level.dense_blocks == level.nodes * level.nodes);
     CHECK(level.kept_blocks == file().view.level[level.level].counts->kept_blocks);
   }
@@ -143,7 +144,6 @@ TEST_CASE("the report counts what is in the file") {
   CHECK(report.trials.back().bytes == file().bytes.size());
   CHECK(report.trials.back().meets(accuracy));
   CHECK(file().view.info->threshold == report.encoding.threshold);
-  CHECK(file().view.info->field_layers == report.field_layers);
 }
 
 TEST_CASE("the same input gives the same bytes; progress runs forward to 1") {
@@ -197,7 +197,7 @@ TEST_CASE("only needed nodes are stored") {
   CHECK(model.report.trials.back().meets(accuracy));
   const test::File stored(model.model);
   CHECK(stored.view.domain_count == part.column_nodes.size());
-  const auto found = test::dense_compliances(stored.view, 3).back();
+  const auto found = test::dense_compliances(stored.view, layout::layers).back();
   CHECK((found - part.compliance).norm() < 2 * accuracy.rms * part.compliance.norm());
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
+#include <map>
 #include <iterator>
 #include <span>
 #include <stdexcept>
@@ -143,12 +145,12 @@ json trial_record(const Trial& trial) {
           {"step_work", trial.step_work}};
 }
 
-/// What was tried, from fewer bytes to more.
+/// What was tried, from fewer bytes to more; of an encoding tried twice the later trial, measured on more patches.
 json frontier(const CompressionReport& report) {
-  auto trials = report.trials;
-  std::sort(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.bytes < b.bytes; });
+  std::map<double, Trial, std::greater<>> trials;
+  for (const auto& trial : report.trials) trials[trial.encoding.threshold] = trial;
   json points = json::array();
-  for (const auto& trial : trials) points.push_back(trial_record(trial));
+  for (const auto& [threshold, trial] : trials) points.push_back(trial_record(trial));
   return points;
 }
 
@@ -165,7 +167,7 @@ json compression_record(const CompressionReport& report) {
   }
   return {{"threshold", report.encoding.threshold},
           {"quantum", report.encoding.quantum},
-          {"field_layers", report.field_layers},
+          {"field_threshold", report.encoding.field_threshold},
           {"field_rms_error", report.field_rms_error},
           {"field_column_error", report.field_column_error},
           {"lambda_min", report.lambda_min},

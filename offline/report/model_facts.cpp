@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 #include <span>
 
 #include "offline/report/axis.hpp"
@@ -24,16 +26,14 @@ constexpr std::array<std::pair<SectionKind, const char*>, 8> kind_names{
      {SectionKind::representatives, "representatives"},
      {SectionKind::scales, "scales"}}};
 
-constexpr std::array<const char*, layout::strengths> coupling_names{"strong couplings", "medium couplings",
-                                                                    "weak couplings"};
-
 std::span<const layout::SectionEntry> section_entries(const ModelView& model) {
   return {reinterpret_cast<const layout::SectionEntry*>(model.header + 1), model.header->section_count};
 }
 
 std::string kind_name(const layout::SectionEntry& entry) {
   if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings)) {
-    return coupling_names[entry.b % layout::strengths];
+    const layout::Layer& layer = layout::layer[entry.b];
+    return fmt::format("{} couplings, {} bits", layer.field ? "field" : "force", layer.value_bits);
   }
   for (const auto& [known, name] : kind_names) {
     if (static_cast<std::uint32_t>(known) == entry.kind) return name;
@@ -45,10 +45,7 @@ const layout::Level& finest_level(const ModelView& model) { return *model.level[
 
 /// Bytes of scales and couplings of mesh level q.
 std::uint64_t compliance_bytes(const ModelView& model, std::uint32_t q) {
-  const LevelView& level = model.level[q];
-  const std::uint32_t rows = level.domain_begin + level.counts->domain_count;
-  std::uint64_t bytes = level.details == nullptr ? 0 : level.counts->domain_count * sizeof(layout::Scale);
-  if (level.averages != nullptr) bytes += rows * sizeof(layout::Scale);
+  std::uint64_t bytes = model.level[q].counts->domain_count * sizeof(layout::Scale);
   for (const layout::SectionEntry& entry : section_entries(model)) {
     if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings) && entry.a == q) bytes += entry.bytes;
   }
@@ -59,21 +56,30 @@ std::string wavelet_name(const ModelView& model) {
   return model.info->wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
 }
 
-/// How many bits the couplings of each layer have, e.g. "16, 8, 4"; the widest if levels differ.
-std::string layer_bits(const ModelView& model) {
-  std::array<std::uint32_t, layout::strengths> bits{};
-  for (std::uint32_t q = 1; q < model.levels; ++q) {
-    for (const auto& partner : model.level[q].couplings) {
-      for (std::size_t s = 0; s < bits.size(); ++s) {
-        if (partner[s].columns > 0) bits[s] = std::max(bits[s], partner[s].value_bits);
-      }
+/// Couplings of layers `first` up to `last`, excluded.
+std::uint64_t coupling_count(const ModelView& model, std::uint32_t first, std::uint32_t last) {
+  std::uint64_t count = 0;
+  for (std::uint32_t q = 0; q < model.levels; ++q) {
+    for (std::uint32_t layer = first; layer < last; ++layer) {
+      const CouplingsView& couplings = model.level[q].couplings[layer];
+      count += couplings.begin[couplings.columns];
     }
   }
-  std::string text;
-  for (const std::uint32_t width : bits) {
-    if (width > 0) text += fmt::format("{}{}", text.empty() ? "" : ", ", width);
+  return count;
+}
+
+/// The couplings by the bits of their values, e.g. "32: 9, 16: 12 905, 8: 112 433".
+std::string coupling_bits(const ModelView& model) {
+  std::map<std::uint32_t, std::uint64_t, std::greater<>> blocks;
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    const std::uint64_t count = coupling_count(model, layer, layer + 1);
+    if (count > 0) blocks[layout::layer[layer].value_bits] += count;
   }
-  return text.empty() ? "16, one level only" : text;
+  std::string text;
+  for (const auto& [width, count] : blocks) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", width, readable_count(count));
+  }
+  return text.empty() ? "none" : text;
 }
 
 std::string certificate(const ModelView& model) {
@@ -121,11 +127,13 @@ FactGroup compression_facts(const ModelView& model) {
             fmt::format("{} of {}", readable_count(finest.kept_blocks), readable_count(finest.dense_blocks))},
            {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
            {"wavelet", wavelet_name(model)},
-           {"bits per value, strong to weak", layer_bits(model)},
+           {"couplings by bits per value", coupling_bits(model)},
            {"RMS error", readable_percent(finest.rms_error)},
            {"worst column's error", readable_percent(finest.worst_column_error)},
            {"worst patch force's error", readable_percent(finest.patch_force_error)},
-           {"layers the field sums", fmt::format("{} of {}", model.info->field_layers, layout::strengths)},
+           {"couplings that make fields",
+            fmt::format("{} of {}", readable_count(coupling_count(model, 0, layout::field_layers)),
+                        readable_count(coupling_count(model, 0, layout::layers)))},
            {"field's RMS error", readable_percent(finest.field_rms_error)},
            {"field's worst column", readable_percent(finest.field_column_error)},
            {"positive definite", certificate(model)},
