@@ -16,7 +16,7 @@ const test::Body& body() {
   return value;
 }
 
-// every layer but the widest carries something
+// most layers carry something
 const test::File& file(bool lifted) {
   constexpr Encoding encoding{.threshold = 0.004, .quantum = 0.002, .field_threshold = 0.006};
   static const test::File with(test::model_of(body(), true, encoding));
@@ -45,7 +45,17 @@ std::vector<double> noise(std::size_t count, std::uint64_t seed) {
   return x;
 }
 
+std::size_t couplings_of(const ModelView& view, std::uint32_t layer) {
+  std::size_t count = 0;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const CouplingsView& couplings = view.level[q].couplings[layer];
+    count += couplings.begin[couplings.columns];
+  }
+  return count;
+}
+
 TEST_CASE("every level and every number of layers is the wavelet form evaluated densely") {
+  int layers_that_matter = 0;
   for (const bool lifted : {true, false}) {
     Eigen::MatrixXd before;
     for (std::uint32_t layers = lifted ? 0 : layout::layers; layers <= layout::layers; ++layers) {
@@ -66,6 +76,7 @@ TEST_CASE("every level and every number of layers is the wavelet form evaluated 
       before = expected[3];
     }
   }
+  CHECK(layers_that_matter >= 3);
 }
 
 TEST_CASE("all layers come near the exact compliance, on every level") {
