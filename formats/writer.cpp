@@ -97,7 +97,9 @@ Bytes encode_couplings(const CouplingsData& data, std::uint32_t columns, std::ui
   header.index_bytes = rows <= 65536 ? 2 : 4;
   header.block_count = blocks;
 
-  Bytes bytes(sizeof(CouplingsHeader));
+  Bytes bytes;
+  bytes.reserve(sizeof(CouplingsHeader) + 4 * (columns + std::size_t{1}) + 40 * blocks);
+  bytes.resize(sizeof(CouplingsHeader));
   header.begin_offset = bytes.size();
   append(bytes, std::as_bytes(std::span(data.begin).first(header.columns + std::size_t{1})));
   pad(bytes);
