@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "formats/writer.hpp"
 
 namespace greenloop {
+
+/// A matrix of layout::Scale.
+[[nodiscard]] Eigen::Matrix3d symmetric_matrix(const float (&six)[6]);
 
 /// The wavelet transform of docs/theory.md on dense matrices over the domain nodes of a model, three rows and columns a
 /// node, coarse to fine. For tests only: plain and slow, to compare others with.
@@ -43,7 +45,7 @@ class DenseWavelet {
   template <class Vector>
   void step_forward(std::uint32_t q, Vector at) const;
   template <class Vector>
-  void step_back(std::uint32_t q, Vector at) const;
+  void step_inverse(std::uint32_t q, Vector at) const;
 
   std::vector<Eigen::Index> end_;
   std::vector<Eigen::Index> domain_index_;
