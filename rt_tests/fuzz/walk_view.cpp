@@ -129,7 +129,7 @@ class Walk {
 
   bool nibbles(const std::byte* value, std::uint64_t block_count) const {
     const auto negatable = [](std::byte pair) {
-      return (pair & std::byte{15}) != std::byte{8} && pair >> 4 != std::byte{8};
+      return (pair & std::byte{15}) != std::byte{8} && (pair >> 4) != std::byte{8};
     };
     return array(value, 5 * block_count + 16) && all(value, 5 * block_count, negatable);
   }
