@@ -405,6 +405,10 @@ TEST_CASE("verify refuses: reserved bytes in use, in the header and in the table
   check_refused(table, VerifyRule::reserved_not_zero, SectionKind::level, 0, 0, "section.reserved", 2);
 }
 
+TEST_CASE("layout: the layers of fields come first") {
+  for (std::uint32_t i = 0; i < layout::layers; ++i) CHECK(layout::layer[i].field == (i < layout::field_layers));
+}
+
 TEST_CASE("verify: the view is plain data") { CHECK(std::is_trivially_copyable_v<ModelView>); }
 
 }  // namespace
