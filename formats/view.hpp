@@ -40,8 +40,8 @@ struct ModelView {
   std::uint32_t domain_count = 0;  ///< over all levels present
   const std::uint32_t* base_triangles = nullptr;
   LevelView level[layout::max_levels];
-  const std::uint32_t* representatives[layout::max_levels][layout::max_levels] =
-      {};  ///< [constraint level][mesh level]
+  /// [constraint level][mesh level]
+  const std::uint32_t* representatives[layout::max_levels][layout::max_levels] = {};
 };
 
 }  // namespace greenloop

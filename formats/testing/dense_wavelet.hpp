@@ -55,8 +55,7 @@ class DenseWavelet {
 /// U [3N x 3N] -> W U W^T in place, the two-sided wavelet form of layout.hpp without scales. Work: 100 N^2 or so.
 void to_wavelet_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> compliance);
 
-/// Its inverse on the coefficients of levels 0..c, [3 end(c) x 3 end(c)]: the compliance between the averages of level
-/// c.
+/// Its inverse on the coefficients of levels 0..c, [3 end(c) x 3 end(c)]: the compliance between averages of level c.
 void from_wavelet_form(const DenseWavelet& wavelet, std::uint32_t c, Eigen::Ref<Eigen::MatrixXd> form);
 
 /// The compliance (m/N) between the averages of level `c` that a model stands for, with its first `layers` layers of
