@@ -60,14 +60,15 @@ enum class SectionKind : std::uint32_t {
 };
 
 /// Couplings are stored in layers by what needs them and by size. Fields are made of the first four alone; forces need
-/// all. A file has every section, even an empty one.
+/// all. The first, of a coarser quantum, is for what is too large for the second. A file has every section, even an
+/// empty one.
 struct Layer {
   std::uint32_t value_bits;  ///< of one element of a block
   bool field;                ///< part of fields
 };
 
 inline constexpr std::uint32_t layers = 6;
-inline constexpr Layer layer[layers] = {{32, true}, {16, true}, {8, true}, {4, true}, {8, false}, {4, false}};
+inline constexpr Layer layer[layers] = {{16, true}, {16, true}, {8, true}, {4, true}, {8, false}, {4, false}};
 inline constexpr std::uint32_t field_layers = 4;  ///< the first ones
 
 struct Header {
@@ -115,8 +116,8 @@ struct Info {
   std::uint64_t step_work;     ///< work units per step the scene asked for
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
-  float quantum;                          ///< of scaled couplings, in [0, 1]
-  std::uint8_t reserved[148];
+  float quantum[layers];                  ///< of the scaled values of each layer of couplings, in [0, 1]
+  std::uint8_t reserved[128];
 };
 static_assert(sizeof(Info) == 256);
 
@@ -169,10 +170,10 @@ static_assert(sizeof(Scale) == 48);
 ///   begin  u32 [n + 1]     first block of each column
 ///   index  u16|u32 [m]     row, increasing within a column
 ///   value  [m]             blocks, then >= 16 zero bytes; element k = 3 c + r of a block: scaled displacement r of the
-///                          row per scaled force c of the column, in quanta
+///                          row per scaled force c of the column, in quanta of the layer
 ///            4 bits        5 bytes a block: element k is nibble k, low nibble first, -7..7; the tenth nibble is 0
 ///            8 bits        9 bytes a block
-///            16, 32 bits   18, 36 bytes a block; the most negative value does not occur, nor in 8 bits
+///            16 bits       18 bytes a block; the most negative value does not occur, nor in 8 bits
 /// Columns are the coefficients of the level, by their place among the domain nodes of M(q); rows are coefficients that
 /// lie before the column's, by their place among all domain nodes: the block of the other half is the transpose. Every
 /// array starts at the first multiple of 64 after the one before it. A section without blocks has no columns.

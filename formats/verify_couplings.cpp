@@ -20,7 +20,7 @@ constexpr std::uint64_t bytes_per_block(std::uint32_t value_bits) {
   return value_bits == 4 ? 5 : values_per_block * value_bits / 8;
 }
 
-// Where the arrays must stand. No overflow: columns and block_count are below 2^32, the other factors at most 36.
+// Where the arrays must stand. No overflow: columns and block_count are below 2^32, the other factors at most 18.
 struct Extent {
   std::uint64_t begin_end, index, index_end, value, value_end;
 
@@ -125,8 +125,7 @@ bool verify_values(SectionCheck& check, const CouplingsHeader& header, const Val
   constexpr Value forbidden = std::numeric_limits<Value>::min();
   const Value* found = std::find(value, value + count, forbidden);
   return check.require(found == value + count, VerifyRule::out_of_range, "value",
-                       static_cast<std::uint64_t>(found - value), static_cast<double>(forbidden),
-                       static_cast<double>(forbidden) + 1);
+                       static_cast<std::uint64_t>(found - value), forbidden, forbidden + 1);
 }
 
 bool verify_nibbles(SectionCheck& check, const CouplingsHeader& header, const std::byte* value) {
@@ -160,10 +159,8 @@ bool verify_blocks(SectionCheck& check, const CouplingsView& view, const Couplin
       return verify_nibbles(check, header, view.value);
     case 8:
       return verify_values(check, header, reinterpret_cast<const std::int8_t*>(view.value));
-    case 16:
-      return verify_values(check, header, reinterpret_cast<const std::int16_t*>(view.value));
     default:
-      return verify_values(check, header, reinterpret_cast<const std::int32_t*>(view.value));
+      return verify_values(check, header, reinterpret_cast<const std::int16_t*>(view.value));
   }
 }
 

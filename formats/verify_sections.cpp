@@ -55,6 +55,16 @@ const NodeRecord& node_at(const ModelView& view, std::uint32_t index) {
   return view.level[q].nodes[index - view.level[q].node_begin];
 }
 
+bool verify_quanta(SectionCheck& check, const layout::Info& info) {
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    if (!require_at_least(check, "quantum", layer, info.quantum[layer], 0) ||
+        !require_at_most(check, "quantum", layer, info.quantum[layer], 1)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool verify_box(SectionCheck& check, const layout::Info& info) {
   for (std::uint32_t k = 0; k < 3; ++k) {
     if (!require_finite(check, "box_min", k, info.box_min[k]) ||
@@ -87,8 +97,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
          require_at_least(check, "max_contacts", 0, info.max_contacts, 1) &&
          require_at_most(check, "coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          require_equal(check, "finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
-         require_at_least(check, "quantum", 0, info.quantum, 0) &&
-         require_at_most(check, "quantum", 0, info.quantum, 1) &&
+         verify_quanta(check, info) &&
          check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
                        VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
 }

@@ -57,13 +57,12 @@ void check_parent(std::uint32_t i, VerifyRule rule, const std::string& field, Ch
 }
 
 template <class Change>
-void check_scale(layout::Role role, std::uint32_t i, VerifyRule rule, Change change) {
-  const auto a = static_cast<std::uint32_t>(role);
+void check_scale(std::uint32_t q, std::uint32_t i, VerifyRule rule, Change change) {
   ModelMutant root = valid(), diagonal = valid();
-  change(root.records<Scale>(SectionKind::scales, a, a)[i].root);
-  check_refused(root, rule, SectionKind::scales, a, a, "root", i);
-  change(diagonal.records<Scale>(SectionKind::scales, a, a)[i].diagonal);
-  check_refused(diagonal, rule, SectionKind::scales, a, a, "diagonal", i);
+  change(root.records<Scale>(SectionKind::scales, q)[i].root);
+  check_refused(root, rule, SectionKind::scales, q, 0, "root", i);
+  change(diagonal.records<Scale>(SectionKind::scales, q)[i].diagonal);
+  check_refused(diagonal, rule, SectionKind::scales, q, 0, "diagonal", i);
 }
 
 void check_representative(std::uint32_t c, std::uint32_t q, std::uint32_t i, VerifyRule rule, std::uint32_t value) {
@@ -79,7 +78,7 @@ TEST_CASE("verify refuses: sections whose size does not follow from the counts")
   } sized[] = {{SectionKind::info, 0, 0},       {SectionKind::level, 0, 0},
                {SectionKind::nodes, 1, 0},      {SectionKind::base_triangles, 0, 0},
                {SectionKind::refinement, 1, 0}, {SectionKind::representatives, 0, 1},
-               {SectionKind::scales, 0, 0},     {SectionKind::scales, 1, 1}};
+               {SectionKind::scales, 0, 0},     {SectionKind::scales, 1, 0}};
   for (const auto& section : sized) {
     for (const int change : {-4, 4}) {
       ModelMutant mutant = valid();
@@ -152,14 +151,24 @@ TEST_CASE("verify refuses: constraint levels outside the file's levels") {
   }
 }
 
-TEST_CASE("verify refuses: other than one to three layers for the field") {
-  for (const std::uint32_t layers : {0u, 4u}) {
-    check_info(VerifyRule::bad_enum, "field_layers", 0, [&](Info& info) { info.field_layers = layers; });
+TEST_CASE("verify refuses: a quantum of any layer that is negative, above one or not finite") {
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    for (const float bad : {NAN, INFINITY, -INFINITY}) {
+      check_info(VerifyRule::not_finite, "quantum", layer, [&](Info& info) { info.quantum[layer] = bad; });
+    }
+    for (const float bad : {-1e-30F, 1.0000001F}) {
+      check_info(VerifyRule::out_of_range, "quantum", layer, [&](Info& info) { info.quantum[layer] = bad; });
+    }
+    for (const float right : {0.0F, 1.0F}) {
+      ModelMutant mutant = valid();
+      mutant.records<Info>(SectionKind::info)->quantum[layer] = right;
+      CHECK(mutant.verdict().ok());
+    }
   }
 }
 
 TEST_CASE("verify refuses: reserved bytes of Info and Level in use") {
-  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[147] = 1; });
+  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[127] = 1; });
   check_level(1, VerifyRule::reserved_not_zero, "reserved", [](Level& level) { level.reserved[2] = 1; });
   check_level(0, VerifyRule::reserved_not_zero, "reserved", [](Level& level) { level.reserved0 = 1; });
 }
@@ -327,8 +336,8 @@ TEST_CASE("verify refuses: a representative of a node that cannot be touched") {
 TEST_CASE("verify refuses: scales that are not finite") {
   for (std::uint32_t k = 0; k < 6; ++k) {
     for (const float bad : {NAN, INFINITY, -INFINITY}) {
-      check_scale(layout::Role::averages, 3, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
-      check_scale(layout::Role::details, 7, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
+      check_scale(0, 3, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
+      check_scale(1, 7, VerifyRule::not_finite, [&](float* six) { six[k] = bad; });
     }
   }
 }
@@ -339,8 +348,8 @@ TEST_CASE("verify refuses: scales that are not positive definite, by their first
                                    {1, 0, 1, 1, 0, 1}, {1, 0, 0, 1, -1, 1}, {4, 2, 6, 5, 7, 13}};
   for (const auto& bad : not_definite) {
     const auto set = [&](float* six) { std::copy(std::begin(bad), std::end(bad), six); };
-    check_scale(layout::Role::averages, 4, VerifyRule::out_of_range, set);
-    check_scale(layout::Role::details, 0, VerifyRule::out_of_range, set);
+    check_scale(0, 4, VerifyRule::out_of_range, set);
+    check_scale(1, 0, VerifyRule::out_of_range, set);
   }
 }
 
@@ -348,8 +357,8 @@ TEST_CASE("verify accepts: any positive definite scale, however small or skewed"
   const float definite[][6] = {{1e-40F, 0, 0, 1e-40F, 0, 1e-40F}, {1e38F, 0, 0, 1e38F, 0, 1e38F}, {4, 2, 6, 5, 7, 14}};
   for (const auto& six : definite) {
     ModelMutant mutant = valid();
-    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1, 1)[2].root);
-    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1, 1)[3].diagonal);
+    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1)[2].root);
+    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1)[3].diagonal);
     CHECK(mutant.verdict().ok());
   }
 }

@@ -22,8 +22,6 @@ using layout::SectionKind;
 
 constexpr SectionKind header = {};
 constexpr std::uint32_t unknown_kind = 77;
-constexpr std::size_t parents = 1, same = 2;  // Partner
-constexpr std::size_t strong = 0;             // Strength
 
 ModelMutant valid() {
   static const std::vector<std::byte> file = encode(synthetic_model({.levels = 2}));
@@ -57,14 +55,12 @@ TEST_CASE("verify accepts: one triangle with one free node") {
   ModelData data = smallest_model();
   LevelData& level = data.levels[0];
   level.nodes[1].flags = layout::node_fixed;
-  level.averages.pop_back();
-  CouplingsData& couplings = level.couplings[same][strong];
-  couplings.begin = {0, 0};
-  couplings.value.clear();
+  level.scales.pop_back();
+  for (CouplingsData& couplings : level.couplings) couplings = {.begin = {0, 0}, .index = {}, .value = {}};
   ModelMutant mutant(encode(data));
   check_accepted(mutant);
   CHECK(mutant.view().domain_count == 1);
-  CHECK(mutant.view().level[0].couplings[same][strong].begin[1] == 0);
+  CHECK(mutant.view().level[0].couplings[0].begin[1] == 0);
 }
 
 TEST_CASE("verify accepts: levels without domain nodes") {
@@ -73,10 +69,7 @@ TEST_CASE("verify accepts: levels without domain nodes") {
   none_moves.nodes = {{{0.5F, 0, 0}, 0.125F, layout::node_fixed}};
   none_moves.refinement = {{{0, 1}, {0, 0}}};
   none_moves.representatives = {{0, layout::none, layout::none}, {layout::none}};
-  for (auto& partner : none_moves.couplings) {
-    if (&partner == &none_moves.couplings[parents]) continue;
-    for (CouplingsData& couplings : partner) couplings.begin = {0};
-  }
+  for (CouplingsData& couplings : none_moves.couplings) couplings.begin = {0};
   data.levels[0].representatives.push_back({layout::none});
   data.levels.push_back(none_moves);
   ModelMutant mutant(encode(data));
@@ -97,29 +90,18 @@ TEST_CASE("verify: the view shows every array where it stands") {
     CHECK(level.domain_begin == domain);
     nodes += level.counts->node_count;
     domain += level.counts->domain_count;
-    CHECK(level.details == (q == 0 ? nullptr : mutant.records<layout::Scale>(SectionKind::scales, 1, q)));
-    CHECK(level.averages == (q > 1 ? nullptr : mutant.records<layout::Scale>(SectionKind::scales, 0, q)));
-    for (std::uint16_t partner = 0; partner < 3; ++partner) {
-      for (std::uint16_t strength = 0; strength < layout::strengths; ++strength) {
-        const CouplingsView& couplings = level.couplings[partner][strength];
-        const bool exists = partner == same ? q > 0 || strength == strong : partner == parents ? q > 1 : q > 0;
-        CAPTURE(section_name(SectionKind::couplings, q, layout::strengths * partner + strength));
-        CHECK((couplings.value != nullptr) == exists);
-        if (!exists) {
-          CHECK(couplings.columns == 0);
-          continue;
-        }
-        const auto* stored =
-            mutant.records<layout::CouplingsHeader>(SectionKind::couplings, q, layout::strengths * partner + strength);
-        const auto* start = reinterpret_cast<const std::byte*>(stored);
-        CHECK(couplings.columns == level.counts->domain_count);
-        CHECK(couplings.rows == stored->rows);
-        CHECK(couplings.value_bits == (q == 0 ? 16u : strength < 2 ? 8u : 4u));
-        CHECK(couplings.quantum == stored->quantum);
-        CHECK(reinterpret_cast<const std::byte*>(couplings.begin) == start + stored->begin_offset);
-        CHECK(couplings.index == (q == 0 ? nullptr : start + stored->index_offset));
-        CHECK(couplings.value == start + stored->value_offset);
-      }
+    CHECK(level.scales == mutant.records<layout::Scale>(SectionKind::scales, q));
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      CAPTURE(section_name(SectionKind::couplings, q, layer));
+      const CouplingsView& couplings = level.couplings[layer];
+      const auto* stored = mutant.records<layout::CouplingsHeader>(SectionKind::couplings, q, layer);
+      const auto* start = reinterpret_cast<const std::byte*>(stored);
+      CHECK(couplings.columns == (stored->block_count > 0 ? level.counts->domain_count : 0));
+      CHECK(couplings.rows == domain);
+      CHECK(couplings.index_bytes == 2);
+      CHECK(reinterpret_cast<const std::byte*>(couplings.begin) == start + stored->begin_offset);
+      CHECK(couplings.index == start + stored->index_offset);
+      CHECK(couplings.value == start + stored->value_offset);
     }
     for (std::uint32_t c = 0; c < 4; ++c) {
       CHECK(view.representatives[c][q] ==
@@ -130,33 +112,27 @@ TEST_CASE("verify: the view shows every array where it stands") {
   CHECK(view.domain_count == domain);
 }
 
-TEST_CASE("verify accepts: 4, 8 and 16 bits in any layer, one to three layers for the field, both wavelets") {
-  for (const std::uint32_t strong_bits : {4u, 8u, 16u}) {
-    for (const std::uint32_t weak_bits : {4u, 8u, 16u}) {
-      const std::uint32_t medium_bits = weak_bits == 16 ? 4u : 16u;
-      ModelMutant mutant(SyntheticOptions{.levels = 3,
-                                          .strong_bits = strong_bits,
-                                          .medium_bits = medium_bits,
-                                          .weak_bits = weak_bits,
-                                          .field_layers = weak_bits == 4   ? 1u
-                                                          : weak_bits == 8 ? 2u
-                                                                           : 3u,
-                                          .lifted = weak_bits != 8});
-      check_accepted(mutant);
-      CHECK(mutant.view().level[2].couplings[same][0].value_bits == strong_bits);
-      CHECK(mutant.view().level[2].couplings[same][1].value_bits == medium_bits);
-      CHECK(mutant.view().level[2].couplings[same][2].value_bits == weak_bits);
-    }
+TEST_CASE("verify accepts: either wavelet") {
+  for (const bool lifted : {true, false}) {
+    ModelMutant mutant(SyntheticOptions{.levels = 3, .lifted = lifted});
+    check_accepted(mutant);
   }
 }
 
-TEST_CASE("verify accepts: couplings that are all strong, all medium, all weak") {
-  for (const std::size_t layer : {0u, 1u, 2u}) {
-    ModelMutant mutant(
-        SyntheticOptions{.levels = 3, .strong = layer == 0 ? 0.0 : 10.0, .medium = layer == 1 ? 0.0 : 10.0});
+TEST_CASE("verify accepts: couplings that all stand in one layer, or in none") {
+  const struct {
+    std::uint32_t layer;
+    SyntheticOptions options;
+  } cases[] = {{3, {.levels = 3, .field = 0, .quantum = 0.5}},
+               {5, {.levels = 3, .field = 1e9, .quantum = 0.5}},
+               {layout::layers, {.levels = 3, .epsilon = 1e9}}};
+  for (const auto& [full, options] : cases) {
+    ModelMutant mutant(options);
     check_accepted(mutant);
-    const auto& couplings = mutant.view().level[2].couplings[same];
-    for (const std::size_t s : {0u, 1u, 2u}) CHECK((couplings[s].begin[couplings[s].columns] > 0) == (s == layer));
+    const auto& couplings = mutant.view().level[2].couplings;
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      CHECK((couplings[layer].begin[couplings[layer].columns] > 0) == (layer == full));
+    }
   }
 }
 
@@ -165,30 +141,6 @@ TEST_CASE("verify accepts: constraints only on the finest level") {
   check_accepted(mutant);
   CHECK(mutant.view().representatives[1][0] == nullptr);
   CHECK(mutant.view().representatives[2][0] != nullptr);
-}
-
-TEST_CASE("verify accepts: 4-byte indices where 2 would do") {
-  ModelMutant mutant = valid();
-  mutant.rebuild([](std::vector<SectionCopy>& sections) {
-    for (SectionCopy& section : sections) {
-      if (!section.is(SectionKind::couplings, 1, layout::coupling_index(layout::Partner::same, {}))) continue;
-      layout::CouplingsHeader blocks;
-      std::memcpy(&blocks, section.bytes.data(), sizeof(blocks));
-      const auto* narrow = reinterpret_cast<const std::uint16_t*>(section.bytes.data() + blocks.index_offset);
-      const std::vector<std::uint32_t> wide(narrow, narrow + blocks.block_count);
-      const std::size_t room = (wide.size() * 4 + 63) / 64 * 64;
-      std::vector<std::byte> bytes(section.bytes.begin(), section.bytes.begin() + blocks.index_offset);
-      bytes.resize(blocks.index_offset + room);
-      std::memcpy(bytes.data() + blocks.index_offset, wide.data(), wide.size() * 4);
-      bytes.insert(bytes.end(), section.bytes.begin() + blocks.value_offset, section.bytes.end());
-      blocks.index_bytes = 4;
-      blocks.value_offset = blocks.index_offset + room;
-      std::memcpy(bytes.data(), &blocks, sizeof(blocks));
-      section.bytes = std::move(bytes);
-    }
-  });
-  check_accepted(mutant);
-  CHECK(mutant.view().level[1].couplings[same][strong].index_bytes == 4);
 }
 
 TEST_CASE("verify accepts: no provenance, and provenance in any language") {
@@ -328,15 +280,15 @@ TEST_CASE("verify refuses: more sections than fit in the file") {
 TEST_CASE("verify refuses: a section that starts or ends past the end, also where the sum wraps around") {
   for (const std::uint64_t offset : {std::uint64_t{1} << 40, ~std::uint64_t{63}}) {
     ModelMutant mutant = valid();
-    const std::uint32_t place = mutant.place(SectionKind::scales, 1, 1);
+    const std::uint32_t place = mutant.place(SectionKind::scales, 1);
     mutant.table()[place].offset = offset;
-    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::scales, 1, 1, "section.offset", place);
+    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::scales, 1, 0, "section.offset", place);
   }
   for (const std::uint64_t bytes : {std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     ModelMutant mutant = valid();
-    const std::uint32_t place = mutant.place(SectionKind::scales, 1, 1);
+    const std::uint32_t place = mutant.place(SectionKind::scales, 1);
     mutant.table()[place].bytes = bytes;
-    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::scales, 1, 1, "section.bytes", place);
+    check_refused(mutant, VerifyRule::section_out_of_bounds, SectionKind::scales, 1, 0, "section.bytes", place);
   }
 }
 
@@ -371,6 +323,17 @@ TEST_CASE("verify refuses: a level beyond those the header states") {
   check_refused(mutant, VerifyRule::section_order, SectionKind::level, 1, 0, "section", place);
 }
 
+TEST_CASE("verify refuses: couplings of a layer beyond those defined") {
+  ModelMutant mutant = valid();
+  const std::uint32_t place = mutant.place(SectionKind::couplings, 0, layout::layers - 1) + 1;
+  mutant.rebuild([&](std::vector<SectionCopy>& sections) {
+    SectionCopy beyond = sections[place - 1];
+    beyond.entry.b = layout::layers;
+    sections.insert(sections.begin() + place, beyond);
+  });
+  check_refused(mutant, VerifyRule::section_order, SectionKind::couplings, 0, layout::layers, "section", place);
+}
+
 TEST_CASE("verify refuses: a file without one of its sections, whichever it is") {
   const std::size_t count = valid().table().size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -401,8 +364,8 @@ TEST_CASE("verify refuses: an unknown section that is not of a newer minor versi
   mutant.rebuild([](std::vector<SectionCopy>& sections) { sections.push_back(unknown_section()); });
   check_refused(mutant, VerifyRule::bad_enum, static_cast<SectionKind>(unknown_kind), 0, 0, "section.kind",
                 mutant.table().size() - 1);
-  for (const std::uint32_t retired : {0u, 7u, 9u}) {
-    mutant.table().back().kind = retired;
+  for (const std::uint32_t undefined : {0u, 7u, 9u, 12u}) {
+    mutant.table().back().kind = undefined;
     const VerifyResult result = mutant.verdict();
     CHECK(result.rule == VerifyRule::bad_enum);
     CHECK(result.field == std::string("section.kind"));
@@ -439,6 +402,10 @@ TEST_CASE("verify refuses: reserved bytes in use, in the header and in the table
   ModelMutant table = valid();
   table.table()[2].reserved = 1;
   check_refused(table, VerifyRule::reserved_not_zero, SectionKind::level, 0, 0, "section.reserved", 2);
+}
+
+TEST_CASE("layout: the layers of fields come first") {
+  for (std::uint32_t i = 0; i < layout::layers; ++i) CHECK(layout::layer[i].field == (i < layout::field_layers));
 }
 
 TEST_CASE("verify: the view is plain data") { CHECK(std::is_trivially_copyable_v<ModelView>); }

@@ -21,8 +21,7 @@ struct CouplingsView {
 /// One level of the mesh, in place.
 struct LevelView {
   const layout::Level* counts = nullptr;
-  std::uint32_t node_begin =
-      0;  ///< file index of its first node; its domain is [node_begin, node_begin + domain_count)
+  std::uint32_t node_begin = 0;    ///< file index of its first node, where its domain begins too
   std::uint32_t domain_begin = 0;  ///< domain nodes of all coarser levels
   const layout::NodeRecord* nodes = nullptr;
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
@@ -41,7 +40,8 @@ struct ModelView {
   std::uint32_t domain_count = 0;  ///< over all levels present
   const std::uint32_t* base_triangles = nullptr;
   LevelView level[layout::max_levels];
-  const std::uint32_t* representatives[layout::max_levels][layout::max_levels];  ///< [constraint level][mesh level]
+  /// [constraint level][mesh level]
+  const std::uint32_t* representatives[layout::max_levels][layout::max_levels] = {};
 };
 
 }  // namespace greenloop

@@ -61,7 +61,7 @@ Bytes narrowed(const std::vector<From>& values, const std::string& what) {
 }
 
 // two elements a byte, the low nibble first; ten nibbles a block, the last one zero
-Bytes nibbles(const std::vector<std::int32_t>& values, const std::string& what) {
+Bytes nibbles(const std::vector<std::int16_t>& values, const std::string& what) {
   Bytes bytes(values.size() / 9 * 5);
   for (std::size_t i = 0; i < values.size(); ++i) {
     require(values[i] >= -7 && values[i] <= 7, fmt::format("{}[{}] = {} does not fit in 4 bits", what, i, values[i]));
@@ -71,14 +71,12 @@ Bytes nibbles(const std::vector<std::int32_t>& values, const std::string& what) 
   return bytes;
 }
 
-Bytes encode_values(const std::vector<std::int32_t>& values, std::uint32_t bits, const std::string& what) {
+Bytes encode_values(const std::vector<std::int16_t>& values, std::uint32_t bits, const std::string& what) {
   switch (bits) {
     case 4:
       return nibbles(values, what);
     case 8:
       return narrowed<std::int8_t>(values, what);
-    case 16:
-      return narrowed<std::int16_t>(values, what);
     default:
       return bytes_of(values);
   }

@@ -16,7 +16,7 @@ namespace greenloop {
 struct CouplingsData {
   std::vector<std::uint32_t> begin;  ///< columns + 1
   std::vector<std::uint32_t> index;  ///< rows; stored in 2 bytes where they fit
-  std::vector<std::int32_t> value;   ///< 9 per block, by columns
+  std::vector<std::int16_t> value;   ///< 9 per block, by columns
 };
 
 /// One level of a model before encoding.

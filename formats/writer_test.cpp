@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 
@@ -36,40 +38,38 @@ std::string encode_refusal(const std::function<void(ModelData&)>& change) {
 
 bool names(const std::string& message, const std::string& part) { return message.find(part) != std::string::npos; }
 
-int stored_value(const CouplingsView& view, std::size_t i) {
-  if (view.value_bits == 16) return reinterpret_cast<const std::int16_t*>(view.value)[i];
-  if (view.value_bits == 8) return reinterpret_cast<const std::int8_t*>(view.value)[i];
+int stored_value(const CouplingsView& view, std::uint32_t value_bits, std::size_t i) {
+  if (value_bits == 16) return reinterpret_cast<const std::int16_t*>(view.value)[i];
+  if (value_bits == 8) return reinterpret_cast<const std::int8_t*>(view.value)[i];
   const int byte = std::to_integer<int>(view.value[i / 9 * 5 + i % 9 / 2]);
   const int nibble = (i % 9) % 2 == 0 ? byte % 16 : byte / 16;
   return nibble < 8 ? nibble : nibble - 16;
 }
 
-void check_couplings(const CouplingsView& view, const CouplingsData& data) {
-  if (data.begin.empty()) {
-    CHECK(view.begin == nullptr);
+void check_couplings(const CouplingsView& view, std::uint32_t value_bits, const CouplingsData& data) {
+  if (data.index.empty()) {
+    CHECK(view.columns == 0);
     return;
   }
-  CHECK(view.value_bits == data.value_bits);
-  CHECK(view.quantum == data.quantum);
   CHECK(same_bytes(view.begin, data.begin));
-  CHECK((view.index == nullptr) == (view.index_bytes == 0));
+  REQUIRE(view.index_bytes == 2);
   for (std::size_t b = 0; b < data.index.size(); ++b) {
-    REQUIRE(view.index_bytes == 2);
     REQUIRE(static_cast<const std::uint16_t*>(view.index)[b] == data.index[b]);
   }
-  for (std::size_t i = 0; i < data.value.size(); ++i) REQUIRE(stored_value(view, i) == data.value[i]);
+  for (std::size_t i = 0; i < data.value.size(); ++i) REQUIRE(stored_value(view, value_bits, i) == data.value[i]);
 }
 
 TEST_CASE("writer: what the view shows is what was given") {
-  for (const std::uint32_t bits : {4u, 8u, 16u}) {
-    const ModelData data = synthetic_model({.levels = 4, .coarsest_constraint_level = 1, .strong_bits = bits});
+  for (const bool lifted : {true, false}) {
+    const ModelData data = synthetic_model({.levels = 4, .coarsest_constraint_level = 1, .lifted = lifted});
     ModelMutant file(encode(data));
     REQUIRE(file.verdict().ok());
     const ModelView& view = file.view();
     CHECK(std::string(view.provenance.begin(), view.provenance.end()) == data.provenance);
+    CHECK(view.info->wavelet == data.info.wavelet);
     CHECK(view.info->young == data.info.young);
     CHECK(view.info->step_work == data.info.step_work);
-    CHECK(view.info->field_layers == data.info.field_layers);
+    CHECK(std::equal(std::begin(view.info->quantum), std::end(view.info->quantum), std::begin(data.info.quantum)));
     CHECK(same_bytes(view.base_triangles, data.base_triangles));
     for (std::uint32_t q = 0; q < 4; ++q) {
       const LevelData& level = data.levels[q];
@@ -77,17 +77,13 @@ TEST_CASE("writer: what the view shows is what was given") {
       CHECK(view.level[q].counts->field_column_error == level.counts.field_column_error);
       CHECK(same_bytes(view.level[q].nodes, level.nodes));
       if (q > 0) CHECK(same_bytes(view.level[q].refinement, level.refinement));
-      if (q > 0) CHECK(same_bytes(view.level[q].details, level.details));
-      CHECK((view.level[q].averages == nullptr) == (q > 1));
-      CHECK(same_bytes(view.level[q].averages, level.averages));
+      CHECK(same_bytes(view.level[q].scales, level.scales));
       for (std::uint32_t r = 0; r < 4; ++r) {
         CHECK((view.representatives[q][r] == nullptr) == (q == 0));
         if (q > 0) CHECK(same_bytes(view.representatives[q][r], level.representatives[r]));
       }
-      for (std::size_t partner = 0; partner < 3; ++partner) {
-        for (std::size_t s = 0; s < layout::strengths; ++s) {
-          check_couplings(view.level[q].couplings[partner][s], level.couplings[partner][s]);
-        }
+      for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+        check_couplings(view.level[q].couplings[layer], layout::layer[layer].value_bits, level.couplings[layer]);
       }
     }
   }
@@ -108,13 +104,13 @@ TEST_CASE("writer: counts, box and levels are filled in, whatever was there") {
   CHECK(view.info->box_max[2] == 0.1F);
   CHECK(view.node_count == 18);
   CHECK(view.domain_count == 13);
-  // the scales and the ten couplings of the five domain nodes of level 0, then eight details and theirs
-  CHECK(view.level[0].counts->kept_blocks == 5 + 10);
-  std::size_t stored = 15 + 8;
-  for (const auto& partner : data.levels[1].couplings) {
-    for (const CouplingsData& couplings : partner) stored += couplings.index.size();
-  }
-  CHECK(view.level[1].counts->kept_blocks == stored);
+  // five domain nodes on level 0, all coupled, then eight on level 1
+  std::size_t stored = 0;
+  for (const CouplingsData& layer : data.levels[0].couplings) stored += layer.index.size();
+  CHECK(stored == 10);
+  CHECK(view.level[0].counts->kept_blocks == 5 + stored);
+  for (const CouplingsData& layer : data.levels[1].couplings) stored += layer.index.size();
+  CHECK(view.level[1].counts->kept_blocks == 5 + 8 + stored);
   CHECK(view.level[0].counts->dense_blocks == 5 * 5);
   CHECK(view.level[1].counts->dense_blocks == 13 * 13);
 }
@@ -171,54 +167,43 @@ TEST_CASE("writer: refuses vectors that do not fit each other, by name") {
               "levels[1].representatives"));
   CHECK(names(encode_refusal([](ModelData& data) { data.levels[1].representatives[2].pop_back(); }),
               "levels[1].representatives[2]"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[0].averages.pop_back(); }), "levels[0].averages"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].details.pop_back(); }), "levels[2].details"));
-  const auto refused = [](std::size_t partner, auto change) {
-    return encode_refusal([&](ModelData& data) { change(data.levels[2].couplings[partner][0]); });
-  };
-  CHECK(names(refused(0, [](auto& data) { data.begin.pop_back(); }), "Couplings(2, averages, strong).begin"));
-  CHECK(names(refused(1, [](auto& data) { data.index.pop_back(); }), "Couplings(2, parents, strong).index"));
-  CHECK(names(refused(2, [](auto& data) { data.value.pop_back(); }), "Couplings(2, same, strong).value"));
-}
-
-TEST_CASE("writer: refuses what belongs to no section, by name") {
+  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].scales.pop_back(); }), "levels[2].scales"));
   CHECK(names(encode_refusal([](ModelData& data) { data.info.coarsest_constraint_level = 1; }),
               "levels[0].representatives has 3 entries, expected 0"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[1].averages = data.levels[0].averages; }),
-              "levels[1].averages belongs to no section"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[0].details = data.levels[0].averages; }),
-              "levels[0].details belongs to no section"));
-  const auto misplaced = [](std::size_t q, std::size_t partner, std::size_t strength) {
-    return encode_refusal([&](ModelData& data) { data.levels[q].couplings[partner][strength].begin = {0}; });
-  };
-  CHECK(names(misplaced(0, 0, 0), "Couplings(0, averages, strong).begin"));
-  CHECK(names(misplaced(0, 2, 1), "Couplings(0, same, medium).begin"));
-  CHECK(names(misplaced(1, 1, 2), "Couplings(1, parents, weak).begin"));
+  for (std::size_t layer = 0; layer < layout::layers; ++layer) {
+    const auto refused = [&](auto change) {
+      return encode_refusal([&](ModelData& data) { change(data.levels[2].couplings[layer]); });
+    };
+    const std::string name = "Couplings(2, " + std::to_string(layer) + ")";
+    CHECK(names(refused([](auto& data) { data.begin.pop_back(); }), name + ".begin"));
+    CHECK(names(refused([](auto& data) { data.index.pop_back(); }), name + ".index"));
+    CHECK(names(refused([](auto& data) { data.value.pop_back(); }), name + ".value"));
+  }
 }
 
-TEST_CASE("writer: refuses values that do not fit their bits") {
-  const auto refused = [](std::size_t strength, auto change) {
-    return encode_refusal([&](ModelData& data) { change(data.levels[2].couplings[0][strength]); });
+TEST_CASE("writer: refuses values and rows that do not fit their bits") {
+  const auto refused = [](std::size_t layer, auto change) {
+    return encode_refusal([&](ModelData& data) { change(data.levels[2].couplings[layer]); });
   };
-  for (const int bad : {200, -200}) {
-    CHECK(names(refused(0, [&](auto& data) { data.value[4] = static_cast<std::int16_t>(bad); }),
-                "Couplings(2, averages, strong).value[4] = " + std::to_string(bad)));
+  for (std::size_t layer = 0; layer < layout::layers; ++layer) {
+    const std::uint32_t bits = layout::layer[layer].value_bits;
+    if (bits == 16) continue;
+    const int half = 1 << (bits - 1);
+    for (const int bad : {half, -half - 1}) {
+      CHECK(names(refused(layer, [&](auto& data) { data.value[4] = static_cast<std::int16_t>(bad); }),
+                  "Couplings(2, " + std::to_string(layer) + ").value[4] = " + std::to_string(bad)));
+    }
   }
-  for (const int bad : {8, -8}) {
-    CHECK(names(refused(2, [&](auto& data) { data.value[4] = static_cast<std::int16_t>(bad); }),
-                "Couplings(2, averages, weak).value[4] = " + std::to_string(bad)));
-  }
-  CHECK(names(refused(0, [](auto& data) { data.value_bits = 5; }), "value_bits = 5"));
-  CHECK(
-      names(refused(0, [](auto& data) { data.index[4] = 65536; }), "Couplings(2, averages, strong).index[4] = 65536"));
+  CHECK(names(refused(2, [](auto& data) { data.index[4] = 65536; }), "Couplings(2, 2).index[4] = 65536"));
 }
 
 TEST_CASE("writer: refuses whatever verify would refuse, in its words") {
   CHECK(names(encode_refusal([](ModelData& data) { data.info.young = 0; }), "Info, field `young`"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].details[3].root[0] = -1; }),
-              "Scales(details, 2), field `root`, index 3"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].couplings[2][2].quantum = 2; }),
-              "Couplings(2, same, weak), field `quantum`"));
+  CHECK(names(encode_refusal([](ModelData& data) { data.info.quantum[3] = 2; }), "Info, field `quantum`, index 3"));
+  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].scales[3].root[0] = -1; }),
+              "Scales(2), field `root`, index 3"));
+  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].couplings[0].value[7] = -32768; }),
+              "Couplings(2, 0), field `value`, index 7"));
 }
 
 }  // namespace

@@ -9,12 +9,6 @@ using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 
-Matrix3d symmetric(const float (&six)[6]) {
-  Matrix3d matrix;
-  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
-  return matrix;
-}
-
 // both halves of the wavelet form
 MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::uint32_t layers) {
   std::vector<Matrix3d> root;
@@ -24,8 +18,8 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::u
     const auto first = static_cast<Index>(root.size());
     for (const layout::Scale& scale : level.scales) {
       const auto i = static_cast<Index>(root.size());
-      root.push_back(symmetric(scale.root));
-      form.block<3, 3>(3 * i, 3 * i) = root.back() * symmetric(scale.diagonal) * root.back();
+      root.push_back(symmetric_matrix(scale.root));
+      form.block<3, 3>(3 * i, 3 * i) = root.back() * symmetric_matrix(scale.diagonal) * root.back();
     }
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
       const CouplingsData& data = level.couplings[layer];
@@ -33,8 +27,8 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::u
         for (std::size_t b = data.begin[j]; b < data.begin[j + 1]; ++b) {
           const Index i = data.index[b], column = first + j;
           Matrix3d block;
-          for (Index k = 0; k < 9; ++k) block(k % 3, k / 3) = double{model.info.quantum} * data.value[9 * b + k];
-          form.block<3, 3>(3 * i, 3 * column) = root[i] * block * root[column];
+          for (Index k = 0; k < 9; ++k) block(k % 3, k / 3) = double{model.info.quantum[layer]} * data.value[9 * b + k];
+          form.block<3, 3>(3 * i, 3 * column) += root[i] * block * root[column];
           form.block<3, 3>(3 * column, 3 * i) = form.block<3, 3>(3 * i, 3 * column).transpose();
         }
       }
@@ -44,6 +38,12 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::u
 }
 
 }  // namespace
+
+Matrix3d symmetric_matrix(const float (&six)[6]) {
+  Matrix3d matrix;
+  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
+  return matrix;
+}
 
 DenseWavelet::DenseWavelet(const ModelData& model) {
   for (const LevelData& level : model.levels) {
@@ -78,7 +78,7 @@ void DenseWavelet::step_forward(std::uint32_t q, Vector at) const {
 }
 
 template <class Vector>
-void DenseWavelet::step_back(std::uint32_t q, Vector at) const {
+void DenseWavelet::step_inverse(std::uint32_t q, Vector at) const {
   for (Index m = begin(q); m < end(q); ++m) {
     for (std::size_t k = 0; k < 2; ++k) {
       if (odd_[m].parent[k] >= 0) at(odd_[m].parent[k]) -= odd_[m].lift[k] * at(m);
@@ -99,7 +99,7 @@ void DenseWavelet::forward(std::uint32_t q, Eigen::Ref<MatrixXd> x) const {
 
 void DenseWavelet::inverse(std::uint32_t q, Eigen::Ref<MatrixXd> x) const {
   for (Index j = 0; j < x.cols(); ++j) {
-    step_back(q, [&](Index i) { return x.col(j).segment<3>(3 * i); });
+    step_inverse(q, [&](Index i) { return x.col(j).segment<3>(3 * i); });
   }
 }
 
@@ -108,7 +108,7 @@ void DenseWavelet::forward_columns(std::uint32_t q, Eigen::Ref<MatrixXd> x) cons
 }
 
 void DenseWavelet::inverse_columns(std::uint32_t q, Eigen::Ref<MatrixXd> x) const {
-  step_back(q, [&](Index i) { return x.middleCols<3>(3 * i); });
+  step_inverse(q, [&](Index i) { return x.middleCols<3>(3 * i); });
 }
 
 void to_wavelet_form(const DenseWavelet& wavelet, Eigen::Ref<MatrixXd> compliance) {

@@ -3,12 +3,14 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "formats/writer.hpp"
 
 namespace greenloop {
+
+/// A matrix of layout::Scale.
+[[nodiscard]] Eigen::Matrix3d symmetric_matrix(const float (&six)[6]);
 
 /// The wavelet transform of docs/theory.md on dense matrices over the domain nodes of a model, three rows and columns a
 /// node, coarse to fine. For tests only: plain and slow, to compare others with.
@@ -43,7 +45,7 @@ class DenseWavelet {
   template <class Vector>
   void step_forward(std::uint32_t q, Vector at) const;
   template <class Vector>
-  void step_back(std::uint32_t q, Vector at) const;
+  void step_inverse(std::uint32_t q, Vector at) const;
 
   std::vector<Eigen::Index> end_;
   std::vector<Eigen::Index> domain_index_;
@@ -53,8 +55,7 @@ class DenseWavelet {
 /// U [3N x 3N] -> W U W^T in place, the two-sided wavelet form of layout.hpp without scales. Work: 100 N^2 or so.
 void to_wavelet_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> compliance);
 
-/// Its inverse on the coefficients of levels 0..c, [3 end(c) x 3 end(c)]: the compliance between the averages of level
-/// c.
+/// Its inverse on the coefficients of levels 0..c, [3 end(c) x 3 end(c)]: the compliance between averages of level c.
 void from_wavelet_form(const DenseWavelet& wavelet, std::uint32_t c, Eigen::Ref<Eigen::MatrixXd> form);
 
 /// The compliance (m/N) between the averages of level `c` that a model stands for, with its first `layers` layers of

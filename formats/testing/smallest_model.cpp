@@ -15,7 +15,7 @@ ModelData smallest_model() {
   model.info.rate = 1000;
   model.info.max_contacts = 1;
   model.info.step_work = 1000;
-  model.info.quantum = quantum;
+  model.info.quantum[0] = quantum;
   model.provenance = "{}";
   model.base_triangles = {0, 1, 2};
 
@@ -27,7 +27,7 @@ ModelData smallest_model() {
   level.scales.assign(2, {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
                           .diagonal = {1, 0, 0, 1, 0, 1}});
   for (CouplingsData& layer : level.couplings) layer.begin = {0, 0, 0};
-  level.couplings[1] = {.begin = {0, 0, 1}, .index = {0}, .value = {256, 0, 0, 0, 256, 0, 0, 64, 256}};
+  level.couplings[0] = {.begin = {0, 0, 1}, .index = {0}, .value = {256, 0, 0, 0, 256, 0, 0, 64, 256}};
   model.levels = {level};
   return model;
 }

@@ -20,6 +20,10 @@ constexpr double range = 0.05;     // m, of the kernel
 constexpr double softness = 1e-3;  // m/N
 constexpr double twist = 0.5;
 
+// The quantum of each layer over SyntheticOptions::quantum; of 16 bits over what holds the largest value. All differ,
+// so that a reader that takes another layer's is found out.
+constexpr double quantum_factor[layout::layers] = {1, 0.75, 1, 1.25, 0.4, 0.6};
+
 // I + twist [x / radius]_x
 Matrix3d frame_at(const Eigen::Vector3d& x) {
   const Eigen::Vector3d t = twist / Sphere::radius * x;
@@ -44,12 +48,6 @@ MatrixXd exact_compliance(const Sphere& sphere) {
   return compliance;
 }
 
-Matrix3d symmetric(const float (&six)[6]) {
-  Matrix3d matrix;
-  matrix << six[0], six[1], six[2], six[1], six[3], six[4], six[2], six[4], six[5];
-  return matrix;
-}
-
 void store(const Matrix3d& matrix, float (&six)[6]) {
   std::size_t k = 0;
   for (Index r = 0; r < 3; ++r) {
@@ -69,7 +67,7 @@ std::vector<layout::Scale> scales_of(const MatrixXd& form, Index begin, Index en
     const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(conditional).operatorSqrt();
     layout::Scale scale;
     store(root, scale.root);
-    const Matrix3d inverse = symmetric(scale.root).inverse();
+    const Matrix3d inverse = symmetric_matrix(scale.root).inverse();
     store(inverse * block * inverse, scale.diagonal);
     scales.push_back(scale);
   }
@@ -99,11 +97,11 @@ class Compression {
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
       auto& scales = model_.levels[q].scales;
       scales = scales_of(form, wavelet_.begin(q), wavelet_.end(q));
-      for (const layout::Scale& scale : scales) inverse_.emplace_back(symmetric(scale.root).inverse());
+      for (const layout::Scale& scale : scales) inverse_.emplace_back(symmetric_matrix(scale.root).inverse());
     }
-    model_.info.quantum = static_cast<float>(options_.quantum);
+    choose_quanta(form);
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) add_couplings(q, form);
-    measure(compliance);
+    measure(form);
   }
 
  private:
@@ -111,12 +109,25 @@ class Compression {
     return inverse_[i] * form.block<3, 3>(3 * i, 3 * j) * inverse_[j];
   }
 
-  // the layer of fewest bits that holds the block; the widest, the first, holds all
+  void choose_quanta(const MatrixXd& form) {
+    double largest = 0;
+    for (Index j = 0; j < wavelet_.end(wavelet_.levels() - 1); ++j) {
+      for (Index i = 0; i < j; ++i) largest = std::max(largest, scaled(form, i, j).cwiseAbs().maxCoeff());
+    }
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      const bool wide = layout::layer[layer].value_bits == 16;
+      const double quantum = quantum_factor[layer] * (wide ? largest / 32767 : options_.quantum);
+      model_.info.quantum[layer] = static_cast<float>(quantum);
+    }
+  }
+
+  // the layer of fewest bits, 16 where no other holds the block
   [[nodiscard]] std::uint32_t layer_of(const Matrix3d& block) const {
     const bool field = block.norm() / std::sqrt(3.0) >= options_.field;
     for (std::uint32_t layer = layout::layers; layer-- > 1;) {
-      const double most = std::ldexp(1, static_cast<int>(layout::layer[layer].value_bits) - 1) - 1;
-      if (layout::layer[layer].field == field && block.cwiseAbs().maxCoeff() < most * options_.quantum) return layer;
+      const double most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
+      const bool fits = block.cwiseAbs().maxCoeff() < most * double{model_.info.quantum[layer]};
+      if (layout::layer[layer].field == field && fits) return layer;
     }
     return 0;
   }
@@ -132,20 +143,19 @@ class Compression {
         level.couplings[layer].index.push_back(static_cast<std::uint32_t>(i));
         for (Index k = 0; k < 9; ++k) {
           level.couplings[layer].value.push_back(
-              static_cast<std::int32_t>(std::lround(block(k % 3, k / 3) / double{model_.info.quantum})));
+              static_cast<std::int16_t>(std::lround(block(k % 3, k / 3) / double{model_.info.quantum[layer]})));
         }
       }
-      for (CouplingsData& layer : level.couplings)
+      for (CouplingsData& layer : level.couplings) {
         layer.begin.push_back(static_cast<std::uint32_t>(layer.index.size()));
+      }
     }
   }
 
-  void measure(const MatrixXd& compliance) {
+  void measure(const MatrixXd& form) {
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
       const Index end = 3 * wavelet_.end(q);
-      MatrixXd exact = compliance;
-      to_wavelet_form(wavelet_, exact);
-      exact.conservativeResize(end, end);
+      MatrixXd exact = form.topLeftCorner(end, end);
       from_wavelet_form(wavelet_, q, exact);
       const MatrixXd all = decoded_compliance(model_, q);
       const MatrixXd field = decoded_compliance(model_, q, layout::field_layers);

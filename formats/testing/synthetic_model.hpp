@@ -14,7 +14,7 @@ struct SyntheticOptions {
   bool lifted = true;                           ///< else the plain Linear wavelet
   double field = 0.01;                          ///< scaled blocks of this norm over root 3 make fields
   double epsilon = 0.005;                       ///< below this they are dropped; 0 keeps all
-  double quantum = 0.002;                       ///< of scaled values
+  double quantum = 0.002;                       ///< of the field's 8-bit layer; those of 4 bits and of forces differ
   double touchable_above = 0;                   ///< nodes with z >= this times the radius may be contacts; at most 1
 };
 

@@ -18,13 +18,11 @@ void write_all(const std::filesystem::path& folder) {
   write_c_array(folder / "small_sphere.h", encode(synthetic_model({.levels = 2})));
   write_file(folder / "smallest.gloop", encode(smallest_model()));
   for (std::uint32_t levels = 1; levels <= 3; ++levels) {
-    for (const std::uint32_t bits : {4u, 8u, 16u}) {
-      const auto file = encode(synthetic_model({.levels = levels,
-                                                .coarsest_constraint_level = levels / 3,
-                                                .strong_bits = bits,
-                                                .field_layers = bits == 8 ? 2u : 1u,
-                                                .lifted = bits != 16}));
-      write_file(folder / ("sphere_" + std::to_string(levels) + "_" + std::to_string(bits) + ".gloop"), file);
+    for (const bool lifted : {true, false}) {
+      const auto file =
+          encode(synthetic_model({.levels = levels, .coarsest_constraint_level = levels / 3, .lifted = lifted}));
+      const char* wavelet = lifted ? "lifted" : "linear";
+      write_file(folder / ("sphere_" + std::to_string(levels) + "_" + wavelet + ".gloop"), file);
     }
   }
   write_file(folder / "sphere_cut.gloop", truncate_to_level(encode(synthetic_model({.levels = 3})), 1));

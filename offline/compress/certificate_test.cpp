@@ -61,7 +61,7 @@ TEST_CASE("nothing is certified by a bound that is not positive") {
 
 TEST_CASE("an indefinite model is found out by both") {
   ModelData disturbed = model();
-  disturbed.info.quantum *= 3;
+  for (float& quantum : disturbed.info.quantum) quantum *= 3;
   const Case given(disturbed);
   REQUIRE(given.least < 0);
   CHECK(estimate_least_eigenvalue(given.compressed, {}) <= 0);

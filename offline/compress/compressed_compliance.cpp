@@ -21,13 +21,12 @@ bool any(const double* f, std::size_t count) {
   return std::any_of(f, f + count, [](double x) { return x != 0; });
 }
 
-std::int32_t value_at(const std::byte* value, std::uint32_t bits, std::size_t block, std::size_t k) {
-  if (bits == 32) return reinterpret_cast<const std::int32_t*>(value)[9 * block + k];
+std::int16_t value_at(const std::byte* value, std::uint32_t bits, std::size_t block, std::size_t k) {
   if (bits == 16) return reinterpret_cast<const std::int16_t*>(value)[9 * block + k];
   if (bits == 8) return reinterpret_cast<const std::int8_t*>(value)[9 * block + k];
   const auto byte = static_cast<unsigned>(value[5 * block + k / 2]);
   const unsigned nibble = (k % 2 == 0 ? byte : byte >> 4) & 15;
-  return nibble < 8 ? static_cast<int>(nibble) : static_cast<int>(nibble) - 16;
+  return static_cast<std::int16_t>(nibble < 8 ? static_cast<int>(nibble) : static_cast<int>(nibble) - 16);
 }
 
 std::uint32_t row_at(const CouplingsView& couplings, std::size_t block) {
@@ -59,7 +58,7 @@ std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(con
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
       const CouplingsView& couplings = view.level[level].couplings[layer];
-      const float quantum = view.info->quantum;
+      const float quantum = view.info->quantum[layer];
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
           ends.emplace_back(row_at(couplings, b), view.level[level].domain_begin + j);

@@ -117,7 +117,7 @@ TEST_CASE("no more patches than nodes, no more nodes than there are") {
 
 TEST_CASE("a patch that is not positive definite has an infinite error") {
   auto model = test::model_of(given().body, true, {.threshold = 0.004, .quantum = 0.002});
-  model.info.quantum *= 20;
+  for (float& quantum : model.info.quantum) quantum *= 20;
   const test::File file(model);
   const CompressedCompliance indefinite(file.view, layout::layers);
   const auto patches = patches_of(given().body.compliance, 3, 10);

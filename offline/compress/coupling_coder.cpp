@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t width = 9;
 
-using Block = std::array<std::int32_t, width>;
+using Block = std::array<std::int16_t, width>;
 
 double largest_value(std::uint32_t layer) {
   return std::ldexp(1, static_cast<int>(layout::layer[layer].value_bits) - 1) - 1;
@@ -26,15 +26,27 @@ double largest(const float* value) {
 Block quantize(const float* value, double quantum) {
   Block block;
   for (std::size_t k = 0; k < width; ++k) {
-    block[k] = static_cast<std::int32_t>(std::lround(static_cast<double>(value[k]) / quantum));
+    block[k] = static_cast<std::int16_t>(std::lround(static_cast<double>(value[k]) / quantum));
   }
   return block;
 }
 
-// the layer of fewest bits that holds a block; the widest, the first, holds all
-std::uint32_t layer_of(const float* value, double quantum, bool field) {
+// the common quantum; in the first layer one that holds the largest value
+void choose_quanta(const WaveletCompliance& compliance, double quantum, layout::Info& info) {
+  std::fill(std::begin(info.quantum), std::end(info.quantum), static_cast<float>(quantum));
+  double most = 0;
+  for (const auto& level : compliance.couplings) {
+    for (std::size_t b = 0; b < level.row.size(); ++b) most = std::max(most, largest(level.value.data() + width * b));
+  }
+  info.quantum[0] = static_cast<float>(std::max(quantum, most / largest_value(0)));
+}
+
+// the layer of fewest bits that holds a block; the first holds all
+std::uint32_t layer_of(const float* value, const layout::Info& info, bool field) {
   for (std::uint32_t layer = layout::layers; layer-- > 1;) {
-    if (layout::layer[layer].field == field && largest(value) < (largest_value(layer) + 0.5) * quantum) return layer;
+    const bool fits = largest(value) < (largest_value(layer) + 0.5) * static_cast<double>(info.quantum[layer]);
+    const bool serves = layout::layer[layer].field == field || layout::layer[layer].value_bits == 16;
+    if (serves && fits) return layer;
   }
   return 0;
 }
@@ -50,8 +62,7 @@ std::vector<double> own_sizes(const std::vector<CoefficientScale>& scales) {
 }  // namespace
 
 void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model) {
-  model.info.quantum = static_cast<float>(encoding.quantum);
-  const auto quantum = static_cast<double>(model.info.quantum);
+  choose_quanta(compliance, encoding.quantum, model.info);
   const std::vector<double> sizes = own_sizes(compliance.scales);
   std::size_t column = 0;
   for (std::size_t level = 0; level < compliance.couplings.size(); ++level) {
@@ -66,9 +77,9 @@ void encode_couplings(const WaveletCompliance& compliance, const Encoding& encod
         if (norm < encoding.threshold) continue;
         const float* value = from.value.data() + width * b;
         const bool field = norm >= encoding.field_threshold * sizes[from.row[b]] * sizes[column];
-        const std::uint32_t layer = layer_of(value, quantum, field);
-        const Block block = quantize(value, quantum);
-        if (std::all_of(block.begin(), block.end(), [](std::int32_t q) { return q == 0; })) continue;
+        const std::uint32_t layer = layer_of(value, model.info, field);
+        const Block block = quantize(value, static_cast<double>(model.info.quantum[layer]));
+        if (std::all_of(block.begin(), block.end(), [](std::int16_t q) { return q == 0; })) continue;
         to.couplings[layer].index.push_back(from.row[b]);
         to.couplings[layer].value.insert(to.couplings[layer].value.end(), block.begin(), block.end());
       }

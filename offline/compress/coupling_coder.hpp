@@ -5,7 +5,8 @@
 
 namespace greenloop::offline {
 
-/// How couplings are thresholded and quantised. All share one quantum and take as few bits as hold them.
+/// How couplings are thresholded and quantised. All but the very largest share one quantum; they take as few bits as
+/// hold them.
 struct Encoding {
   double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
   double quantum = 0;    ///< of scaled values
@@ -13,7 +14,7 @@ struct Encoding {
   double field_threshold = 0;
 };
 
-/// Fills in the quantum, scales and couplings of every level. `model.levels` must have one entry per level of the
+/// Fills in quanta, scales and couplings of every level. `model.levels` must have one entry per level of the
 /// compliance, with its nodes. Work: linear in the candidates.
 void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model);
 

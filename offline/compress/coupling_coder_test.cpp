@@ -75,8 +75,7 @@ double largest(const float* value) {
 
 // the layer that candidate b of column j stands in, checked; absent if it is dropped
 std::size_t check_block(const CouplingCandidates& source, std::size_t b, const LevelData& level, std::size_t j,
-                        const Encoding& encoding) {
-  const auto quantum = static_cast<double>(static_cast<float>(encoding.quantum));
+                        const layout::Info& info, const Encoding& encoding) {
   const float* value = source.value.data() + 9 * b;
   const auto norm = static_cast<double>(source.norm[b]);
   std::size_t found = absent;
@@ -86,6 +85,7 @@ std::size_t check_block(const CouplingCandidates& source, std::size_t b, const L
     if (at == absent) continue;
     CHECK(found == absent);
     found = layer;
+    const auto quantum = static_cast<double>(info.quantum[layer]);
     double most = 0;
     for (std::size_t k = 0; k < 9; ++k) {
       const double q = data.value[9 * at + k];
@@ -96,8 +96,8 @@ std::size_t check_block(const CouplingCandidates& source, std::size_t b, const L
     const bool makes_field = norm >= encoding.field_threshold * own_size * own_size;
     CHECK(layout::layer[layer].field == (makes_field || layout::layer[layer].value_bits > 8));
     const std::uint32_t bits = layout::layer[layer].value_bits;
-    const double too_few = bits == 32 ? 32767 : bits == 16 ? 127 : bits == 8 ? 7 : 0;
-    CHECK(largest(value) >= (too_few + 0.4999) * quantum);
+    const double too_few = layer == 0 ? 32767 : bits == 16 ? 127 : bits == 8 ? 7 : 0;
+    CHECK(largest(value) >= (too_few + 0.4999) * encoding.quantum);
   }
   CHECK((found == absent) == (norm < encoding.threshold));
   return found;
@@ -110,12 +110,15 @@ TEST_CASE("every block above the threshold stands once, in the fewest bits that 
   for (const double field_threshold : {0.005, 0.001}) {
     const Encoding encoding{.threshold = 0.002, .quantum = 0.001, .field_threshold = field_threshold};
     const auto model = encoded(from, encoding);
-    CHECK(model.info.quantum == static_cast<float>(encoding.quantum));
+    for (std::uint32_t layer = 1; layer < layout::layers; ++layer) {
+      CHECK(model.info.quantum[layer] == static_cast<float>(encoding.quantum));
+    }
+    CHECK(model.info.quantum[0] > model.info.quantum[1]);  // the largest block is nearly 100
     for (std::size_t level = 0; level < levels; ++level) {
       for (std::size_t j = 0; j < columns; ++j) {
         const auto& source = from.couplings[level];
         for (std::size_t b = source.begin[j]; b < source.begin[j + 1]; ++b) {
-          const std::size_t layer = check_block(source, b, model.levels[level], j, encoding);
+          const std::size_t layer = check_block(source, b, model.levels[level], j, model.info, encoding);
           if (layer == absent) {
             ++dropped;
           } else {
@@ -175,7 +178,7 @@ TEST_CASE("values at the edge of a layer's range never leave it") {
     }
     const auto model = encoded(from, {.threshold = 1e-3, .quantum = quantum});
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-      for (const std::int32_t q : model.levels[0].couplings[layer].value) {
+      for (const std::int16_t q : model.levels[0].couplings[layer].value) {
         if (q > largest_value(layer)) FAIL("layer ", layer, " has ", q, " with quantum ", quantum);
         edges[layer] += q == largest_value(layer) ? 1 : 0;
       }
@@ -190,7 +193,7 @@ TEST_CASE("blocks that round to zero are not stored") {
     for (std::size_t b = 0; b < data.index.size(); ++b) {
       CHECK(std::any_of(data.value.begin() + static_cast<std::ptrdiff_t>(9 * b),
                         data.value.begin() + static_cast<std::ptrdiff_t>(9 * (b + 1)),
-                        [](std::int32_t q) { return q != 0; }));
+                        [](std::int16_t q) { return q != 0; }));
     }
   }
 }

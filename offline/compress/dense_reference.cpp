@@ -50,7 +50,6 @@ double number_at(const std::byte* value, std::size_t n) {
 }
 
 double value_at(const std::byte* value, std::uint32_t bits, std::size_t block, std::size_t k) {
-  if (bits == 32) return number_at<std::int32_t>(value, 9 * block + k);
   if (bits == 16) return number_at<std::int16_t>(value, 9 * block + k);
   if (bits == 8) return number_at<std::int8_t>(value, 9 * block + k);
   const int nibble = std::to_integer<int>((value[5 * block + k / 2] >> (k % 2 == 0 ? 0 : 4)) & std::byte{15});
@@ -81,7 +80,7 @@ Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
             const Eigen::Index row = at(row_at(couplings, b)) + static_cast<Eigen::Index>(k % 3);
             const Eigen::Index column = at(from.domain_begin + j) + static_cast<Eigen::Index>(k / 3);
             const double value = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
-            scaled(row, column) = scaled(column, row) = static_cast<double>(view.info->quantum) * value;
+            scaled(row, column) = scaled(column, row) = static_cast<double>(view.info->quantum[layer]) * value;
           }
         }
       }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 #include <random>
+#include <utility>
 
 #include "formats/describe.hpp"
 #include "formats/testing/model_mutant.hpp"
@@ -71,8 +72,8 @@ class Mutator {
 TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
   MESSAGE("seed ", seed, ", ", mutations, " mutations");
   Mutator mutator({encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
-                   encode(synthetic_model({.levels = 3, .epsilon = 0.2})),
-                   encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .strong_bits = 16}))});
+                   encode(synthetic_model({.levels = 3, .epsilon = 0.008})),
+                   encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .lifted = false}))});
   int accepted = 0;
   std::array<int, 64> refused{};
   for (int i = 0; i < mutations; ++i) {
@@ -106,12 +107,24 @@ TEST_CASE("walk_view sees what verify must prevent") {
   parents[0].parent[1] += 6;
   CHECK_FALSE(walk_view(mutant.bytes(), view));
   parents[0].parent[1] -= 6;
-  constexpr std::uint16_t same = layout::coupling_index(layout::Partner::same, layout::Strength::strong);
-  const auto& couplings = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, same);
-  auto* index = mutant.records<std::uint16_t>(layout::SectionKind::couplings, 1, same, couplings.index_offset);
-  REQUIRE(couplings.block_count > 3);
-  index[3] = 7;
+  auto& info = *mutant.records<layout::Info>(layout::SectionKind::info);
+  const float quantum = std::exchange(info.quantum[4], 2.0F);
   CHECK_FALSE(walk_view(mutant.bytes(), view));
+  info.quantum[4] = quantum;
+  const auto& couplings = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, 1);
+  auto* index = mutant.records<std::uint16_t>(layout::SectionKind::couplings, 1, 1, couplings.index_offset);
+  const std::uint16_t row = std::exchange(index[0], static_cast<std::uint16_t>(couplings.rows));
+  CHECK_FALSE(walk_view(mutant.bytes(), view));
+  index[0] = row;
+  for (const std::uint32_t layer : {2u, 5u}) {
+    const auto& header = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, layer);
+    REQUIRE(header.block_count > 0);
+    auto* value = mutant.records<std::uint8_t>(layout::SectionKind::couplings, 1, layer, header.value_offset);
+    const std::uint8_t right = std::exchange(value[3], std::uint8_t{0x80});
+    CHECK_FALSE(walk_view(mutant.bytes(), view));
+    value[3] = right;
+  }
+  CHECK(walk_view(mutant.bytes(), view));
 }
 
 }  // namespace

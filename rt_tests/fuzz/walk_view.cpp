@@ -71,12 +71,7 @@ class Walk {
     const auto right = [](const layout::Scale& scale) {
       return scale.root[0] > 0 && scale.diagonal[0] > 0 && std::isfinite(scale.root[5] + scale.diagonal[5]);
     };
-    const bool has_averages = q == 0 || q + 2 < view_.levels;
-    if ((level.averages != nullptr) != has_averages || (level.details != nullptr) != (q > 0)) return false;
-    if (has_averages && (!array(level.averages, domain_of_mesh(q)) || !all(level.averages, domain_of_mesh(q), right))) {
-      return false;
-    }
-    return q == 0 || (array(level.details, domain(q)) && all(level.details, domain(q), right));
+    return array(level.scales, domain(q)) && all(level.scales, domain(q), right);
   }
 
   bool representatives(std::uint32_t c, std::uint32_t q) const {
@@ -88,33 +83,32 @@ class Walk {
   }
 
   bool all_couplings(std::uint32_t q) const {
-    const std::uint32_t rows[] = {domain_of_mesh(q < 2 ? 0 : q - 2), q < 2 ? 0 : domain(q - 1), domain(q)};
-    for (std::size_t partner = 0; partner < 3; ++partner) {
-      for (std::size_t strength = 0; strength < layout::strengths; ++strength) {
-        const CouplingsView& couplings = view_.level[q].couplings[partner][strength];
-        const bool exists = partner == 2 ? q > 0 || strength == 0 : partner == 1 ? q > 1 : q > 0;
-        if (!exists && couplings.value == nullptr && couplings.columns == 0) continue;
-        if (!exists || couplings.columns != domain(q) || couplings.rows != rows[partner] ||
-            !sound(couplings, partner == 2)) {
-          return false;
-        }
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      const CouplingsView& couplings = view_.level[q].couplings[layer];
+      const float quantum = view_.info->quantum[layer];
+      const bool empty = couplings.columns == 0 && couplings.begin[0] == 0;
+      if ((!empty && couplings.columns != domain(q)) || couplings.rows != domain_of_mesh(q) ||
+          !(quantum >= 0 && quantum <= 1) || !sound(couplings, layout::layer[layer].value_bits)) {
+        return false;
       }
     }
     return true;
   }
 
-  bool sound(const CouplingsView& couplings, bool triangular) const {
-    if (!array(couplings.begin, couplings.columns + 1ull) || !(couplings.quantum >= 0 && couplings.quantum <= 1)) {
-      return false;
-    }
+  bool sound(const CouplingsView& couplings, std::uint32_t value_bits) const {
+    if (!array(couplings.begin, couplings.columns + 1ull)) return false;
     const std::uint64_t block_count = couplings.begin[couplings.columns];
     for (std::uint32_t j = 0; j < couplings.columns; ++j) {
       if (couplings.begin[j] > couplings.begin[j + 1] || couplings.begin[j + 1] > block_count) return false;
     }
-    if (!indices(couplings, block_count, triangular)) return false;
-    switch (couplings.value_bits) {
+    const bool rows_right =
+        couplings.index_bytes == 2
+            ? rows_before_column(couplings, static_cast<const std::uint16_t*>(couplings.index), block_count)
+            : rows_before_column(couplings, static_cast<const std::uint32_t*>(couplings.index), block_count);
+    if (!rows_right) return false;
+    switch (value_bits) {
       case 4:
-        return array(couplings.value, 5 * block_count + 16);
+        return nibbles(couplings.value, block_count);
       case 8:
         return values(reinterpret_cast<const std::int8_t*>(couplings.value), block_count);
       default:
@@ -122,25 +116,23 @@ class Walk {
     }
   }
 
-  bool indices(const CouplingsView& couplings, std::uint64_t block_count, bool triangular) const {
-    if (couplings.index_bytes == 0) {
-      const std::uint64_t columns = couplings.columns;
-      return triangular && 2 * block_count == columns * columns - columns;
-    }
-    return couplings.index_bytes == 2
-               ? in_rows(couplings, static_cast<const std::uint16_t*>(couplings.index), block_count, triangular)
-               : in_rows(couplings, static_cast<const std::uint32_t*>(couplings.index), block_count, triangular);
-  }
-
   template <class Index>
-  bool in_rows(const CouplingsView& couplings, const Index* index, std::uint64_t block_count, bool triangular) const {
+  bool rows_before_column(const CouplingsView& couplings, const Index* index, std::uint64_t block_count) const {
     if (!array(index, block_count)) return false;
+    const std::uint32_t first = couplings.rows - couplings.columns;
     for (std::uint32_t j = 0; j < couplings.columns; ++j) {
       for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-        if (index[b] >= (triangular ? j : couplings.rows)) return false;
+        if (index[b] >= first + j || (b > couplings.begin[j] && index[b] <= index[b - 1])) return false;
       }
     }
     return true;
+  }
+
+  bool nibbles(const std::byte* value, std::uint64_t block_count) const {
+    const auto negatable = [](std::byte pair) {
+      return (pair & std::byte{15}) != std::byte{8} && (pair >> 4) != std::byte{8};
+    };
+    return array(value, 5 * block_count + 16) && all(value, 5 * block_count, negatable);
   }
 
   // a kernel may load 16 bytes beyond the last value
