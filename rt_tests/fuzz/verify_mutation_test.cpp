@@ -111,8 +111,8 @@ TEST_CASE("walk_view sees what verify must prevent") {
   const float quantum = std::exchange(info.quantum[4], 2.0F);
   CHECK_FALSE(walk_view(mutant.bytes(), view));
   info.quantum[4] = quantum;
-  const auto& couplings = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, 1);
-  auto* index = mutant.records<std::uint16_t>(layout::SectionKind::couplings, 1, 1, couplings.index_offset);
+  const auto& couplings = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, 2);
+  auto* index = mutant.records<std::uint16_t>(layout::SectionKind::couplings, 1, 2, couplings.index_offset);
   const std::uint16_t row = std::exchange(index[0], static_cast<std::uint16_t>(couplings.rows));
   CHECK_FALSE(walk_view(mutant.bytes(), view));
   index[0] = row;
