@@ -76,7 +76,8 @@ constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::ui
 /// The capacitance matrix of a contact set in force form: block (i, j) is the displacement of the average of column i
 /// per force at column j (James & Pai 2003, sections 3.2 and 5.4), by all layers. Every block between two touched
 /// coefficients is read once per batch of columns. Symmetric; only the lower triangle is written. touched: by the set;
-/// a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [domain], 0 before and after. For the loop; work: assemble_capacitance_work.
+/// a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [domain], 0 before and after. For the loop; work:
+/// assemble_capacitance_work.
 void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept;
 

@@ -82,9 +82,9 @@ std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::
                            const std::uint32_t* slot, BlockPlace* places, Block* blocks) noexcept {
   const std::uint32_t begin = view.begin[column];
   const std::uint32_t end = view.begin[column + 1];
-  const std::uint32_t count =
-      view.index_bytes == 2 ? choose(static_cast<const std::uint16_t*>(view.index), begin, end, slot, places)
-                            : choose(static_cast<const std::uint32_t*>(view.index), begin, end, slot, places);
+  const std::uint32_t count = view.index_bytes == 2
+                                  ? choose(static_cast<const std::uint16_t*>(view.index), begin, end, slot, places)
+                                  : choose(static_cast<const std::uint32_t*>(view.index), begin, end, slot, places);
   with_stored(layout::layer[layer].value_bits, [&](auto stored) {
     using Stored = decltype(stored);
     for (std::uint32_t n = 0; n < count; ++n) {

@@ -19,9 +19,8 @@ void visit_layer(const ModelView& view, std::uint32_t layer, Visit visit) {
     const CouplingsView& couplings = view.level[q].couplings[layer];
     for (std::uint32_t j = 0; j < couplings.columns; ++j) {
       const std::uint32_t column = view.level[q].domain_begin + j;
-      visit_rows(couplings, j, 0, column, [&](std::uint32_t row, std::uint32_t position) {
-        visit(row, column, couplings, position);
-      });
+      visit_rows(couplings, j, 0, column,
+                 [&](std::uint32_t row, std::uint32_t position) { visit(row, column, couplings, position); });
     }
   }
 }
@@ -114,10 +113,10 @@ Block load(const HalfBlock& block) {
 Block load(const ByteBlock& block) {
   detail::Byte16 bytes;
   std::memcpy(&bytes, &block, sizeof bytes);
-  const auto low = reinterpret_cast<detail::Half8>(__builtin_shufflevector(
-      detail::Byte16{}, bytes, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
-  const auto high = reinterpret_cast<detail::Half8>(__builtin_shufflevector(
-      detail::Byte16{}, bytes, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31));
+  const auto low = reinterpret_cast<detail::Half8>(
+      __builtin_shufflevector(detail::Byte16{}, bytes, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
+  const auto high = reinterpret_cast<detail::Half8>(
+      __builtin_shufflevector(detail::Byte16{}, bytes, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31));
   return {{detail::high_halves(low), detail::low_halves(high), detail::high_halves(high)}};
 }
 
