@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
   if (argc > 1) {
     run(TestModel(load_file(argv[1]).span()));
   } else {
-    run(TestModel(SyntheticOptions{.levels = 6, .touchable_above = 0.5}));
+    run(TestModel(SyntheticOptions{.levels = 5, .touchable_above = 0.5}));
   }
   return 0;
 }
