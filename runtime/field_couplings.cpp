@@ -34,29 +34,55 @@ std::uint64_t blocks_of(const ModelView& view, std::uint32_t layer) {
   return blocks;
 }
 
+std::int16_t stored_as(const WideBlock&, int value) { return static_cast<std::int16_t>(value); }
+
+std::uint16_t stored_as(const NarrowBlock&, int value) {
+  const auto number = static_cast<float>(value);
+  std::uint32_t bits;
+  std::memcpy(&bits, &number, sizeof bits);
+  return static_cast<std::uint16_t>(bits >> 16);
+}
+
+// where element (r, c) of a block stands
+constexpr std::uint32_t column_stride(const WideBlock&) { return 4; }
+constexpr std::uint32_t column_stride(const NarrowBlock&) { return 3; }
+
+// layers first..end-1, which share a quantum
+struct Layers {
+  std::uint32_t first;
+  std::uint32_t end;
+};
+
 template <class Stored>
 class Filling {
  public:
-  Filling(const ModelView& view, std::uint32_t layer, const std::uint8_t* level, std::uint32_t* begin, Stored* blocks)
-      : view_(view), layer_(layer), level_(level), begin_(begin), blocks_(blocks) {}
+  Filling(const ModelView& view, const Layers& layers, const std::uint8_t* level, std::uint32_t* begin, Stored* blocks)
+      : view_(view), layers_(layers), level_(level), begin_(begin), blocks_(blocks) {}
 
   void run() {
     const std::size_t lists = std::size_t{view_.domain_count} * view_.levels;
-    for (std::size_t k = 0; k <= lists; ++k) {
-      begin_[k] = 0;
+    std::memset(begin_, 0, sizeof(std::uint32_t) * (lists + 1));
+    for (std::uint32_t layer = layers_.first; layer < layers_.end; ++layer) {
+      visit_layer(view_, layer, [this](std::uint32_t row, std::uint32_t column, const CouplingsView&, std::uint32_t) {
+        ++begin_[list(row, column) + 1];
+        ++begin_[list(column, row) + 1];
+      });
     }
-    visit_layer(view_, layer_, [this](std::uint32_t row, std::uint32_t column, const CouplingsView&, std::uint32_t) {
-      ++begin_[list(row, column) + 1];
-      ++begin_[list(column, row) + 1];
-    });
     for (std::size_t k = 0; k < lists; ++k) {
       begin_[k + 1] += begin_[k];
     }
-    visit_layer(view_, layer_,
-                [this](std::uint32_t row, std::uint32_t column, const CouplingsView& from, std::uint32_t position) {
-                  append(column, row, from, position, 3, 1);
-                  append(row, column, from, position, 1, 3);
-                });
+    for (std::uint32_t layer = layers_.first; layer < layers_.end; ++layer) {
+      const std::uint32_t bits = layout::layer[layer].value_bits;
+      visit_layer(view_, layer,
+                  [&](std::uint32_t row, std::uint32_t column, const CouplingsView& from, std::uint32_t position) {
+                    append(column, row, [&](std::uint32_t r, std::uint32_t c) {
+                      return stored_value(from, bits, position, 3 * c + r);
+                    });
+                    append(row, column, [&](std::uint32_t r, std::uint32_t c) {
+                      return stored_value(from, bits, position, 3 * r + c);
+                    });
+                  });
+    }
     for (std::size_t k = lists; k > 0; --k) {
       begin_[k] = begin_[k - 1];
     }
@@ -68,8 +94,8 @@ class Filling {
     return std::size_t{source} * view_.levels + level_[target];
   }
 
-  void append(std::uint32_t source, std::uint32_t target, const CouplingsView& from, std::uint32_t position,
-              std::uint32_t column_stride, std::uint32_t row_stride) {
+  template <class Element>
+  void append(std::uint32_t source, std::uint32_t target, Element element) {
     const LevelView& level = view_.level[level_[target]];
     const std::uint32_t node = level.node_begin + (target - level.domain_begin);
     Stored& to = blocks_[begin_[list(source, target)]++];
@@ -77,32 +103,33 @@ class Filling {
     to.byte_offset = node * static_cast<std::uint32_t>(sizeof(Float4));
     for (std::uint32_t c = 0; c < 3; ++c) {
       for (std::uint32_t r = 0; r < 3; ++r) {
-        const int value =
-            stored_value(from, layout::layer[layer_].value_bits, position, column_stride * c + row_stride * r);
-        to.value[4 * c + r] = static_cast<std::remove_reference_t<decltype(to.value[0])>>(value);
+        to.value[column_stride(to) * c + r] = stored_as(to, element(r, c));
       }
     }
   }
 
   const ModelView& view_;
-  std::uint32_t layer_;
+  Layers layers_;
   const std::uint8_t* level_;
   std::uint32_t* begin_;
   Stored* blocks_;
 };
 
 template <class Stored>
-void place_layer(Arena& arena, const ModelView& view, std::uint32_t layer, const std::uint8_t* level,
-                 FieldLayer<Stored>& lists) {
-  auto* begin = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels + 1);
-  auto* blocks = arena.take<Stored>(2 * blocks_of(view, layer));
-  lists = {view.info->quantum[layer] * Stored::widening, begin, blocks};
-  if (begin != nullptr) {
-    Filling<Stored>(view, layer, level, begin, blocks).run();
+FieldLists<Stored> place_lists(Arena& arena, const ModelView& view, const Layers& layers, const std::uint8_t* level) {
+  std::uint64_t count = 0;
+  for (std::uint32_t layer = layers.first; layer < layers.end; ++layer) {
+    count += 2 * blocks_of(view, layer);
   }
+  auto* begin = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels + 1);
+  auto* blocks = arena.take<Stored>(count);
+  if (begin != nullptr) {
+    Filling<Stored>(view, layers, level, begin, blocks).run();
+  }
+  return {view.info->quantum[layers.first] * Stored::widening, begin, blocks};
 }
 
-Block load(const HalfBlock& block) {
+Block load(const WideBlock& block) {
   detail::Half8 low;
   detail::Half8 high;
   std::memcpy(&low, &block, sizeof low);
@@ -110,22 +137,18 @@ Block load(const HalfBlock& block) {
   return {{detail::high_halves(low), detail::low_halves(high), detail::high_halves(high)}};
 }
 
-Block load(const ByteBlock& block) {
-  detail::Byte16 bytes;
-  std::memcpy(&bytes, &block, sizeof bytes);
-  const auto low = reinterpret_cast<detail::Half8>(
-      __builtin_shufflevector(detail::Byte16{}, bytes, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23));
-  const auto high = reinterpret_cast<detail::Half8>(
-      __builtin_shufflevector(detail::Byte16{}, bytes, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31));
-  return {{detail::high_halves(low), detail::low_halves(high), detail::high_halves(high)}};
+// fourth lanes: any of the block's values, or 0
+Block load(const NarrowBlock& block) {
+  return {{detail::load_upper_halves(block.value), detail::load_upper_halves(block.value + 3),
+           detail::load_upper_halves(block.value + 6)}};
 }
 
 template <class Stored>
-void add_layer(const FieldLayer<Stored>& layer, std::size_t first, std::size_t end, Float4 force, Float4* x) {
-  const Float4 scaled = without_denormals(force * splat(layer.factor));
-  const Float4 f[3] = {splat(scaled[0]), splat(scaled[1]), splat(scaled[2])};
-  const Stored* const last = layer.block + layer.begin[end];
-  for (const Stored* at = layer.block + layer.begin[first]; at != last; ++at) {
+void add_lists(const FieldLists<Stored>& lists, std::size_t first, std::size_t end, Float4 force, Float4* x) {
+  const Float4 scaled = without_denormals(force * splat(lists.factor));
+  const Float4 f[3] = {splat3(scaled[0]), splat3(scaled[1]), splat3(scaled[2])};
+  const Stored* const last = lists.block + lists.begin[end];
+  for (const Stored* at = lists.block + lists.begin[first]; at != last; ++at) {
     *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + at->byte_offset) += product(load(*at), f);
   }
 }
@@ -135,26 +158,30 @@ void add_layer(const FieldLayer<Stored>& layer, std::size_t first, std::size_t e
 FieldCouplings place_field_couplings(Arena& arena, const ModelView& view, const std::uint8_t* level) noexcept {
   FieldCouplings couplings;
   couplings.levels = view.levels;
-  place_layer(arena, view, 0, level, couplings.halves);
-  place_layer(arena, view, 1, level, couplings.bytes);
-  place_layer(arena, view, 2, level, couplings.nibbles);
+  couplings.wide = place_lists<WideBlock>(arena, view, {0, 1}, level);
+  const bool together = view.info->quantum[1] == view.info->quantum[2];
+  couplings.narrow_lists = together ? 1 : 2;
+  couplings.narrow[0] = place_lists<NarrowBlock>(arena, view, {1, together ? 3U : 2U}, level);
+  if (!together) {
+    couplings.narrow[1] = place_lists<NarrowBlock>(arena, view, {2, 3}, level);
+  }
   return couplings;
 }
 
 void prefetch_couplings(const FieldCouplings& couplings, std::uint32_t coefficient) noexcept {
   const std::size_t first = std::size_t{coefficient} * couplings.levels;
-  __builtin_prefetch(couplings.halves.block + couplings.halves.begin[first]);
-  __builtin_prefetch(couplings.bytes.block + couplings.bytes.begin[first]);
-  __builtin_prefetch(couplings.nibbles.block + couplings.nibbles.begin[first]);
+  __builtin_prefetch(couplings.wide.block + couplings.wide.begin[first]);
+  __builtin_prefetch(couplings.narrow[0].block + couplings.narrow[0].begin[first]);
 }
 
 void add_couplings(const FieldCouplings& couplings, std::uint32_t coefficient, std::uint32_t field_level, Float4 force,
                    Float4* x) noexcept {
   const std::size_t first = std::size_t{coefficient} * couplings.levels;
   const std::size_t end = first + field_level + 1;
-  add_layer(couplings.halves, first, end, force, x);
-  add_layer(couplings.bytes, first, end, force, x);
-  add_layer(couplings.nibbles, first, end, force, x);
+  add_lists(couplings.wide, first, end, force, x);
+  for (std::uint32_t n = 0; n < couplings.narrow_lists; ++n) {
+    add_lists(couplings.narrow[n], first, end, force, x);
+  }
 }
 
 }  // namespace greenloop

@@ -11,35 +11,37 @@ namespace greenloop {
 // The couplings of the field layers, copied at start-up so that everything a coefficient's force moves stands in one
 // list: the blocks of its column, and those of its row transposed.
 
-/// A block of a list, in quanta; column c of it at value[4 c], fourth rows 0.
-struct alignas(16) ByteBlock {
-  static constexpr float widening = 0x1p-24F;
+/// A block of a list, in quanta of at most 8 bits: by columns, the upper halves of floats, which hold them exactly and
+/// load with no conversion.
+struct alignas(8) NarrowBlock {
+  static constexpr float widening = 1;
   std::uint32_t byte_offset;  ///< of the moved node in an array of Float4 per node
-  std::int8_t value[12];
+  std::uint16_t value[9];
+  std::uint16_t zero;
 };
 
-/// The same in 16 bits.
-struct alignas(32) HalfBlock {
+/// The same in 16 bits; column c of it at value[4 c], fourth rows 0.
+struct alignas(32) WideBlock {
   static constexpr float widening = 0x1p-16F;
   std::uint32_t byte_offset;
-  std::uint32_t unused;
+  std::uint32_t zero;
   std::int16_t value[12];
 };
 
-/// The lists of one layer: of every coefficient, and within it of every level of what it moves.
+/// The lists of some layers that share a quantum: of every coefficient, and within it of every level of what it moves.
 template <class Stored>
-struct FieldLayer {
+struct FieldLists {
   float factor = 0;                      ///< value of one quantum, times the widening
   const std::uint32_t* begin = nullptr;  ///< [domain * levels + 1] into blocks
   const Stored* block = nullptr;
 };
 
-/// Layers 0..layout::field_layers-1. Values of 4 bits are kept in 8, which are quicker to load.
+/// Layers 0..layout::field_layers-1.
 struct FieldCouplings {
   std::uint32_t levels = 0;
-  FieldLayer<HalfBlock> halves;
-  FieldLayer<ByteBlock> bytes;
-  FieldLayer<ByteBlock> nibbles;
+  FieldLists<WideBlock> wide;
+  std::uint32_t narrow_lists = 0;
+  FieldLists<NarrowBlock> narrow[2];  ///< [narrow_lists] one if layers of 8 and 4 bits share their quantum
 };
 
 /// Carves the lists out of `arena` and fills them in, unless it only counts. level: [domain] mesh levels. Start-up;
@@ -52,8 +54,11 @@ inline std::uint32_t field_blocks(const FieldCouplings& couplings, std::uint32_t
                                   std::uint32_t field_level) {
   const std::size_t first = std::size_t{coefficient} * couplings.levels;
   const std::size_t end = first + field_level + 1;
-  return couplings.halves.begin[end] - couplings.halves.begin[first] + couplings.bytes.begin[end] -
-         couplings.bytes.begin[first] + couplings.nibbles.begin[end] - couplings.nibbles.begin[first];
+  std::uint32_t blocks = couplings.wide.begin[end] - couplings.wide.begin[first];
+  for (std::uint32_t n = 0; n < couplings.narrow_lists; ++n) {
+    blocks += couplings.narrow[n].begin[end] - couplings.narrow[n].begin[first];
+  }
+  return blocks;
 }
 
 /// Asks the processor for a coefficient's lists.
