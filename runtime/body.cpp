@@ -134,7 +134,7 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
   body.couplings = place_field_couplings(arena, view, tables.mesh_level);
-  body.root = arena.take<Block>(view.domain_count);
+  body.roots = place_roots(arena, view);
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
   carve_set(arena, view, sizes.counts.max_contacts, body.set);
@@ -145,16 +145,13 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
 }
 
-// by coefficients
-void fill_coefficients(const ModelView& view, Body& body) {
+void count_stored(const ModelView& view, std::uint32_t* stored) {
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      body.root[level.domain_begin + i] = symmetric_block(level.scales[i].root);
-      std::uint32_t& stored = body.stored[level.domain_begin + i];
-      stored = 0;
+      stored[level.domain_begin + i] = 0;
       for (const CouplingsView& couplings : level.couplings) {
-        stored += column_length(couplings, i);
+        stored[level.domain_begin + i] += column_length(couplings, i);
       }
     }
   }
@@ -176,7 +173,7 @@ void fill_tables(const ModelView& view, const Tables& tables, Body& body) {
     list_odd_neighbours(view, q, tables.begin[q], tables.neighbours[q]);
   }
   list_node_facts(view, body.facts);
-  fill_coefficients(view, body);
+  count_stored(view, body.stored);
   fill_costs(view, tables, body.set.place_of_column, body);
   for (std::uint32_t j = 0; j < view.domain_count; ++j) {
     body.set.place_of_column[j] = layout::none;

@@ -11,6 +11,7 @@
 #include "runtime/field_couplings.hpp"
 #include "runtime/plan.hpp"
 #include "runtime/requirement.hpp"
+#include "runtime/scales.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/wavelet.hpp"
 
@@ -25,7 +26,7 @@ struct Body {
   Lifting lifting;
   Refinement refinement;
   FieldCouplings couplings;
-  Block* root = nullptr;                            ///< [domain] Scale::root, fourth lanes 0
+  Roots roots;
   std::uint32_t* stored = nullptr;                  ///< [domain] blocks of all layers in a coefficient's column
   const ColumnCost* cost[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]
   NodeFacts* facts = nullptr;                       ///< [node_count]

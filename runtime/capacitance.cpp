@@ -22,12 +22,14 @@ Block times(const Block& a, const Block& b) {
 }
 
 // gives every coefficient that the set touches a slot; returns their number
-std::uint32_t assign_slots(const Block* root, const Touched& touched, CapacitanceScratch& scratch) {
+std::uint32_t assign_slots(const ModelView& view, const Touched& touched, CapacitanceScratch& scratch) {
   std::uint32_t slots = 0;
   for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
+    const LevelView& level = view.level[q];
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      scratch.slot[touched.list[q][k]] = slots;
-      scratch.root[slots++] = root[touched.list[q][k]];
+      const std::uint32_t coefficient = touched.list[q][k];
+      scratch.slot[coefficient] = slots;
+      scratch.root[slots++] = symmetric_block(level.scales[coefficient - level.domain_begin].root);
     }
   }
   return slots;
@@ -198,15 +200,14 @@ ColumnCost column_cost(const Refinement& refinement, std::uint32_t c, std::uint3
   return cost;
 }
 
-void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
+void assemble_capacitance(const Refinement& refinement, const ContactSet& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept {
-  const ModelView& view = *model.refinement.view;
+  const ModelView& view = *refinement.view;
   const std::size_t stride = padded_order(3 * set.columns);
-  const std::uint32_t slots = assign_slots(model.root, touched, scratch);
+  const std::uint32_t slots = assign_slots(view, touched, scratch);
   scratch.begin[0] = 0;
   for (std::uint32_t i = 0; i < set.columns; ++i) {
-    scratch.begin[i + 1] =
-        write_functional(model.refinement, set.level, set.column[i], scratch.begin[i], scratch, force);
+    scratch.begin[i + 1] = write_functional(refinement, set.level, set.column[i], scratch.begin[i], scratch, force);
   }
   list_slot_columns(set.columns, slots, scratch);
   for (Batch batch{0, 0}; batch.first < set.columns; batch.first += batch.count) {

@@ -48,12 +48,6 @@ struct CapacitanceScratch {
   Block* blocks = nullptr;                   ///< [longest column + 1]
 };
 
-/// What assemble_capacitance reads.
-struct CapacitanceModel {
-  const Refinement& refinement;
-  const Block* root;  ///< [domain] Scale::root of every coefficient
-};
-
 /// Adds the blocks, of all layers, that level q stores to the counts of both of their coefficients. degree: [domain of
 /// K(q)]. Start-up.
 void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept;
@@ -78,7 +72,7 @@ constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::ui
 /// coefficients is read once per batch of columns. Symmetric; only the lower triangle is written. touched: by the set;
 /// a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [domain], 0 before and after. For the loop; work:
 /// assemble_capacitance_work.
-void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
+void assemble_capacitance(const Refinement& refinement, const ContactSet& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept;
 
 }  // namespace greenloop

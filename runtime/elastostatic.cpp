@@ -75,8 +75,7 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
 // the factors of body.set; null if its capacitance matrix is not positive definite
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
-  const CapacitanceModel model{body.refinement, body.root};
-  assemble_capacitance(model, body.set, body.touched, body.capacitance, body.force, factor.matrix);
+  assemble_capacitance(body.refinement, body.set, body.touched, body.capacitance, body.force, factor.matrix);
   return cholesky_factor(3 * body.set.columns, factor.matrix) ? &factor : nullptr;
 }
 
@@ -104,7 +103,7 @@ void answer_field(Body& body, std::span<const Contact> contacts, std::uint32_t f
     const float* at = force + std::size_t{3} * k;
     body.force[body.set.column[k]] = Float4{at[0], at[1], at[2], 0.0F};
   }
-  const FieldModel model{body.refinement, body.couplings, body.root};
+  const FieldModel model{body.refinement, body.couplings, body.roots};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   compute_field(model, body.touched, field_level, body.force, x);
   if (body.set.level + 1 == view.levels) {

@@ -17,25 +17,14 @@ void add_level(const FieldModel& model, const Touched& touched, std::uint32_t q,
       prefetch_couplings(model.couplings, list[k + ahead]);
     }
     const std::uint32_t i = list[k];
-    const Float4 scaled = without_denormals(product(model.root[i], force[i]));
+    const std::uint32_t place = i - level.domain_begin;
+    const layout::Scale& scale = level.scales[place];
+    const Float4 scaled = without_denormals(product(symmetric_block(scale.root), force[i]));
     force[i] = Float4{};
     if (q <= field_level) {
-      const std::uint32_t place = i - level.domain_begin;
-      x[level.node_begin + place] += product(symmetric_block(level.scales[place].diagonal), scaled);
+      x[level.node_begin + place] += product(symmetric_block(scale.diagonal), scaled);
     }
     add_couplings(model.couplings, i, field_level, scaled, x);
-  }
-}
-
-void scale_back(const ModelView& view, const Block* root, std::uint32_t field_level, Float4* x) {
-  for (std::uint32_t q = 0; q <= field_level; ++q) {
-    const LevelView& level = view.level[q];
-    Float4* of_level = x + level.node_begin;
-    const Block* of_root = root + level.domain_begin;
-    const std::uint32_t count = level.counts->domain_count;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      of_level[i] = product(of_root[i], of_level[i]);
-    }
   }
 }
 
@@ -49,7 +38,7 @@ void compute_field(const FieldModel& model, const Touched& touched, std::uint32_
   for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
     add_level(model, touched, q, field_level, force, x);
   }
-  scale_back(view, model.root, field_level, x);
+  scale_back(view, model.roots, field_level, x);
   inverse_transform(view, *model.refinement.lifting, field_level, x);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "runtime/field_couplings.hpp"
+#include "runtime/scales.hpp"
 #include "runtime/sparse_forces.hpp"
 
 namespace greenloop {
@@ -11,7 +12,7 @@ namespace greenloop {
 struct FieldModel {
   const Refinement& refinement;
   const FieldCouplings& couplings;
-  const Block* root;  ///< [domain] Scale::root of every coefficient, fourth lanes 0
+  const Roots& roots;
 };
 
 /// Fast summation (James & Pai 2003, section 5.4) of the two-sided form: the displacement of every node by the forces
