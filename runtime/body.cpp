@@ -1,9 +1,11 @@
 #include "runtime/body.hpp"
 
 #include <cfloat>
+#include <cstring>
 #include <new>
 
 #include "runtime/cholesky.hpp"
+#include "runtime/couplings.hpp"
 #include "runtime/domain.hpp"
 
 namespace greenloop {
@@ -48,11 +50,11 @@ double force_growth(const ModelView& view) {
 
 // magnitudes within a part of the scales
 template <class Part>
-double largest_scale(const Coefficients& coefficients, Part part) {
+double largest_scale(const ModelView& view, Part part) {
   double largest = 1;
-  for (const CoefficientGroup& group : coefficients.group) {
-    for (std::uint32_t i = 0; i < group.count; ++i) {
-      for (const float value : group.scale[i].*part) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    for (std::uint32_t i = 0; i < view.level[q].counts->domain_count; ++i) {
+      for (const float value : view.level[q].scales[i].*part) {
         largest = larger(largest, magnitude(double{value}));
       }
     }
@@ -60,22 +62,19 @@ double largest_scale(const Coefficients& coefficients, Part part) {
   return largest;
 }
 
-// largest value of a block
-double largest_value(const Coefficients& coefficients, const Couplings& couplings) {
-  double largest = largest_scale(coefficients, &layout::Scale::diagonal);
-  for (std::uint32_t s = 0; s < couplings.count; ++s) {
-    const CouplingsView& view = couplings.section[s].view;
-    const double most = view.value_bits == 4 ? 8 : (view.value_bits == 8 ? 128 : 32768);
-    largest = larger(largest, most * view.quantum);
+// largest sum of the field's values, and the diagonal's, between two coefficients
+double largest_value(const ModelView& view) {
+  double sum = largest_scale(view, &layout::Scale::diagonal);
+  for (std::uint32_t layer = 0; layer < layout::field_layers; ++layer) {
+    sum += double{view.info->quantum[layer]} * (1U << (layout::layer[layer].value_bits - 1));
   }
-  return largest;
+  return sum;
 }
 
-float largest_force_sum(const ModelView& view, const Body& body) {
-  const double root = 3 * largest_scale(body.coefficients, &layout::Scale::root);
-  // a coefficient gets at most one block, or one and its other half, from any other
-  const double sums = 6.0 * body.coefficients.count * largest_value(body.coefficients, body.couplings);
-  const double per_newton = transform_growth(view, body.lifting) * root * sums * root * force_growth(view);
+float largest_force_sum(const ModelView& view, const Lifting& lifting) {
+  const double root = 3 * largest_scale(view, &layout::Scale::root);
+  const double sums = 3.0 * view.domain_count * largest_value(view);
+  const double per_newton = transform_growth(view, lifting) * root * sums * root * force_growth(view);
   return static_cast<float>(FLT_MAX / 4.0 / per_newton);
 }
 
@@ -100,6 +99,9 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   }
   tables.parents = arena.take<DomainParents>(view.domain_count);
   tables.mesh_level = arena.take<std::uint8_t>(view.domain_count);
+  if (tables.parents != nullptr) {
+    list_parents(view, tables.parents, tables.mesh_level);
+  }
 }
 
 void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, ContactSet& set) {
@@ -110,10 +112,10 @@ void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, Cont
   set.place_of_column = arena.take<std::uint32_t>(view.domain_count);
 }
 
-void carve_capacitance(Arena& arena, const BodySizes& sizes, CapacitanceScratch& scratch) {
-  scratch.touched.carve(arena, sizes.coefficients);
+void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch& scratch) {
+  scratch.touched.carve(arena, view);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
-  const std::uint64_t slots = entries < sizes.coefficients.count ? entries : sizes.coefficients.count;
+  const std::uint64_t slots = entries < view.domain_count ? entries : view.domain_count;
   const std::uint64_t batch =
       sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch;
   scratch.coefficients = arena.take<PointCoefficient>(entries);
@@ -122,43 +124,60 @@ void carve_capacitance(Arena& arena, const BodySizes& sizes, CapacitanceScratch&
   scratch.slot_begin = arena.take<std::uint32_t>(slots + 1);
   scratch.batch_begin = arena.take<std::uint32_t>(slots);
   scratch.batch_end = arena.take<std::uint32_t>(slots);
-  scratch.slot = arena.take<std::uint32_t>(sizes.coefficients.count);
+  scratch.slot = arena.take<std::uint32_t>(view.domain_count);
   scratch.root = arena.take<Block>(slots);
   scratch.sum = arena.take<Block>(slots * batch);
-  scratch.places = arena.take<BlockPlace>(sizes.longest_list + std::uint64_t{1});
-  scratch.blocks = arena.take<Block>(sizes.longest_list + std::uint64_t{1});
+  scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
+  scratch.blocks = arena.take<Block>(sizes.longest_column + std::uint64_t{1});
 }
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
-  body.couplings = place_couplings(arena, view);
+  body.couplings = place_field_couplings(arena, view, tables.mesh_level);
+  body.roots = place_roots(arena, view);
+  body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
   carve_set(arena, view, sizes.counts.max_contacts, body.set);
-  body.touched.carve(arena, sizes.coefficients);
-  carve_capacitance(arena, sizes, body.capacitance);
+  body.touched.carve(arena, view);
+  carve_capacitance(arena, view, sizes, body.capacitance);
   body.column_force = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
-  body.force = arena.take_zeroed<Float4>(sizes.coefficients.count);
-  body.sum = arena.take_zeroed<Float4>(sizes.coefficients.count);
+  body.force = arena.take_zeroed<Float4>(view.domain_count);
   body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
+}
+
+void count_stored(const ModelView& view, std::uint32_t* stored) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      stored[level.domain_begin + i] = 0;
+      for (const CouplingsView& couplings : level.couplings) {
+        stored[level.domain_begin + i] += column_length(couplings, i);
+      }
+    }
+  }
+}
+
+// degree: [domain] scratch
+void fill_costs(const ModelView& view, const Tables& tables, std::uint32_t* degree, Body& body) {
+  std::memset(degree, 0, sizeof(std::uint32_t) * view.domain_count);
+  for (std::uint32_t c = 0; c < view.levels; ++c) {
+    add_degrees(view, c, degree);
+    for (std::uint32_t place = 0; tables.cost[c] != nullptr && place < domain_up_to(view, c); ++place) {
+      tables.cost[c][place] = column_cost(body.refinement, c, place, degree, body.touched);
+    }
+  }
 }
 
 void fill_tables(const ModelView& view, const Tables& tables, Body& body) {
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     list_odd_neighbours(view, q, tables.begin[q], tables.neighbours[q]);
   }
-  list_parents(view, tables.parents, tables.mesh_level);
   list_node_facts(view, body.facts);
+  count_stored(view, body.stored);
+  fill_costs(view, tables, body.set.place_of_column, body);
   for (std::uint32_t j = 0; j < view.domain_count; ++j) {
     body.set.place_of_column[j] = layout::none;
-  }
-  for (std::uint32_t j = 0; j < body.coefficients.count; ++j) {
     body.capacitance.slot[j] = layout::none;
-  }
-  const CapacitanceModel model{body.refinement, body.coefficients, body.couplings};
-  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
-    for (std::uint32_t place = 0; place < domain_up_to(view, c); ++place) {
-      tables.cost[c][place] = column_cost(model, c, place, body.touched);
-    }
   }
 }
 
@@ -176,7 +195,6 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   carve(arena, view, sizes, body, tables);
   body.view = &view;
   body.counts = sizes.counts;
-  body.coefficients = sizes.coefficients;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     body.lifting.begin[q] = tables.begin[q];
     body.lifting.neighbours[q] = tables.neighbours[q];
@@ -184,7 +202,7 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   }
   body.refinement = {&view, &body.lifting, tables.parents, tables.mesh_level};
   fill_tables(view, tables, body);
-  body.force_limit = largest_force_sum(view, body);
+  body.force_limit = largest_force_sum(view, body.lifting);
   body.last_red_zone = arena.last_red_zone();
   return &body;
 }

@@ -7,10 +7,11 @@
 #include "runtime/arena.hpp"
 #include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
-#include "runtime/couplings.hpp"
 #include "runtime/factor_cache.hpp"
+#include "runtime/field_couplings.hpp"
 #include "runtime/plan.hpp"
 #include "runtime/requirement.hpp"
+#include "runtime/scales.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/wavelet.hpp"
 
@@ -24,22 +25,22 @@ struct Body {
   float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
   Lifting lifting;
   Refinement refinement;
-  Coefficients coefficients;
-  Couplings couplings;
+  FieldCouplings couplings;
+  Roots roots;
+  std::uint32_t* stored = nullptr;                  ///< [domain] blocks of all layers in a coefficient's column
   const ColumnCost* cost[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]
   NodeFacts* facts = nullptr;                       ///< [node_count]
   ContactSet set;
   Touched touched;  ///< by the set
   CapacitanceScratch capacitance;
   Float4* column_force = nullptr;  ///< displacements, then forces of the set's columns
-  Float4* force = nullptr;         ///< [coefficients], zero between steps, as is `sum`
-  Float4* sum = nullptr;
+  Float4* force = nullptr;         ///< [domain], zero between steps
   FactorCache cache;
   const std::byte* last_red_zone = nullptr;
 };
 
 /// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. `view` must outlive
-/// the body. Start-up; linear in the model's nodes and blocks.
+/// the body. Start-up; linear in the model's nodes and, for every level, its blocks.
 Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept;
 
 }  // namespace greenloop

@@ -22,38 +22,38 @@ Block times(const Block& a, const Block& b) {
 }
 
 // gives every coefficient that the set touches a slot; returns their number
-std::uint32_t assign_slots(const Coefficients& coefficients, const Touched& touched, CapacitanceScratch& scratch) {
+std::uint32_t assign_slots(const ModelView& view, const Touched& touched, CapacitanceScratch& scratch) {
   std::uint32_t slots = 0;
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    const CoefficientGroup& group = coefficients.group[g];
-    for (std::uint32_t k = 0; in_capacitance(g, touched.constraint_level) && k < touched.count[g]; ++k) {
-      const std::uint32_t coefficient = touched.list[g][k];
+  for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      const std::uint32_t coefficient = touched.list[q][k];
       scratch.slot[coefficient] = slots;
-      scratch.root[slots++] = symmetric_block(group.scale[coefficient - group.begin].root);
+      scratch.root[slots++] = symmetric_block(level.scales[coefficient - level.domain_begin].root);
     }
   }
   return slots;
 }
 
 void release_slots(const Touched& touched, CapacitanceScratch& scratch) {
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    for (std::uint32_t k = 0; k < touched.count[g]; ++k) {
-      scratch.slot[touched.list[g][k]] = layout::none;
+  for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      scratch.slot[touched.list[q][k]] = layout::none;
     }
   }
 }
 
 // the functional of the node at `place`, from `begin`; returns its end
-std::uint32_t write_functional(const CapacitanceModel& model, std::uint32_t c, std::uint32_t place, std::uint32_t begin,
+std::uint32_t write_functional(const Refinement& refinement, std::uint32_t c, std::uint32_t place, std::uint32_t begin,
                                CapacitanceScratch& scratch, Float4* force) {
   Touched& touched = scratch.touched;
-  touch(model.refinement, model.coefficients, c, &place, 1, touched);
+  touch(refinement, c, &place, 1, touched);
   force[place] = splat3(1.0F);
-  transform_forces(model.refinement, model.coefficients, touched, force);
+  transform_forces(refinement, touched, force);
   std::uint32_t end = begin;
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    for (std::uint32_t k = 0; in_capacitance(g, c) && k < touched.count[g]; ++k) {
-      const std::uint32_t coefficient = touched.list[g][k];
+  for (std::uint32_t q = 0; q <= c; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      const std::uint32_t coefficient = touched.list[q][k];
       scratch.coefficients[end++] = {scratch.slot[coefficient], force[coefficient][0]};
     }
   }
@@ -124,30 +124,24 @@ void add_block(const Batch& batch, const Block& block, std::uint32_t from, std::
   }
 }
 
-void add_diagonal(const Coefficients& coefficients, const Touched& touched, const Batch& batch,
+void add_diagonal(const LevelView& level, const std::uint32_t* list, std::uint32_t count, const Batch& batch,
                   CapacitanceScratch& scratch) {
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    const CoefficientGroup& group = coefficients.group[g];
-    for (std::uint32_t k = 0; Coefficients::has_diagonal(g) && k < touched.count[g]; ++k) {
-      const std::uint32_t coefficient = touched.list[g][k];
-      const std::uint32_t slot = scratch.slot[coefficient];
-      const Block diagonal = symmetric_block(group.scale[coefficient - group.begin].diagonal);
-      add_block(batch, times(scratch.root[slot], times(diagonal, scratch.root[slot])), slot, slot, scratch);
-    }
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t slot = scratch.slot[list[k]];
+    const Block diagonal = symmetric_block(level.scales[list[k] - level.domain_begin].diagonal);
+    add_block(batch, times(scratch.root[slot], times(diagonal, scratch.root[slot])), slot, slot, scratch);
   }
 }
 
-// every stored block between two slots, in both directions
-void add_couplings(const CapacitanceModel& model, const CouplingSection& section, const Touched& touched,
-                   const Batch& batch, CapacitanceScratch& scratch) {
-  const std::uint32_t begin = model.coefficients.group[section.column_group].begin;
-  const std::uint32_t* row_slot = scratch.slot + model.coefficients.group[section.row_group].begin;
-  const std::uint32_t* list = touched.list[section.column_group];
-  for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
+// every block that a layer stores in some columns and a row with a slot, in both directions
+void add_couplings(const LevelView& level, std::uint32_t layer, float factor, const std::uint32_t* list,
+                   std::uint32_t count, const Batch& batch, CapacitanceScratch& scratch) {
+  for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t slot = scratch.slot[list[k]];
-    const std::uint32_t count = load_slotted(section, list[k] - begin, row_slot, scratch.places, scratch.blocks);
-    const Block root = times(splat(section.factor), scratch.root[slot]);
-    for (std::uint32_t n = 0; n < count; ++n) {
+    const std::uint32_t blocks = load_slotted(level.couplings[layer], layer, list[k] - level.domain_begin, scratch.slot,
+                                              scratch.places, scratch.blocks);
+    const Block root = times(splat(factor), scratch.root[slot]);
+    for (std::uint32_t n = 0; n < blocks; ++n) {
       const std::uint32_t row = scratch.places[n].target;
       const Block block = times(scratch.root[row], times(scratch.blocks[n], root));
       add_block(batch, block, slot, row, scratch);
@@ -178,53 +172,53 @@ void store(const Block& block, std::size_t stride, float* a) {
   }
 }
 
-// sections beyond the constraint level have neither forces nor functionals
-bool in_reach(const CouplingSection& section, std::uint32_t c) { return section.column_level <= c; }
-
 }  // namespace
 
-ColumnCost column_cost(const CapacitanceModel& model, std::uint32_t c, std::uint32_t place, Touched& touched) noexcept {
-  touch(model.refinement, model.coefficients, c, &place, 1, touched);
+void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept {
+  const LevelView& level = view.level[q];
+  for (const CouplingsView& couplings : level.couplings) {
+    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+      const std::uint32_t column = level.domain_begin + j;
+      degree[column] += column_length(couplings, j);
+      visit_rows(couplings, j, 0, column, [degree](std::uint32_t row, std::uint32_t) { ++degree[row]; });
+    }
+  }
+}
+
+ColumnCost column_cost(const Refinement& refinement, std::uint32_t c, std::uint32_t place, const std::uint32_t* degree,
+                       Touched& touched) noexcept {
+  touch(refinement, c, &place, 1, touched);
   ColumnCost cost;
   cost.visits = static_cast<std::uint32_t>(touched.visits);
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    cost.coefficients += in_capacitance(g, c) ? touched.count[g] : 0;
-  }
-  for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
-    const CouplingSection& section = model.couplings.section[s];
-    if (!in_reach(section, c)) {
-      continue;
-    }
-    const std::uint32_t column_begin = model.coefficients.group[section.column_group].begin;
-    const std::uint32_t row_begin = model.coefficients.group[section.row_group].begin;
-    for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
-      cost.blocks += section.direct_length(touched.list[section.column_group][k] - column_begin);
-    }
-    for (std::uint32_t k = 0; k < touched.count[section.row_group]; ++k) {
-      cost.blocks += section.mirrored_length(touched.list[section.row_group][k] - row_begin);
+  for (std::uint32_t q = 0; q <= c; ++q) {
+    cost.coefficients += touched.count[q];
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      cost.blocks += degree[touched.list[q][k]];
     }
   }
   clear(touched);
   return cost;
 }
 
-void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
+void assemble_capacitance(const Refinement& refinement, const ContactSet& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept {
+  const ModelView& view = *refinement.view;
   const std::size_t stride = padded_order(3 * set.columns);
-  const std::uint32_t slots = assign_slots(model.coefficients, touched, scratch);
+  const std::uint32_t slots = assign_slots(view, touched, scratch);
   scratch.begin[0] = 0;
   for (std::uint32_t i = 0; i < set.columns; ++i) {
-    scratch.begin[i + 1] = write_functional(model, set.level, set.column[i], scratch.begin[i], scratch, force);
+    scratch.begin[i + 1] = write_functional(refinement, set.level, set.column[i], scratch.begin[i], scratch, force);
   }
   list_slot_columns(set.columns, slots, scratch);
   for (Batch batch{0, 0}; batch.first < set.columns; batch.first += batch.count) {
     const std::uint32_t left = set.columns - batch.first;
     batch.count = left < CapacitanceScratch::batch ? left : CapacitanceScratch::batch;
     begin_batch(batch, slots, scratch);
-    add_diagonal(model.coefficients, touched, batch, scratch);
-    for (std::uint32_t s = 0; s < model.couplings.count; ++s) {
-      if (in_reach(model.couplings.section[s], set.level)) {
-        add_couplings(model, model.couplings.section[s], touched, batch, scratch);
+    for (std::uint32_t q = 0; q <= set.level; ++q) {
+      const LevelView& level = view.level[q];
+      add_diagonal(level, touched.list[q], touched.count[q], batch, scratch);
+      for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+        add_couplings(level, layer, block_factor(*view.info, layer), touched.list[q], touched.count[q], batch, scratch);
       }
     }
     for (std::uint32_t j = batch.first; j < batch.first + batch.count; ++j) {

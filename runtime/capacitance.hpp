@@ -16,11 +16,6 @@ struct PointCoefficient {
   float weight;
 };
 
-/// Where a node of K(c) meets others of K(c): only coefficients whose displacement forces of level c reach.
-constexpr bool in_capacitance(std::uint32_t group, std::uint32_t c) {
-  return Coefficients::has_diagonal(group) || group - layout::max_levels + 2 <= c;
-}
-
 /// What a node costs as a column of the capacitance matrix.
 struct ColumnCost {
   std::uint32_t coefficients = 0;  ///< of its functional
@@ -46,23 +41,20 @@ struct CapacitanceScratch {
   std::uint32_t* slot_begin = nullptr;       ///< [slots + 1] of each slot
   std::uint32_t* batch_begin = nullptr;      ///< [slots] its columns in the batch
   std::uint32_t* batch_end = nullptr;        ///< [slots]
-  std::uint32_t* slot = nullptr;             ///< [coefficients of the model], layout::none between calls
+  std::uint32_t* slot = nullptr;             ///< [domain], layout::none between calls
   Block* root = nullptr;                     ///< [slots] scale
   Block* sum = nullptr;                      ///< [slots * min(columns, batch)]
-  BlockPlace* places = nullptr;              ///< [longest list + 1]
-  Block* blocks = nullptr;                   ///< [longest list + 1]
+  BlockPlace* places = nullptr;              ///< [longest column + 1]
+  Block* blocks = nullptr;                   ///< [longest column + 1]
 };
 
-/// What assemble_capacitance reads.
-struct CapacitanceModel {
-  const Refinement& refinement;
-  const Coefficients& coefficients;
-  const Couplings& couplings;
-};
+/// Adds the blocks, of all layers, that level q stores to the counts of both of their coefficients. degree: [domain of
+/// K(q)]. Start-up.
+void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept;
 
-/// What the node at `place` of K(c) costs. force: [coefficients], 0. Start-up.
-[[nodiscard]] ColumnCost column_cost(const CapacitanceModel& model, std::uint32_t c, std::uint32_t place,
-                                     Touched& touched) noexcept;
+/// What the node at `place` of K(c) costs. degree: by levels 0..c, as add_degrees counts. Start-up.
+[[nodiscard]] ColumnCost column_cost(const Refinement& refinement, std::uint32_t c, std::uint32_t place,
+                                     const std::uint32_t* degree, Touched& touched) noexcept;
 
 /// Work units of assemble_capacitance. visits, coefficients, blocks: ColumnCost summed over the columns of the set;
 /// slots: coefficients that the set touches, and stored: blocks in the columns of those in all layers, none counted
@@ -76,11 +68,11 @@ constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::ui
 }
 
 /// The capacitance matrix of a contact set in force form: block (i, j) is the displacement of the average of column i
-/// per force at column j (James & Pai 2003, sections 3.2 and 5.4), by the non-standard form of all layers. Every block
-/// of it between two touched coefficients is read once per batch of columns. Symmetric; only the lower triangle is
-/// written. touched: by the set; a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [coefficients], 0
-/// before and after. For the loop; work: assemble_capacitance_work.
-void assemble_capacitance(const CapacitanceModel& model, const ContactSet& set, const Touched& touched,
+/// per force at column j (James & Pai 2003, sections 3.2 and 5.4), by all layers. Every block between two touched
+/// coefficients is read once per batch of columns. Symmetric; only the lower triangle is written. touched: by the set;
+/// a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [domain], 0 before and after. For the loop; work:
+/// assemble_capacitance_work.
+void assemble_capacitance(const Refinement& refinement, const ContactSet& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept;
 
 }  // namespace greenloop

@@ -2,248 +2,141 @@
 
 #include <cstddef>
 
+#include "runtime/domain.hpp"
+
 namespace greenloop {
 namespace {
 
-// lists of blocks as their n-th target and position
-
-struct EveryRow {
-  std::uint32_t begin;
-  BlockPlace operator[](std::uint32_t n) const { return {n, begin + n}; }
-};
-
-template <class Index>
-struct SomeRows {
-  const Index* index;
-  std::uint32_t begin;
-  BlockPlace operator[](std::uint32_t n) const { return {index[n], begin + n}; }
-};
-
-// the blocks of a column, or of a row
-
-struct EveryColumn {
-  const CouplingsView& view;
-  EveryRow operator[](std::uint32_t j) const { return {view.begin[j]}; }
-  [[nodiscard]] std::uint32_t length(std::uint32_t j) const { return view.begin[j + 1] - view.begin[j]; }
-  void prefetch(std::uint32_t) const {}
-};
-
-template <class Index>
-struct SomeColumns {
-  const CouplingsView& view;
-  SomeRows<Index> operator[](std::uint32_t j) const {
-    return {static_cast<const Index*>(view.index) + view.begin[j], view.begin[j]};
-  }
-  [[nodiscard]] std::uint32_t length(std::uint32_t j) const { return view.begin[j + 1] - view.begin[j]; }
-  void prefetch(std::uint32_t j) const { __builtin_prefetch(static_cast<const Index*>(view.index) + view.begin[j]); }
-};
-
-struct MirroredRows {
-  const CouplingSection& section;
-  const BlockPlace* operator[](std::uint32_t i) const { return section.mirrored + section.mirrored_begin[i]; }
-  [[nodiscard]] std::uint32_t length(std::uint32_t i) const { return section.mirrored_length(i); }
-  void prefetch(std::uint32_t i) const { __builtin_prefetch(section.mirrored + section.mirrored_begin[i]); }
-};
-
-// calls visit(the blocks by columns)
+// calls visit(the stored type) for the bits of a value
 template <class Visit>
-void with_columns(const CouplingsView& view, Visit visit) {
-  if (view.index_bytes == 0) {
-    visit(EveryColumn{view});
-  } else if (view.index_bytes == 2) {
-    visit(SomeColumns<std::uint16_t>{view});
-  } else {
-    visit(SomeColumns<std::uint32_t>{view});
-  }
-}
-
-// calls visit(the stored type) for the section's bits per value
-template <class Visit>
-void with_values(const CouplingsView& view, Visit visit) {
-  if (view.value_bits == 4) {
+void with_stored(std::uint32_t value_bits, Visit visit) {
+  if (value_bits == 4) {
     visit(StoredBlock<4>{});
-  } else if (view.value_bits == 8) {
+  } else if (value_bits == 8) {
     visit(StoredBlock<8>{});
   } else {
     visit(StoredBlock<16>{});
   }
 }
 
-template <bool mirror, class Stored>
-Block load(const CouplingsView& view, std::uint32_t position) {
-  const Block block = Stored::load(view.value + Stored::bytes * std::size_t{position});
-  return mirror ? transposed(block) : block;
-}
-
-bool zero(Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0; }
-
-template <bool mirror, class Stored, class Lists>
-void add_lists(const CouplingSection& section, const Lists& lists, const SparseGroup& from, Float4* to) {
-  constexpr std::uint32_t ahead = 2;  // lists whose memory is on its way while one is summed
-  const CouplingsView& view = section.view;
-  for (std::uint32_t k = 0; k < from.count; ++k) {
-    if (k + ahead < from.count) {
-      const std::uint32_t soon = from.list[k + ahead] - from.begin;
-      lists.prefetch(soon);
-      if (!mirror) {
-        __builtin_prefetch(view.value + Stored::bytes * std::size_t{view.begin[soon]});
-      }
-    }
-    const Float4 force = without_denormals(from.force[from.list[k]] * splat(section.factor));
-    if (zero(force)) {
-      continue;
-    }
-    const Float4 f[3] = {splat3(force[0]), splat3(force[1]), splat3(force[2])};
-    const std::uint32_t source = from.list[k] - from.begin;
-    const auto list = lists[source];
-    const std::uint32_t length = lists.length(source);
-    for (std::uint32_t n = 0; n < length; ++n) {
-      const BlockPlace place = list[n];
-      to[place.target] += product(load<mirror, Stored>(view, place.position), f);
-    }
-  }
-}
-
-template <class List>
-std::uint32_t choose(List list, std::uint32_t length, const std::uint32_t* slot, BlockPlace* chosen) {
+template <class Index>
+std::uint32_t choose(const Index* index, std::uint32_t begin, std::uint32_t end, const std::uint32_t* slot,
+                     BlockPlace* chosen) {
   std::uint32_t count = 0;
-  for (std::uint32_t n = 0; n < length; ++n) {
-    const BlockPlace place = list[n];
-    chosen[count] = {slot[place.target], place.position};
-    count += slot[place.target] != layout::none ? 1 : 0;
+  for (std::uint32_t position = begin; position < end; ++position) {
+    const std::uint32_t target = slot[index[position]];
+    chosen[count] = {target, position};
+    count += target != layout::none ? 1 : 0;
   }
   return count;
 }
 
-float widening(const CouplingsView& view) {
-  return view.value_bits == 4 ? StoredBlock<4>::widening
-                              : (view.value_bits == 8 ? StoredBlock<8>::widening : StoredBlock<16>::widening);
-}
+// some coefficients of one level, and their blocks with another level
+struct Window {
+  static constexpr std::uint32_t most = 512;
+  std::uint32_t level;
+  std::uint32_t first;
+  std::uint32_t end;
+  std::uint32_t field[most];
+  std::uint32_t stored[most];
+};
 
-// calls visit(column, row, position) for every block, by columns
-template <class Visit>
-void visit_blocks(const CouplingsView& view, Visit visit) {
-  with_columns(view, [&](const auto& columns) {
-    for (std::uint32_t j = 0; j < view.columns; ++j) {
-      for (std::uint32_t n = 0; n < columns.length(j); ++n) {
-        visit(j, columns[j][n].target, columns[j][n].position);
+void count_with_level(const ModelView& view, std::uint32_t other, Window& window) {
+  std::fill(window.field, window.field + Window::most, 0U);
+  std::fill(window.stored, window.stored + Window::most, 0U);
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    const auto count = [&](std::uint32_t place) {
+      ++window.stored[place - window.first];
+      window.field[place - window.first] += layout::layer[layer].field ? 1 : 0;
+    };
+    if (other <= window.level) {
+      const LevelView& own = view.level[window.level];
+      for (std::uint32_t j = window.first; j < window.end; ++j) {
+        visit_rows(own.couplings[layer], j - own.domain_begin, view.level[other].domain_begin,
+                   domain_up_to(view, other), [&](std::uint32_t, std::uint32_t) { count(j); });
       }
     }
-  });
+    for (std::uint32_t j = 0; other >= window.level && j < view.level[other].counts->domain_count; ++j) {
+      visit_rows(view.level[other].couplings[layer], j, window.first, window.end,
+                 [&](std::uint32_t row, std::uint32_t) { count(row); });
+    }
+  }
 }
 
-void mirror(const CouplingsView& view, std::uint32_t* begin, BlockPlace* blocks) {
-  for (std::uint32_t i = 0; i <= view.rows; ++i) {
-    begin[i] = 0;
+void add_counts(const std::uint32_t* counts, std::uint32_t size, LevelPair& pair) {
+  for (std::uint32_t i = 0; i < size; ++i) {
+    pair.all += counts[i];
+    pair.most = std::max(pair.most, counts[i]);
   }
-  visit_blocks(view, [&](std::uint32_t, std::uint32_t row, std::uint32_t) { ++begin[row + 1]; });
-  for (std::uint32_t i = 0; i < view.rows; ++i) {
-    begin[i + 1] += begin[i];
-  }
-  visit_blocks(view, [&](std::uint32_t column, std::uint32_t row, std::uint32_t position) {
-    blocks[begin[row]++] = {column, position};
-  });
-  for (std::uint32_t i = view.rows; i > 0; --i) {
-    begin[i] = begin[i - 1];
-  }
-  begin[0] = 0;
 }
 
 }  // namespace
 
-bool find_section(const ModelView& view, std::uint32_t n, CouplingSection& section) noexcept {
-  const std::uint32_t layer = n % layout::strengths;
-  const std::uint32_t partner = n / layout::strengths % 3;
-  const std::uint32_t q = n / (3 * layout::strengths);
-  if (q >= view.levels) {
-    return false;
-  }
-  const CouplingsView& of = view.level[q].couplings[partner][layer];
-  if (of.columns == 0 || of.begin[of.columns] == 0) {
-    return false;
-  }
-  constexpr auto averages = static_cast<std::uint32_t>(layout::Partner::averages);
-  constexpr auto parents = static_cast<std::uint32_t>(layout::Partner::parents);
-  section = {};
-  section.view = of;
-  section.column_group = Coefficients::details(q);
-  section.column_level = q;
-  section.row_level = partner == averages ? (q < 2 ? 0 : q - 2) : (partner == parents ? q - 1 : q);
-  section.row_group =
-      partner == averages ? Coefficients::averages(section.row_level) : Coefficients::details(section.row_level);
-  section.layer = layer;
-  section.factor = of.quantum * widening(of);
-  return true;
+float block_factor(const layout::Info& info, std::uint32_t layer) noexcept {
+  float widening = 0;
+  with_stored(layout::layer[layer].value_bits, [&](auto stored) { widening = decltype(stored)::widening; });
+  return info.quantum[layer] * widening;
 }
 
-Couplings place_couplings(Arena& arena, const ModelView& view) noexcept {
-  Couplings couplings;
-  CouplingSection section;
-  for (std::uint32_t n = 0; n < Couplings::most; ++n) {
-    couplings.count += find_section(view, n, section) ? 1 : 0;
-  }
-  auto* sections = arena.take<CouplingSection>(couplings.count);
-  couplings.section = sections;
-  for (std::uint32_t n = 0; n < Couplings::most; ++n) {
-    if (!find_section(view, n, section)) {
-      continue;
-    }
-    auto* begin = arena.take<std::uint32_t>(section.view.rows + std::uint64_t{1});
-    auto* blocks = arena.take<BlockPlace>(section.view.begin[section.view.columns]);
-    if (sections != nullptr) {
-      mirror(section.view, begin, blocks);
-      section.mirrored_begin = begin;
-      section.mirrored = blocks;
-      *sections++ = section;
-    }
-  }
-  return couplings;
-}
-
-LongestLists longest_lists(const CouplingSection& section) noexcept {
-  constexpr std::uint32_t at_once = 1024;
-  LongestLists longest;
-  for (std::uint32_t j = 0; j < section.view.columns; ++j) {
-    const std::uint32_t length = section.direct_length(j);
-    longest.direct = length > longest.direct ? length : longest.direct;
-  }
-  for (std::uint32_t first = 0; first < section.view.rows; first += at_once) {
-    std::uint32_t lengths[at_once] = {};
-    visit_blocks(section.view, [&](std::uint32_t, std::uint32_t row, std::uint32_t) {
-      if (row - first < at_once) {
-        ++lengths[row - first];
-      }
-    });
-    for (const std::uint32_t length : lengths) {
-      longest.mirrored = length > longest.mirrored ? length : longest.mirrored;
-    }
-  }
-  return longest;
-}
-
-void add_direct(const CouplingSection& section, const SparseGroup& columns, Float4* rows) noexcept {
-  with_values(section.view, [&](auto stored) {
-    with_columns(section.view,
-                 [&](const auto& lists) { add_lists<false, decltype(stored)>(section, lists, columns, rows); });
-  });
-}
-
-void add_mirrored(const CouplingSection& section, const SparseGroup& rows, Float4* columns) noexcept {
-  with_values(section.view,
-              [&](auto stored) { add_lists<true, decltype(stored)>(section, MirroredRows{section}, rows, columns); });
-}
-
-std::uint32_t load_slotted(const CouplingSection& section, std::uint32_t column, const std::uint32_t* slot,
-                           BlockPlace* places, Block* blocks) noexcept {
-  std::uint32_t count = 0;
-  with_columns(section.view,
-               [&](const auto& lists) { count = choose(lists[column], lists.length(column), slot, places); });
-  with_values(section.view, [&](auto stored) {
+std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
+                           const std::uint32_t* slot, BlockPlace* places, Block* blocks) noexcept {
+  const std::uint32_t begin = view.begin[column];
+  const std::uint32_t end = view.begin[column + 1];
+  const std::uint32_t count = view.index_bytes == 2
+                                  ? choose(static_cast<const std::uint16_t*>(view.index), begin, end, slot, places)
+                                  : choose(static_cast<const std::uint32_t*>(view.index), begin, end, slot, places);
+  with_stored(layout::layer[layer].value_bits, [&](auto stored) {
+    using Stored = decltype(stored);
     for (std::uint32_t n = 0; n < count; ++n) {
-      blocks[n] = load<false, decltype(stored)>(section.view, places[n].position);
+      blocks[n] = Stored::load(view.value + Stored::bytes * std::size_t{places[n].position});
     }
   });
   return count;
+}
+
+int stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t position,
+                 std::uint32_t k) noexcept {
+  if (value_bits == 4) {
+    const int byte = std::to_integer<int>(view.value[5 * std::size_t{position} + k / 2]);
+    const int nibble = k % 2 == 0 ? byte & 15 : byte >> 4;
+    return nibble < 8 ? nibble : nibble - 16;
+  }
+  const std::size_t at = 9 * std::size_t{position} + k;
+  if (value_bits == 8) {
+    return static_cast<std::int8_t>(view.value[at]);
+  }
+  std::int16_t value;
+  std::memcpy(&value, view.value + 2 * at, sizeof value);
+  return value;
+}
+
+CouplingCounts count_couplings(const ModelView& view) noexcept {
+  CouplingCounts counts;
+  std::uint64_t blocks = 0;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    for (const CouplingsView& couplings : view.level[q].couplings) {
+      blocks += couplings.begin[couplings.columns];
+      for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+        counts.longest_column = std::max(counts.longest_column, column_length(couplings, j));
+      }
+    }
+  }
+  counts.countable = blocks < std::uint64_t{1} << 31;
+  for (std::uint32_t q = 0; counts.countable && q < view.levels; ++q) {
+    const std::uint32_t end = domain_up_to(view, q);
+    for (std::uint32_t first = view.level[q].domain_begin; first < end; first += Window::most) {
+      Window window;
+      window.level = q;
+      window.first = first;
+      window.end = std::min(first + Window::most, end);
+      for (std::uint32_t other = 0; other < view.levels; ++other) {
+        count_with_level(view, other, window);
+        add_counts(window.field, window.end - first, counts.field[q][other]);
+        add_counts(window.stored, window.end - first, counts.stored[q][other]);
+      }
+    }
+  }
+  return counts;
 }
 
 }  // namespace greenloop

@@ -17,7 +17,8 @@ struct Plan {
   SetCounts counts;
   Factor* cached = nullptr;
   std::uint32_t field_level = 0;
-  std::uint64_t work = 0;  ///< spent on deciding
+  std::uint64_t work = 0;   ///< spent on deciding
+  std::uint64_t field = 0;  ///< work of the field
   bool fits = false;
 };
 
@@ -34,32 +35,39 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
   return response.force.size() == 3 * contacts && field_fits ? Status::ok : Status::held_response_size;
 }
 
+// as much of the field as a plan asks for
+std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
+  return field_work(body.counts, plan.counts, plan.field_level,
+                    count_field_blocks(body.couplings, body.touched, plan.field_level));
+}
+
 // resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
 // many details as fit; leaves the coefficients of that level touched
 Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field) {
   const ModelView& view = *body.view;
   Plan plan;
-  std::uint64_t forces = 0;
+  plan.field_level = view.levels - 1;
   const std::uint32_t coarsest = view.info->coarsest_constraint_level;
+  std::uint64_t forces = 0;
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     resolve_contacts(contacts, view, body.facts, c, body.set);
     clear(body.touched);
-    touch(body.refinement, body.coefficients, c, body.set.column, body.set.columns, body.touched);
-    plan.counts =
-        count_set(view, body.coefficients, body.couplings, body.set, body.touched, contacts.size(), body.cost[c]);
+    touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
+    plan.counts = count_set(body.set, body.touched, contacts.size(), body.cost[c], body.stored);
     plan.cached = body.cache.find(body.set);
     plan.work += plan_work(body.counts, plan.counts);
     forces = force_work(plan.counts) + (plan.cached != nullptr ? 0 : factor_work(body.counts, plan.counts));
-    plan.field_level = whole_field_level(c, view.levels);
-    const std::uint64_t field = wants_field ? field_work(body.counts, plan.counts, plan.field_level) : 0;
-    plan.fits = plan.work + forces + field <= budget;
+    plan.field = wants_field ? planned_field_work(body, plan) : 0;
+    plan.fits = plan.work + forces + plan.field <= budget;
     if (plan.fits) {
       return plan;
     }
   }
   while (!plan.fits && wants_field && plan.field_level > 0) {
     --plan.field_level;
-    plan.fits = plan.work + forces + field_work(body.counts, plan.counts, plan.field_level) <= budget;
+    plan.work += count_field_work(plan.counts);
+    plan.field = planned_field_work(body, plan);
+    plan.fits = plan.work + forces + plan.field <= budget;
   }
   return plan;
 }
@@ -67,8 +75,7 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
 // the factors of body.set; null if its capacitance matrix is not positive definite
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
-  const CapacitanceModel model{body.refinement, body.coefficients, body.couplings};
-  assemble_capacitance(model, body.set, body.touched, body.capacitance, body.force, factor.matrix);
+  assemble_capacitance(body.refinement, body.set, body.touched, body.capacitance, body.force, factor.matrix);
   return cholesky_factor(3 * body.set.columns, factor.matrix) ? &factor : nullptr;
 }
 
@@ -96,9 +103,9 @@ void answer_field(Body& body, std::span<const Contact> contacts, std::uint32_t f
     const float* at = force + std::size_t{3} * k;
     body.force[body.set.column[k]] = Float4{at[0], at[1], at[2], 0.0F};
   }
-  const FieldModel model{body.refinement, body.coefficients, body.couplings};
+  const FieldModel model{body.refinement, body.couplings, body.roots};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(model, body.touched, field_level, body.force, body.sum, x);
+  compute_field(model, body.touched, field_level, body.force, x);
   if (body.set.level + 1 == view.levels) {
     // held nodes stand where they are held: only the others need the approximation
     for (const Contact& contact : contacts) {
@@ -145,7 +152,7 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   }
   share_forces(reinterpret_cast<const float*>(body.column_force), contacts.size(), body.set, response.force.data());
   if (!response.displacement.empty()) {
-    work += field_work(body.counts, plan.counts, plan.field_level);
+    work += plan.field;
     answer_field(body, contacts, plan.field_level, response.displacement);
   }
   StepReport report;

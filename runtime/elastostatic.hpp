@@ -69,18 +69,17 @@ enum class CreateError : std::uint8_t {
   arena_too_small,
   arena_misaligned,
   bad_limits,
-  unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes
+  unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes or 2^31 blocks
 };
 
 /// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions
-/// (James & Pai 2003, sections 3.2, 5.4 and 7) in two-sided non-standard form (Beylkin, Coifman & Rokhlin 1991).
+/// (James & Pai 2003, sections 3.2, 5.4 and 7) in two-sided standard form (Beylkin, Coifman & Rokhlin 1991).
 class Elastostatic {
  public:
   struct Created;
 
-  /// Bytes and worst-case work for `limits`. Start-up; linear in nodes times levels and, for every 1,024 rows of a
-  /// section, in its blocks. Zero bytes if `create` would
-  /// refuse for another reason than memory.
+  /// Bytes and worst-case work for `limits`. Start-up; linear in nodes times levels, in blocks, and, for every 512
+  /// nodes, in nodes. Zero bytes if `create` would refuse for another reason than memory.
   [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
 
   /// Carves `memory` with the routine that `required` counts with. `model` and `memory` must outlive the body.

@@ -43,21 +43,16 @@ double relative_error(std::span<const float> computed, std::size_t stride, const
 double tolerance_of(const DenseAnswer& dense) { return 60 * dense.condition * 0x1p-24; }
 
 TEST_CASE("every constraint level agrees with a dense double-precision solution of what the file stands for") {
-  for (const auto& options :
-       {SyntheticOptions{.levels = 4, .strong_bits = 16, .medium_bits = 16, .weak_bits = 16, .epsilon = 0},
-        SyntheticOptions{.levels = 4}, SyntheticOptions{.levels = 4, .field_layers = 1},
-        SyntheticOptions{.levels = 5,
-        .strong_bits = 4,
-        .medium_bits = 16,
-        .weak_bits = 8,
-        .field_layers = 2,
-        .touchable_above = 0.5},
-        SyntheticOptions{.levels = 4, .lifted = false}, SyntheticOptions{.levels = 3, .field_layers = 2},
-        SyntheticOptions{.levels = 2, .field_layers = 1}, SyntheticOptions{.levels = 1}}) {
-    const TestModel model(options);
+  for (const auto& options : {SyntheticOptions{.levels = 4, .epsilon = 0}, SyntheticOptions{.levels = 4},
+                              SyntheticOptions{.levels = 4, .field = 0.05},
+                              SyntheticOptions{.levels = 5, .field = 0.02, .touchable_above = 0.5},
+                              SyntheticOptions{.levels = 4, .lifted = false}, SyntheticOptions{.levels = 3, .field = 1},
+                              SyntheticOptions{.levels = 2, .quantum = 0}, SyntheticOptions{.levels = 1}}) {
+    const ModelData data = synthetic_model(options);
+    const TestModel model(encode(data));
     CAPTURE(options.levels);
-    CAPTURE(options.field_layers);
-    const DenseReference reference(model.view());
+    CAPTURE(options.field);
+    const DenseReference reference(data);
     std::mt19937_64 random(7);
     std::uint32_t levels_seen = 0;
     for (int trial = 0; trial < 60; ++trial) {
@@ -78,7 +73,7 @@ TEST_CASE("every constraint level agrees with a dense double-precision solution 
       CAPTURE(c);
       const DenseAnswer dense = solve_dense(model.view(), reference, c, contacts);
       CHECK(relative_error(body.force(), 3, dense.force) <= tolerance_of(dense));
-      if (report.field_level == std::min(c + 2, model.view().levels - 1)) {
+      if (report.field_level == model.view().levels - 1) {
         CHECK(relative_error(body.field(), 4, dense.displacement) <= tolerance_of(dense));
       }
     }
@@ -88,7 +83,7 @@ TEST_CASE("every constraint level agrees with a dense double-precision solution 
 }
 
 TEST_CASE("nothing dropped and 16 bits reproduce the exact compliance to quantisation error") {
-  const TestModel model({.levels = 3, .strong_bits = 16, .medium_bits = 16, .weak_bits = 16, .epsilon = 0});
+  const TestModel model({.levels = 3, .epsilon = 0, .quantum = 0});
   const ModelView& view = model.view();
   TestBody body(model, {.max_contacts = 8, .cached_factors = 1});
   const auto position = [&view](std::uint32_t node) {
@@ -131,7 +126,7 @@ TEST_CASE("nothing dropped and 16 bits reproduce the exact compliance to quantis
 }
 
 TEST_CASE("held nodes stand exactly where they are held, whatever the field leaves out") {
-  const TestModel model({.levels = 4, .field_layers = 1});
+  const TestModel model({.levels = 4, .field = 0.05});
   TestBody body(model, {.max_contacts = 12, .cached_factors = 2});
   std::mt19937_64 random(15);
   for (int trial = 0; trial < 10; ++trial) {
@@ -146,9 +141,10 @@ TEST_CASE("held nodes stand exactly where they are held, whatever the field leav
 }
 
 TEST_CASE("no step leaves anything behind for the next") {
-  const TestModel model({.levels = 4, .field_layers = 1});
+  const TestModel model({.levels = 4, .field = 0.05});
   TestBody used(model, {.max_contacts = 12, .cached_factors = 2});
   std::mt19937_64 random(16);
+  int compared = 0;
   for (int trial = 0; trial < 60; ++trial) {
     auto contacts = random_contacts(random, model.touchable(), 1 + random() % 12);
     const std::uint64_t least = used.requirement().least_work;
@@ -161,6 +157,10 @@ TEST_CASE("no step leaves anything behind for the next") {
     const StepReport b = fresh.step(contacts, budget, trial % 5 != 4);
     REQUIRE(a.status == b.status);
     REQUIRE(a.constraint_level == b.constraint_level);
+    if (a.cached_factor) {
+      continue;  // by chance the set's representatives were seen before
+    }
+    ++compared;
     CHECK(a.work == b.work);
     if (a.status <= Status::coarser) {
       CHECK(hash_step(empty_hash, a, used.force(), {}) == hash_step(empty_hash, b, fresh.force(), {}));
@@ -169,6 +169,7 @@ TEST_CASE("no step leaves anything behind for the next") {
       }
     }
   }
+  CHECK(compared > 50);
 }
 
 TEST_CASE("budgets: the level is the finest that fits, never a unit over, and finer with more") {
@@ -312,10 +313,16 @@ TEST_CASE("response buffers of the wrong size or alignment are refused") {
 TEST_CASE("a capacitance matrix that is not positive definite is refused, not answered with garbage") {
   // couplings too strong for their scales: no file of ours is like this
   ModelData data = synthetic_model({.levels = 1});
-  data.levels[0].couplings[2][0].quantum = 1;
-  for (std::int16_t& value : data.levels[0].couplings[2][0].value) {
-    value = static_cast<std::int16_t>(value < 0 ? -30000 : 30000);
+  data.info.quantum[0] = 1;
+  CouplingsData& couplings = data.levels[0].couplings[0];
+  couplings = {.begin = {0, 0}, .index = {}, .value = {}};
+  for (std::uint32_t j = 1; j + 1 < data.levels[0].couplings[1].begin.size(); ++j) {
+    for (std::uint32_t i = 0; i < j; ++i) {
+      couplings.index.push_back(i);
+    }
+    couplings.begin.push_back(static_cast<std::uint32_t>(couplings.index.size()));
   }
+  couplings.value.resize(9 * couplings.index.size(), 30000);
   const TestModel model(encode(data));
   TestBody body(model, {.max_contacts = 4, .cached_factors = 2});
   const auto nodes = model.touchable();

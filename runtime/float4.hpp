@@ -47,6 +47,14 @@ inline Float4 load_halves(const std::byte* value) {
   std::memcpy(&word, value, sizeof word);
   return low_halves(reinterpret_cast<Half8>(Long2{word, 0}));
 }
+
+// four floats by their upper halves
+inline Float4 load_upper_halves(const std::uint16_t* value) {
+  std::int64_t word;
+  std::memcpy(&word, value, sizeof word);
+  const auto halves = reinterpret_cast<Half8>(Long2{word, 0});
+  return reinterpret_cast<Float4>(__builtin_shufflevector(Half8{}, halves, 0, 8, 1, 9, 2, 10, 3, 11));
+}
 }  // namespace detail
 
 /// Lane by lane 0 where the magnitude is below 2^-90: keeps denormal numbers out of the sums.
@@ -76,6 +84,22 @@ inline Block transposed(const Block& m) {
 /// block times vector: the fourth lane is 0 if that of `f` is.
 inline Float4 product(const Block& m, const Float4 (&f)[3]) {
   return (m.column[0] * f[0] + m.column[1] * f[1]) + m.column[2] * f[2];
+}
+
+/// A symmetric matrix xx, xy, xz, yy, yz, zz as a block with fourth lanes of 0.
+inline Block symmetric_block(const float (&matrix)[6]) {
+  Float4 low;
+  Float4 high;
+  std::memcpy(&low, matrix, sizeof low);
+  std::memcpy(&high, matrix + 2, sizeof high);
+  return {{xyz(low), xyz(__builtin_shufflevector(low, high, 1, 3, 6, 6)),
+           xyz(__builtin_shufflevector(high, high, 0, 2, 3, 3))}};
+}
+
+/// block times vector: the fourth lane is 0 if those of the block are.
+inline Float4 product(const Block& m, Float4 x) {
+  const Float4 splats[3] = {splat(x[0]), splat(x[1]), splat(x[2])};
+  return product(m, splats);
 }
 
 // A stored value is moved to the top bits of a 32-bit lane, which needs no sign extension; the power of two that this

@@ -3,36 +3,27 @@
 #include "runtime/cholesky.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/factor_cache.hpp"
-#include "runtime/field.hpp"
 
 namespace greenloop {
 namespace {
 
 std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
 
-// counts by level of the rows become counts of the rows of levels 0..F
-void accumulate(std::uint32_t levels, std::uint64_t* blocks) {
-  for (std::uint32_t level = 1; level < levels; ++level) {
-    blocks[level] += blocks[level - 1];
-  }
+// most coefficients of level q that forces on `nodes` nodes of K(c) touch
+std::uint64_t most_touched(const ModelView& view, const ReachBound& reach, std::uint32_t q, std::uint64_t nodes) {
+  return smaller(view.level[q].counts->domain_count, nodes * reach.coefficients[q]);
 }
 
-// most coefficients of a group that forces on `nodes` nodes of K(c) touch
-std::uint64_t most_touched(const Coefficients& coefficients, const ReachBound& reach, std::uint32_t group,
-                           std::uint32_t c, std::uint64_t nodes) {
-  const CoefficientGroup& of = coefficients.group[group];
-  if (of.level > c) {
-    return 0;
-  }
-  const bool averages = group == 0 || !Coefficients::has_diagonal(group);
-  return smaller(of.count, nodes * (averages ? reach.averages[of.level] : reach.details[of.level]));
+// most blocks that some coefficients have with a level
+std::uint64_t most_blocks(const LevelPair& pair, std::uint64_t coefficients) {
+  return smaller(pair.all, coefficients * pair.most);
 }
 
 }  // namespace
 
 std::uint64_t plan_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return resolve_contacts_work(set.contacts) + 4 * set.columns + 2 * set.visits + 16 * set.coefficients +
-         2 * model.sections + FactorCache::find_work(model.cached_factors, set.columns);
+  return resolve_contacts_work(set.contacts) + 4 * set.columns + 2 * set.visits + 4 * set.coefficients +
+         count_field_work(set) + FactorCache::find_work(model.cached_factors, set.columns);
 }
 
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
@@ -47,14 +38,16 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
   return merge_work(set.contacts, set.columns) + cholesky_solve_work(static_cast<std::uint32_t>(3 * set.columns));
 }
 
-std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level) noexcept {
-  return 3 * set.visits + 24 * set.coefficients + 9 * set.blocks[field_level] + 9 * model.rows[field_level] +
-         model.nodes + model.transform_work[field_level] + 4 * set.contacts + 2 * model.sections;
+std::uint64_t count_field_work(const SetCounts& set) noexcept { return 8 * set.coefficients; }
+
+std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level,
+                         std::uint64_t blocks) noexcept {
+  return 3 * set.visits + 24 * set.coefficients + 9 * blocks + 9 * model.rows[field_level] + model.nodes +
+         model.transform_work[field_level] + 4 * set.contacts;
 }
 
-SetCounts count_set(const ModelView& view, const Coefficients& coefficients, const Couplings& couplings,
-                    const ContactSet& set, const Touched& touched, std::uint64_t contacts,
-                    const ColumnCost* cost) noexcept {
+SetCounts count_set(const ContactSet& set, const Touched& touched, std::uint64_t contacts, const ColumnCost* cost,
+                    const std::uint32_t* stored) noexcept {
   SetCounts counts;
   counts.contacts = contacts;
   counts.columns = set.columns;
@@ -65,61 +58,54 @@ SetCounts count_set(const ModelView& view, const Coefficients& coefficients, con
     counts.column_blocks += cost[set.column[k]].blocks;
     counts.column_visits += cost[set.column[k]].visits;
   }
-  for (std::uint32_t s = 0; s < couplings.count; ++s) {
-    const CouplingSection& section = couplings.section[s];
-    const std::uint32_t column_begin = coefficients.group[section.column_group].begin;
-    std::uint64_t direct = 0;
-    for (std::uint32_t k = 0; k < touched.count[section.column_group]; ++k) {
-      direct += section.direct_length(touched.list[section.column_group][k] - column_begin);
-    }
-    counts.stored += direct;
-    if (!in_field(view, section)) {
-      continue;
-    }
-    counts.blocks[section.row_level] += direct;
-    const std::uint32_t row_begin = coefficients.group[section.row_group].begin;
-    for (std::uint32_t k = 0; k < touched.count[section.row_group]; ++k) {
-      const std::uint32_t row = touched.list[section.row_group][k] - row_begin;
-      counts.blocks[section.column_level] += section.mirrored_length(row);
+  for (std::uint32_t q = 0; q <= set.level; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      counts.stored += stored[touched.list[q][k]];
     }
   }
-  accumulate(view.levels, counts.blocks);
   return counts;
 }
 
-SetCounts most_counts(const ModelView& view, const Coefficients& coefficients,
-                      const LongestLists (&longest)[Couplings::most], std::uint32_t c, std::uint32_t max_contacts,
-                      const ReachBound& reach) noexcept {
+std::uint64_t count_field_blocks(const FieldCouplings& couplings, const Touched& touched,
+                                 std::uint32_t field_level) noexcept {
+  std::uint64_t blocks = 0;
+  for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      blocks += field_blocks(couplings, touched.list[q][k], field_level);
+    }
+  }
+  return blocks;
+}
+
+SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
+                      std::uint32_t max_contacts, const ReachBound& reach) noexcept {
   SetCounts counts;
   counts.contacts = max_contacts;
   counts.columns = smaller(domain_up_to(view, c), max_contacts);
   counts.visits = counts.columns * reach.visits;
   counts.column_visits = counts.visits;
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    counts.coefficients += most_touched(coefficients, reach, g, c, counts.columns);
-    counts.column_coefficients += counts.columns * most_touched(coefficients, reach, g, c, 1);
-  }
-  CouplingSection section;
-  for (std::uint32_t s = 0; s < Couplings::most; ++s) {
-    if (!find_section(view, s, section)) {
-      continue;
-    }
-    const std::uint64_t all = section.view.begin[section.view.columns];
-    const auto bound = [&](std::uint32_t group, std::uint32_t length, std::uint64_t nodes) {
-      return smaller(all, length * most_touched(coefficients, reach, group, c, nodes));
-    };
-    if (in_field(view, section)) {
-      counts.blocks[section.row_level] += bound(section.column_group, longest[s].direct, counts.columns);
-      counts.blocks[section.column_level] += bound(section.row_group, longest[s].mirrored, counts.columns);
-    }
-    counts.stored += bound(section.column_group, longest[s].direct, counts.columns);
-    if (section.column_level <= c) {
-      counts.column_blocks += counts.columns * (bound(section.column_group, longest[s].direct, 1) +
-                                                bound(section.row_group, longest[s].mirrored, 1));
+  for (std::uint32_t q = 0; q <= c; ++q) {
+    const std::uint64_t of_set = most_touched(view, reach, q, counts.columns);
+    const std::uint64_t of_column = most_touched(view, reach, q, 1);
+    counts.coefficients += of_set;
+    counts.column_coefficients += counts.columns * of_column;
+    for (std::uint32_t other = 0; other <= c; ++other) {
+      counts.stored += other <= q ? most_blocks(couplings.stored[q][other], of_set) : 0;
+      counts.column_blocks += counts.columns * most_blocks(couplings.stored[q][other], of_column);
     }
   }
-  accumulate(view.levels, counts.blocks);
   return counts;
+}
+
+std::uint64_t most_field_blocks(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
+                                std::uint64_t columns, const ReachBound& reach, std::uint32_t field_level) noexcept {
+  std::uint64_t blocks = 0;
+  for (std::uint32_t q = 0; q <= c; ++q) {
+    for (std::uint32_t other = 0; other <= field_level; ++other) {
+      blocks += most_blocks(couplings.field[q][other], most_touched(view, reach, q, columns));
+    }
+  }
+  return blocks;
 }
 
 }  // namespace greenloop

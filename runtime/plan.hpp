@@ -6,6 +6,7 @@
 #include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/couplings.hpp"
+#include "runtime/field_couplings.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/support.hpp"
 
@@ -15,7 +16,6 @@ namespace greenloop {
 struct ModelCounts {
   std::uint64_t nodes = 0;
   std::uint32_t levels = 0;
-  std::uint32_t sections = 0;
   std::uint32_t max_contacts = 0;
   std::uint32_t cached_factors = 0;
   std::uint64_t rows[layout::max_levels] = {};            ///< coefficients of levels 0..F
@@ -26,11 +26,10 @@ struct ModelCounts {
 struct SetCounts {
   std::uint64_t contacts = 0;
   std::uint64_t columns = 0;
-  std::uint64_t coefficients = 0;                 ///< that the columns touch, none counted twice
-  std::uint64_t visits = 0;                       ///< of touching them
-  std::uint64_t blocks[layout::max_levels] = {};  ///< coupled with those, in rows of levels 0..F
-  std::uint64_t stored = 0;                       ///< blocks of all layers in those columns, up to the set's level
-  std::uint64_t column_coefficients = 0;          ///< ColumnCost over all columns
+  std::uint64_t coefficients = 0;         ///< that the columns touch, none counted twice
+  std::uint64_t visits = 0;               ///< of touching them
+  std::uint64_t stored = 0;               ///< blocks of all layers in those columns
+  std::uint64_t column_coefficients = 0;  ///< ColumnCost over all columns
   std::uint64_t column_blocks = 0;
   std::uint64_t column_visits = 0;
 };
@@ -45,19 +44,29 @@ struct SetCounts {
 /// Work units of the forces, given the factor.
 [[nodiscard]] std::uint64_t force_work(const SetCounts& set) noexcept;
 
-/// Work units of the field with details up to `field_level`.
-[[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set,
-                                       std::uint32_t field_level) noexcept;
+/// Work units of counting the blocks of a field.
+[[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
 
-/// Counts of a resolved set whose coefficients are touched. cost: [domain] of each node as a column of set.level.
-[[nodiscard]] SetCounts count_set(const ModelView& view, const Coefficients& coefficients, const Couplings& couplings,
-                                  const ContactSet& set, const Touched& touched, std::uint64_t contacts,
-                                  const ColumnCost* cost) noexcept;
+/// Work units of the field with details up to `field_level`, which its touched coefficients make of `blocks` blocks.
+[[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level,
+                                       std::uint64_t blocks) noexcept;
 
-/// Bounds of the counts of any set of at most `max_contacts` contacts at constraint level c. longest: of each possible
-/// section, see find_section. Start-up; linear in the sections.
-[[nodiscard]] SetCounts most_counts(const ModelView& view, const Coefficients& coefficients,
-                                    const LongestLists (&longest)[Couplings::most], std::uint32_t c,
+/// Counts of a resolved set whose coefficients are touched. cost: [domain] of each node as a column of set.level;
+/// stored: [domain] blocks of all layers in each coefficient's column.
+[[nodiscard]] SetCounts count_set(const ContactSet& set, const Touched& touched, std::uint64_t contacts,
+                                  const ColumnCost* cost, const std::uint32_t* stored) noexcept;
+
+/// Blocks of the field with details up to `field_level` by the touched coefficients.
+[[nodiscard]] std::uint64_t count_field_blocks(const FieldCouplings& couplings, const Touched& touched,
+                                               std::uint32_t field_level) noexcept;
+
+/// Bounds of the counts of any set of at most `max_contacts` contacts at constraint level c. Start-up.
+[[nodiscard]] SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
                                     std::uint32_t max_contacts, const ReachBound& reach) noexcept;
+
+/// Bound of count_field_blocks for those sets. Start-up.
+[[nodiscard]] std::uint64_t most_field_blocks(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
+                                              std::uint64_t columns, const ReachBound& reach,
+                                              std::uint32_t field_level) noexcept;
 
 }  // namespace greenloop

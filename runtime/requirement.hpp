@@ -10,20 +10,19 @@ namespace greenloop {
 
 /// Sizes of a body's arrays and what bounds its work, from the model and the limits alone.
 struct BodySizes {
-  bool supported = false;  ///< limits in range, and every point interpolated from at most three nodes of each level
+  bool supported = false;  ///< limits in range, countable, and every point interpolated from at most three nodes
   ModelCounts counts;
-  std::uint32_t set_columns = 0;   ///< most columns of a contact set
-  std::uint32_t longest_list = 0;  ///< most blocks in a column of a section
+  std::uint32_t set_columns = 0;     ///< most columns of a contact set
+  std::uint32_t longest_column = 0;  ///< most blocks in a column of a layer
   std::uint32_t most_neighbours[layout::max_levels] = {};
   std::uint64_t lifting_records[layout::max_levels] = {};
   std::uint64_t functional = 0;  ///< most coefficients of a point functional
-  Coefficients coefficients;
 };
 
 /// Whether each limit is within the range that Limits states.
 [[nodiscard]] bool in_range(const Limits& limits) noexcept;
 
-/// Start-up; linear in nodes times levels and, for every 1,024 rows of a section, in its blocks.
+/// Start-up; work: that of bound_reach, count_lifting and count_couplings.
 void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes, Requirement& requirement) noexcept;
 
 }  // namespace greenloop

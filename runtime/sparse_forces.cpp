@@ -30,28 +30,6 @@ std::uint64_t neighbour_visits(const Refinement& refinement, std::uint32_t level
   return std::uint64_t{OddNeighbours::most} * (begin[1] - begin[0]);
 }
 
-// the forces of level m are all there now: what the averages of level m see
-void list_averages(const Coefficients& coefficients, std::uint32_t m, Touched& touched) {
-  if (m == 0 || m > coefficients.last_averages) {
-    return;
-  }
-  const std::uint32_t group = Coefficients::averages(m);
-  for (std::uint32_t q = 0; q <= m; ++q) {
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      touched.list[group][touched.count[group]++] = coefficients.group[group].begin + touched.list[q][k];
-    }
-  }
-  touched.visits += touched.count[group];
-}
-
-void copy_averages(const Coefficients& coefficients, std::uint32_t m, const Touched& touched, Float4* force) {
-  const std::uint32_t group = Coefficients::averages(m);
-  for (std::uint32_t k = 0; m > 0 && k < touched.count[group]; ++k) {
-    const std::uint32_t coefficient = touched.list[group][k];
-    force[coefficient] = force[coefficient - coefficients.group[group].begin];
-  }
-}
-
 }  // namespace
 
 void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* level) noexcept {
@@ -68,32 +46,31 @@ void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* l
   }
 }
 
-void Touched::carve(Arena& arena, const Coefficients& coefficients) noexcept {
+void Touched::carve(Arena& arena, const ModelView& view) noexcept {
   // a rejected place is written behind the last accepted one
-  auto* lists = arena.take<std::uint32_t>(coefficients.count + std::uint64_t{Coefficients::groups});
-  mark = arena.take_zeroed<bool>(coefficients.count);
-  for (std::uint32_t g = 0; g < Coefficients::groups && lists != nullptr; ++g) {
-    list[g] = lists;
-    lists += coefficients.group[g].count + 1;
+  auto* lists = arena.take<std::uint32_t>(view.domain_count + std::uint64_t{view.levels});
+  mark = arena.take_zeroed<bool>(view.domain_count);
+  for (std::uint32_t q = 0; q < view.levels && lists != nullptr; ++q) {
+    list[q] = lists;
+    lists += view.level[q].counts->domain_count + 1;
   }
 }
 
 std::uint64_t Touched::coefficients() const noexcept {
   std::uint64_t sum = 0;
-  for (const std::uint32_t of_group : count) {
-    sum += of_group;
+  for (const std::uint32_t of_level : count) {
+    sum += of_level;
   }
   return sum;
 }
 
-void touch(const Refinement& refinement, const Coefficients& coefficients, std::uint32_t c, const std::uint32_t* place,
-           std::uint32_t count, Touched& touched) noexcept {
+void touch(const Refinement& refinement, std::uint32_t c, const std::uint32_t* place, std::uint32_t count,
+           Touched& touched) noexcept {
   touched.constraint_level = c;
   touched.visits = count;
   for (std::uint32_t i = 0; i < count; ++i) {
     add(touched, refinement.level[place[i]], place[i]);
   }
-  list_averages(coefficients, c, touched);
   for (std::uint32_t level = c; level > 0; --level) {
     touched.forced[level] = touched.count[level];
     touched.visits += std::uint64_t{2} * touched.forced[level];
@@ -115,23 +92,20 @@ void touch(const Refinement& refinement, const Coefficients& coefficients, std::
         });
       }
     }
-    list_averages(coefficients, level - 1, touched);
   }
 }
 
 void clear(Touched& touched) noexcept {
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    for (std::uint32_t k = 0; Coefficients::has_diagonal(g) && k < touched.count[g]; ++k) {
-      touched.mark[touched.list[g][k]] = false;
+  for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      touched.mark[touched.list[q][k]] = false;
     }
-    touched.count[g] = 0;
+    touched.count[q] = 0;
   }
   touched.visits = 0;
 }
 
-void transform_forces(const Refinement& refinement, const Coefficients& coefficients, const Touched& touched,
-                      Float4* force) noexcept {
-  copy_averages(coefficients, touched.constraint_level, touched, force);
+void transform_forces(const Refinement& refinement, const Touched& touched, Float4* force) noexcept {
   for (std::uint32_t level = touched.constraint_level; level > 0; --level) {
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
       const std::uint32_t odd = touched.list[level][k];
@@ -149,14 +123,13 @@ void transform_forces(const Refinement& refinement, const Coefficients& coeffici
                          [&](std::uint32_t odd, float lift) { force[odd] -= splat(lift) * of_even; });
       }
     }
-    copy_averages(coefficients, level - 1, touched, force);
   }
 }
 
 void clear_forces(const Touched& touched, Float4* force) noexcept {
-  for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-    for (std::uint32_t k = 0; k < touched.count[g]; ++k) {
-      force[touched.list[g][k]] = Float4{};
+  for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      force[touched.list[q][k]] = Float4{};
     }
   }
 }

@@ -4,7 +4,7 @@
 
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
-#include "runtime/coefficients.hpp"
+#include "runtime/float4.hpp"
 #include "runtime/wavelet.hpp"
 
 namespace greenloop {
@@ -33,32 +33,31 @@ void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* l
 /// Which coefficients the forces on some nodes of K(c) reach.
 struct Touched {
   std::uint32_t constraint_level = 0;
-  std::uint64_t visits = 0;                        ///< steps of the transform
-  std::uint32_t count[Coefficients::groups] = {};  ///< coefficients of each group
-  std::uint32_t* list[Coefficients::groups] = {};  ///< those coefficients
-  std::uint32_t forced[layout::max_levels] = {};   ///< nodes of M(l) with a force of level l, first in the list
+  std::uint64_t visits = 0;                       ///< steps of the transform
+  std::uint32_t count[layout::max_levels] = {};   ///< coefficients of each level
+  std::uint32_t* list[layout::max_levels] = {};   ///< those coefficients
+  std::uint32_t forced[layout::max_levels] = {};  ///< nodes of M(l) with a force of level l, first in the list
   std::uint32_t even[layout::max_levels][layout::max_levels] = {};  ///< [l][q] nodes of M(q) with a force of level l-1
   bool* mark = nullptr;                                             ///< [domain], false between uses
 
   /// Arrays out of `arena`; null while it counts.
-  void carve(Arena& arena, const Coefficients& coefficients) noexcept;
+  void carve(Arena& arena, const ModelView& view) noexcept;
 
-  /// Coefficients over all groups.
+  /// Coefficients over all levels.
   [[nodiscard]] std::uint64_t coefficients() const noexcept;
 };
 
 /// Finds the coefficients that forces on `place` [count], distinct nodes of K(c), reach. `touched` must be clear. For
 /// the loop; work: 2 units per visit.
-void touch(const Refinement& refinement, const Coefficients& coefficients, std::uint32_t c, const std::uint32_t* place,
-           std::uint32_t count, Touched& touched) noexcept;
+void touch(const Refinement& refinement, std::uint32_t c, const std::uint32_t* place, std::uint32_t count,
+           Touched& touched) noexcept;
 
 /// Forgets them. For the loop; work: one unit per coefficient.
 void clear(Touched& touched) noexcept;
 
-/// Transforms forces in place. force: [coefficients], nodal forces on the touched places of K(c), 0 elsewhere. For the
-/// loop; work: 3 units per visit.
-void transform_forces(const Refinement& refinement, const Coefficients& coefficients, const Touched& touched,
-                      Float4* force) noexcept;
+/// Transforms forces in place. force: [domain], nodal forces on the touched places of K(c), 0 elsewhere. For the loop;
+/// work: 3 units per visit.
+void transform_forces(const Refinement& refinement, const Touched& touched, Float4* force) noexcept;
 
 /// Zeroes the touched coefficients. For the loop; work: one unit per coefficient.
 void clear_forces(const Touched& touched, Float4* force) noexcept;

@@ -16,26 +16,16 @@
 namespace greenloop {
 namespace {
 
-// coefficients of nodal forces of level c, by T_l^-T as dense matrices, in the runtime's numbering
-std::vector<double> dense_coefficients(const ModelView& view, const Coefficients& coefficients,
-                                       const std::vector<Eigen::SparseMatrix<double>>& inverse, std::uint32_t c,
-                                       Eigen::VectorXd f) {
-  std::vector<double> result(coefficients.count);
-  const auto keep = [&](std::uint32_t group, const Eigen::VectorXd& values) {
-    for (Eigen::Index i = 0; i < values.size() / 3; ++i) {
-      result[coefficients.group[group].begin + static_cast<std::size_t>(i)] = values(3 * i);
-    }
-  };
-  for (std::uint32_t level = c + 1; level-- > 0;) {
-    if (level <= coefficients.last_averages) {
-      keep(Coefficients::averages(level), f);
-    }
-    if (level > 0) {
-      const Eigen::VectorXd g = inverse[level].transpose() * f;
-      const Eigen::Index coarse = 3 * domain_up_to(view, level - 1);
-      keep(Coefficients::details(level), g.tail(g.size() - coarse));
-      f = g.head(coarse);
-    }
+// coefficients of nodal forces of level c, by T_l^-T as dense matrices
+std::vector<double> dense_coefficients(const ModelView& view, const std::vector<Eigen::SparseMatrix<double>>& inverse,
+                                       std::uint32_t c, Eigen::VectorXd f) {
+  std::vector<double> result(view.domain_count);
+  for (std::uint32_t level = c; level > 0; --level) {
+    f.head(3 * domain_up_to(view, level)) =
+        Eigen::VectorXd(inverse[level].transpose() * f.head(3 * domain_up_to(view, level)));
+  }
+  for (Eigen::Index i = 0; i < f.size() / 3; ++i) {
+    result[static_cast<std::size_t>(i)] = f(3 * i);
   }
   return result;
 }
@@ -65,27 +55,22 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
         std::shuffle(places.begin(), places.end(), random);
         places.resize(std::min<std::size_t>(places.size(), trial < 15 ? 1 : 16));
         Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * domain_up_to(view, c));
-        touch(body.refinement, body.coefficients, c, places.data(), static_cast<std::uint32_t>(places.size()),
-              body.touched);
+        touch(body.refinement, c, places.data(), static_cast<std::uint32_t>(places.size()), body.touched);
         for (const std::uint32_t place : places) {
           const float value = static_cast<float>(random() >> 40) * 0x1p-24F;
           f(Eigen::Index{3} * place) = value;
           body.force[place] = splat3(value);
         }
-        transform_forces(body.refinement, body.coefficients, body.touched, body.force);
-        const auto dense = dense_coefficients(view, body.coefficients, inverse, c, f);
+        transform_forces(body.refinement, body.touched, body.force);
+        const auto dense = dense_coefficients(view, inverse, c, f);
         std::vector<int> times(dense.size());
-        for (std::uint32_t g = 0; g < Coefficients::groups; ++g) {
-          const CoefficientGroup& group = body.coefficients.group[g];
-          for (std::uint32_t k = 0; k < body.touched.count[g]; ++k) {
-            CHECK(body.touched.list[g][k] - group.begin < group.count);
-            ++times[body.touched.list[g][k]];
+        for (std::uint32_t q = 0; q < view.levels; ++q) {
+          const LevelView& level = view.level[q];
+          for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
+            CHECK(body.touched.list[q][k] - level.domain_begin < level.counts->domain_count);
+            ++times[body.touched.list[q][k]];
           }
-          const bool averages = g == 0 || !Coefficients::has_diagonal(g);
-          if (group.level <= c && group.count > 0) {
-            CHECK(body.touched.count[g] <=
-                  places.size() * (averages ? reach.averages[group.level] : reach.details[group.level]));
-          }
+          CHECK(body.touched.count[q] <= (q <= c ? places.size() * reach.coefficients[q] : 0));
         }
         CHECK(body.touched.visits <= places.size() * reach.visits);
         for (std::size_t i = 0; i < dense.size(); ++i) {
@@ -96,7 +81,7 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
         clear_forces(body.touched, body.force);
         clear(body.touched);
         CHECK(std::none_of(body.touched.mark, body.touched.mark + view.domain_count, [](bool m) { return m; }));
-        CHECK(std::all_of(body.force, body.force + body.coefficients.count,
+        CHECK(std::all_of(body.force, body.force + view.domain_count,
                           [](Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0 && x[3] == 0; }));
       }
     }

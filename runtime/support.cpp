@@ -34,17 +34,17 @@ std::uint32_t orphans(const ModelView& view, std::uint32_t level, const PointSup
   return count;
 }
 
+// forced: nodes of each level's mesh that a force on the node is shared among
 bool follow(const ModelView& view, std::uint32_t c, std::uint32_t node, const std::uint32_t* most_neighbours,
-            ReachBound& bound) {
+            std::uint32_t* forced, ReachBound& bound) {
   PointSupport support{1, {node}};
-  raise(bound.averages[c], 1);
   for (std::uint32_t level = c; level > 0; --level) {
     const std::uint32_t alone = orphans(view, level, support);
     if (!coarsen(view, level, support)) {
       return false;
     }
-    raise(bound.details[level], support.count * most_neighbours[level] + alone);
-    raise(bound.averages[level - 1], support.count);
+    raise(bound.coefficients[level], support.count * most_neighbours[level] + alone);
+    raise(forced[level - 1], support.count);
   }
   return true;
 }
@@ -74,19 +74,22 @@ bool coarsen(const ModelView& view, std::uint32_t level, PointSupport& support) 
 
 ReachBound bound_reach(const ModelView& view, std::uint32_t c, const std::uint32_t* most_neighbours) noexcept {
   ReachBound bound;
+  std::uint32_t forced[layout::max_levels] = {};
+  forced[c] = 1;
   for (std::uint32_t q = 0; q <= c; ++q) {
     for (std::uint32_t i = 0; i < view.level[q].counts->domain_count; ++i) {
-      if (!follow(view, c, view.level[q].node_begin + i, most_neighbours, bound)) {
+      if (!follow(view, c, view.level[q].node_begin + i, most_neighbours, forced, bound)) {
         return bound;
       }
     }
   }
-  // a node, its averages, two parents of each force, all odd neighbours of each support
-  bound.visits = 1 + bound.averages[c];
+  bound.coefficients[0] = forced[0];
+  // the node, two parents of each force, all odd neighbours of each support
+  bound.visits = 1;
   for (std::uint32_t level = c; level > 0; --level) {
     constexpr std::uint32_t slots = OddNeighbours::most;
-    bound.visits += 2 * bound.averages[level] + bound.averages[level - 1];
-    bound.visits += std::uint64_t{bound.averages[level - 1]} * slots * ((most_neighbours[level] + slots - 1) / slots);
+    bound.visits += 2 * forced[level];
+    bound.visits += std::uint64_t{forced[level - 1]} * slots * ((most_neighbours[level] + slots - 1) / slots);
   }
   bound.bounded = true;
   return bound;

@@ -23,8 +23,7 @@ struct PointSupport {
 struct ReachBound {
   bool bounded = false;  ///< no node of K(c) hangs on more than three nodes of a coarser level
   std::uint64_t visits = 0;
-  std::uint32_t details[layout::max_levels] = {};
-  std::uint32_t averages[layout::max_levels] = {};
+  std::uint32_t coefficients[layout::max_levels] = {};  ///< of each level
 };
 
 /// most_neighbours, of every level: LiftingCounts::most_neighbours. Start-up; linear in domain nodes times levels.

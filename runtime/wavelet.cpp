@@ -28,15 +28,6 @@ void predict(const LevelView& level, Float4* x) {
   }
 }
 
-void add_averages(const ModelView& view, std::uint32_t m, const Float4* averages, Float4* x) {
-  for (std::uint32_t q = 0; q <= m; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      x[level.node_begin + i] += averages[level.domain_begin + i];
-    }
-  }
-}
-
 // calls visit(odd node, parent, lift) for each domain parent of each domain node of M(level), in file order
 template <class Visit>
 void visit_pairs(const ModelView& view, std::uint32_t level, Visit visit) {
@@ -102,12 +93,8 @@ void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32
   });
 }
 
-void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level,
-                       const Float4* const (&averages)[layout::max_levels], Float4* x) noexcept {
+void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level, Float4* x) noexcept {
   for (std::uint32_t level = 1; level < view.levels; ++level) {
-    if (averages[level - 1] != nullptr) {
-      add_averages(view, level - 1, averages[level - 1], x);
-    }
     if (level <= field_level) {
       const OddNeighbours* neighbours = lifting.neighbours[level];
       undo_lifting(neighbours, neighbours + lifting.begin[level][domain_up_to(view, level - 1)], x);

@@ -46,16 +46,13 @@ struct LiftingCounts {
 void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32_t* begin,
                          OddNeighbours* neighbours) noexcept;
 
-/// The inverse transform in place, of the non-standard form: averages[m], [domain nodes of K(m)], are added to the
-/// values of level m before level m+1 is made of them; null adds none. Details of levels above `field_level` must be 0;
-/// there it only interpolates. x: [node_count]. For the loop; work: inverse_transform_work.
-void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level,
-                       const Float4* const (&averages)[layout::max_levels], Float4* x) noexcept;
+/// The inverse transform in place. Details of levels above `field_level` must be 0; there it only interpolates.
+/// x: [node_count]. For the loop; work: inverse_transform_work.
+void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level, Float4* x) noexcept;
 
-/// Work units of inverse_transform: records of the levels up to field_level, domain nodes above level 0, averages.
-constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_records, std::uint64_t odd_nodes,
-                                               std::uint64_t averages) {
-  return 3 * std::uint64_t{OddNeighbours::most} * lifting_records + 6 * odd_nodes + 3 * averages;
+/// Work units of inverse_transform: records of the levels up to field_level, domain nodes above level 0.
+constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_records, std::uint64_t odd_nodes) {
+  return 3 * std::uint64_t{OddNeighbours::most} * lifting_records + 6 * odd_nodes;
 }
 
 }  // namespace greenloop

@@ -56,37 +56,12 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
       field[node][r] = static_cast<float>(d[node][r]);
     }
   }
-  inverse_transform(view, placed.body->lifting, view.levels - 1, {}, field.data());
+  inverse_transform(view, placed.body->lifting, view.levels - 1, field.data());
   for (std::uint32_t node = 0; node < view.node_count; ++node) {
     for (std::size_t r = 0; r < 3; ++r) {
       CHECK(std::abs(double{field[node][r]} - x[node][r]) <= 8 * view.levels * 0x1p-24);
     }
     CHECK(float{field[node][3]} == 0);
-  }
-}
-
-TEST_CASE("averages join the values of their level before the next level is made") {
-  const TestModel model({.levels = 4, .touchable_above = 0.95});
-  const ModelView& view = model.view();
-  const PlacedBody placed(view);
-  std::vector<Float4> ones(domain_up_to(view, 1), splat3(1.0F));
-  const Float4* averages[layout::max_levels] = {nullptr, ones.data()};
-  std::vector<Float4> joined(view.node_count);
-  inverse_transform(view, placed.body->lifting, view.levels - 1, averages, joined.data());
-  // the same as what interpolating ones from level 1 gives
-  std::vector<Float4> interpolated(view.node_count);
-  for (std::uint32_t q = 0; q < 2; ++q) {
-    std::fill_n(interpolated.begin() + view.level[q].node_begin, view.level[q].counts->domain_count, splat3(1.0F));
-  }
-  for (std::uint32_t q = 2; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      const std::uint32_t* parent = level.refinement[i].parent;
-      interpolated[level.node_begin + i] = splat3(0.5F) * (interpolated[parent[0]] + interpolated[parent[1]]);
-    }
-  }
-  for (std::uint32_t node = 0; node < view.node_count; ++node) {
-    CHECK(float{joined[node][2]} == interpolated[node][2]);
   }
 }
 
@@ -98,7 +73,7 @@ TEST_CASE("details above the field level are interpolated") {
   for (const std::uint32_t node : domain_nodes(view)) {
     field[node] = node < view.level[1].node_begin ? splat3(1.0F) : Float4{};
   }
-  inverse_transform(view, placed.body->lifting, 0, {}, field.data());
+  inverse_transform(view, placed.body->lifting, 0, field.data());
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {

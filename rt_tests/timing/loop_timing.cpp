@@ -89,24 +89,22 @@ void time_kernels(const TestModel& model) {
   resolve_contacts(contacts, view, body.facts, c, body.set);
   const double touching = median_nanoseconds(20, [&](int) {
     clear(body.touched);
-    touch(body.refinement, body.coefficients, c, body.set.column, body.set.columns, body.touched);
+    touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
   });
-  const SetCounts counts =
-      count_set(view, body.coefficients, body.couplings, body.set, body.touched, contacts.size(), body.cost[c]);
+  const SetCounts counts = count_set(body.set, body.touched, contacts.size(), body.cost[c], body.stored);
+  const auto blocks = static_cast<double>(count_field_blocks(body.couplings, body.touched, c));
   const double field = median_nanoseconds(20, [&](int) {
     for (std::uint32_t k = 0; k < body.set.columns; ++k) {
       body.force[body.set.column[k]] = splat3(1e-3F);
     }
-    compute_field({body.refinement, body.coefficients, body.couplings}, body.touched, c, body.force, body.sum,
-                  x.data());
+    compute_field({body.refinement, body.couplings, body.roots}, body.touched, c, body.force, x.data());
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
-    assemble_capacitance({body.refinement, body.coefficients, body.couplings}, body.set, body.touched, body.capacitance,
-                         body.force, matrix.data());
+    assemble_capacitance(body.refinement, body.set, body.touched, body.capacitance, body.force,
+                         matrix.data());
   });
-  const double transform = median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, c, {}, x.data()); });
-  const auto blocks = static_cast<double>(counts.blocks[c]);
+  const double transform = median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, c, x.data()); });
   std::printf("%u nodes, %u in the domain; 16 contacts touch %llu coefficients, %.0f blocks of the field\n",
               view.node_count, view.domain_count, static_cast<unsigned long long>(counts.coefficients), blocks);
   std::printf("touch               %8.0f ns\n", touching);
@@ -132,7 +130,7 @@ int main(int argc, char** argv) {
   if (argc > 1) {
     run(TestModel(load_file(argv[1]).span()));
   } else {
-    run(TestModel(SyntheticOptions{.levels = 5, .field_layers = 1, .touchable_above = 0.5}));
+    run(TestModel(SyntheticOptions{.levels = 5, .touchable_above = 0.5}));
   }
   return 0;
 }

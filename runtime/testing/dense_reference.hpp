@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/testing/dense_wavelet.hpp"
 #include "formats/view.hpp"
 #include "runtime/elastostatic.hpp"
 
@@ -14,28 +15,22 @@ namespace greenloop {
 /// three rows and columns a domain node.
 [[nodiscard]] Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q);
 
-/// The compliances that a file stands for, as dense matrices in double precision by the definition in
-/// formats/layout.hpp: 3 rows and columns per domain node, by place in the domain. For tests: plain and slow.
+/// The compliances that a model stands for, as dense matrices in double precision: 3 rows and columns per domain node,
+/// by place in the domain. For tests: plain and slow.
 class DenseReference {
  public:
-  explicit DenseReference(const ModelView& view);
+  explicit DenseReference(const ModelData& model);
 
-  /// Between the averages of level c, with 1 to 3 layers of couplings; m/N.
-  [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c, std::uint32_t layers) const {
-    return compliance_[layers - 1][c];
-  }
-  /// Displacement of the domain per force of level c, as far as the file knows: 3 domain by 3 |K(c)|.
-  [[nodiscard]] Eigen::MatrixXd field(std::uint32_t c, std::uint32_t layers) const;
-  /// The same with the layers that the file asks for.
+  /// Between the averages of level c, all layers of couplings; m/N.
+  [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c) const { return compliance_[c]; }
+  /// Displacement of the domain per force of level c, field layers of couplings: 3 domain by 3 |K(c)|.
   [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
   /// The averages of level q of displacements of the domain.
   [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;
 
  private:
-  const ModelView& view_;
-  std::vector<Eigen::SparseMatrix<double>> inverse_;         // T_l^-1
-  std::vector<Eigen::MatrixXd> coupled_[layout::strengths];  // B'_l: details l, by averages l-2 and details l-1
-  std::vector<Eigen::MatrixXd> compliance_[layout::strengths];
+  DenseWavelet wavelet_;
+  std::vector<Eigen::MatrixXd> compliance_;
   std::vector<Eigen::MatrixXd> field_;
 };
 
@@ -45,8 +40,7 @@ struct DenseAnswer {
   double condition = 0;          ///< of the capacitance matrix
 };
 
-/// The capacitance matrix algorithm on dense matrices in double precision with a complete factorisation; the field with
-/// as many layers as the file asks for.
+/// The capacitance matrix algorithm on dense matrices in double precision with a complete factorisation.
 [[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t c,
                                       std::span<const Contact> contacts);
 
