@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "runtime/domain.hpp"
+#include "runtime/field_couplings.hpp"
 
 namespace greenloop {
 namespace {
@@ -47,7 +48,7 @@ void count_with_level(const ModelView& view, std::uint32_t other, Window& window
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const auto count = [&](std::uint32_t place) {
       ++window.stored[place - window.first];
-      window.field[place - window.first] += layout::layer[layer].field ? 1 : 0;
+      window.field[place - window.first] += layout::layer[layer].field ? list_blocks(layer) : 0;
     };
     if (other <= window.level) {
       const LevelView& own = view.level[window.level];
@@ -121,7 +122,7 @@ CouplingCounts count_couplings(const ModelView& view) noexcept {
       }
     }
   }
-  counts.countable = blocks < std::uint64_t{1} << 31;
+  counts.countable = blocks < std::uint64_t{1} << 30;
   for (std::uint32_t q = 0; counts.countable && q < view.levels; ++q) {
     const std::uint32_t end = domain_up_to(view, q);
     for (std::uint32_t first = view.level[q].domain_begin; first < end; first += Window::most) {

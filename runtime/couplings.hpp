@@ -52,7 +52,7 @@ std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::
 [[nodiscard]] int stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t position,
                                std::uint32_t k) noexcept;
 
-/// Stored blocks between the coefficients of a level and those of another.
+/// Blocks between the coefficients of a level and those of another.
 struct LevelPair {
   std::uint32_t all = 0;   ///< summed over the coefficients of the first: a block within one level counts twice
   std::uint32_t most = 0;  ///< of one of them
@@ -60,8 +60,8 @@ struct LevelPair {
 
 /// How many blocks there are, by pairs of levels.
 struct CouplingCounts {
-  bool countable = false;  ///< fewer than 2^31 blocks; else nothing is counted
-  LevelPair field[layout::max_levels][layout::max_levels];
+  bool countable = false;                                    ///< fewer than 2^30 blocks; else nothing is counted
+  LevelPair field[layout::max_levels][layout::max_levels];   ///< in the lists of the field, see list_blocks
   LevelPair stored[layout::max_levels][layout::max_levels];  ///< in all layers
   std::uint32_t longest_column = 0;                          ///< in one layer
 };

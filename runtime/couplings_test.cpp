@@ -77,12 +77,12 @@ TEST_CASE("blocks are counted by pairs of levels, from both sides") {
         for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
           const std::uint32_t column = view.level[q].domain_begin + j;
           const std::uint32_t row = couplings.index[b];
-          for (auto* counts : {&field, &stored}) {
-            if (counts == &stored || layout::layer[layer].field) {
-              ++(*counts)[column][level_of_place(row)];
-              ++(*counts)[row][q];
-            }
-          }
+          // of 16 bits: two halves
+          const std::uint32_t in_field = layer == 0 ? 2 : (layout::layer[layer].field ? 1 : 0);
+          field[column][level_of_place(row)] += in_field;
+          field[row][q] += in_field;
+          ++stored[column][level_of_place(row)];
+          ++stored[row][q];
         }
       }
     }

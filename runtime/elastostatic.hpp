@@ -69,7 +69,7 @@ enum class CreateError : std::uint8_t {
   arena_too_small,
   arena_misaligned,
   bad_limits,
-  unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes or 2^31 blocks
+  unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks
 };
 
 /// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "formats/view.hpp"
@@ -9,39 +10,31 @@
 namespace greenloop {
 
 // The couplings of the field layers, copied at start-up so that everything a coefficient's force moves stands in one
-// list: the blocks of its column, and those of its row transposed.
+// list: the blocks of its column, and those of its row transposed. A value of up to 8 bits is the upper half of a
+// float exactly and loads without conversion; one of 16 bits is the sum of two.
 
-/// A block of a list, in quanta of at most 8 bits: by columns, the upper halves of floats, which hold them exactly and
-/// load with no conversion.
-struct alignas(8) NarrowBlock {
-  static constexpr float widening = 1;
+/// A block of a list, in quanta.
+struct alignas(8) FieldBlock {
   std::uint32_t byte_offset;  ///< of the moved node in an array of Float4 per node
-  std::uint16_t value[9];
+  std::uint16_t value[9];     ///< by columns, upper halves of floats
   std::uint16_t zero;
 };
 
-/// The same in 16 bits; column c of it at value[4 c], fourth rows 0.
-struct alignas(32) WideBlock {
-  static constexpr float widening = 0x1p-16F;
-  std::uint32_t byte_offset;
-  std::uint32_t zero;
-  std::int16_t value[12];
-};
+/// Blocks of a list that a stored block of a layer becomes, on each of its sides.
+constexpr std::uint32_t list_blocks(std::uint32_t layer) { return layout::layer[layer].value_bits == 16 ? 2 : 1; }
 
-/// The lists of some layers that share a quantum: of every coefficient, and within it of every level of what it moves.
-template <class Stored>
+/// The lists of all layers that share a quantum: of every coefficient, and within it of every level of what it moves.
 struct FieldLists {
-  float factor = 0;                      ///< value of one quantum, times the widening
-  const std::uint32_t* begin = nullptr;  ///< [domain * levels + 1] into blocks
-  const Stored* block = nullptr;
+  float quantum = 0;
+  const std::uint32_t* begin = nullptr;  ///< [domain * levels + 1] into block
+  const FieldBlock* block = nullptr;
 };
 
-/// Layers 0..layout::field_layers-1.
+/// All field layers.
 struct FieldCouplings {
   std::uint32_t levels = 0;
-  FieldLists<WideBlock> wide;
-  std::uint32_t narrow_lists = 0;
-  FieldLists<NarrowBlock> narrow[2];  ///< [narrow_lists] one if layers of 8 and 4 bits share their quantum
+  std::uint32_t quanta = 0;
+  FieldLists of_quantum[layout::field_layers];  ///< [quanta]
 };
 
 /// Carves the lists out of `arena` and fills them in, unless it only counts. level: [domain] mesh levels. Start-up;
@@ -49,14 +42,14 @@ struct FieldCouplings {
 [[nodiscard]] FieldCouplings place_field_couplings(Arena& arena, const ModelView& view,
                                                    const std::uint8_t* level) noexcept;
 
-/// Blocks between the coefficient and those of levels 0..field_level, in all field layers. For the loop; work: 6 units.
+/// Blocks in a coefficient's lists that move coefficients of levels 0..field_level. For the loop; work: 6 units.
 inline std::uint32_t field_blocks(const FieldCouplings& couplings, std::uint32_t coefficient,
                                   std::uint32_t field_level) {
   const std::size_t first = std::size_t{coefficient} * couplings.levels;
   const std::size_t end = first + field_level + 1;
-  std::uint32_t blocks = couplings.wide.begin[end] - couplings.wide.begin[first];
-  for (std::uint32_t n = 0; n < couplings.narrow_lists; ++n) {
-    blocks += couplings.narrow[n].begin[end] - couplings.narrow[n].begin[first];
+  std::uint32_t blocks = 0;
+  for (std::uint32_t n = 0; n < couplings.quanta; ++n) {
+    blocks += couplings.of_quantum[n].begin[end] - couplings.of_quantum[n].begin[first];
   }
   return blocks;
 }
