@@ -81,6 +81,9 @@ float block_factor(const layout::Info& info, std::uint32_t layer) noexcept {
 
 std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
                            const std::uint32_t* slot, BlockPlace* places, Block* blocks) noexcept {
+  if (view.columns == 0) {
+    return 0;
+  }
   const std::uint32_t begin = view.begin[column];
   const std::uint32_t end = view.begin[column + 1];
   const std::uint32_t count = view.index_bytes == 2

@@ -163,9 +163,9 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                            ratio(found["dense_bytes"], found["bytes"]), bytes_text(found["dense_bytes"])));
   row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
-  row("field", fmt::format("{} RMS, {} in the worst column, with {} of the couplings",
-                           percent(found["field_rms_error"]), percent(found["field_column_error"]),
-                           found["field_couplings"].dump()));
+  row("field",
+      fmt::format("{} RMS, {} in the worst column, with {} of the couplings", percent(found["field_rms_error"]),
+                  percent(found["field_column_error"]), found["field_couplings"].dump()));
   row("certificate", found["certificate"].get<bool>()
                          ? fmt::format("every eigenvalue of the compliance is above {:.3g} m/N (verify --certificate)",
                                        found["lambda_min"].get<double>())

@@ -76,7 +76,8 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   CHECK(found["rms_error"] < 0.03);
   CHECK(found["worst_column_error"] > 0);
   CHECK(found["worst_patch_force_error"] == 0);
-  CHECK(found["field_layers"] == 3);
+  CHECK(found["field_couplings"] > 0);
+  CHECK(found["field_couplings"] < found["kept_blocks"]);
   CHECK(found["field_rms_error"] > 0);
   CHECK(found["field_column_error"] > 0);
   CHECK(found["lambda_min"] == 0);
@@ -97,28 +98,30 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   CHECK(finest["dense_blocks"] == found["dense_blocks"]);
   CHECK(finest["worst_patch_force_error"] == 0);
 
-  // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 + 4 Representatives, 3 Scales, 1 + 6 + 9 Couplings
-  REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 + 4 + 3 + 1 + 6 + 9);
-  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 1216}, {"bytes", 256}});
-  CHECK(found["sections"].back()["kind"] == "Couplings(2, same, weak)");
+  // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 + 4 Representatives, 3 Scales, 3 x 6 Couplings
+  REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 + 4 + 3 + 3 * 6);
+  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 1280}, {"bytes", 256}});
+  CHECK(found["sections"].back()["kind"] == "Couplings(2, 5)");
 }
 
 TEST_CASE("inspect --json: wavelet, bits, certificate and frontier are the file's own") {
   const Folder folder("inspect_own");
-  ModelData data = synthetic_model({.levels = 3, .strong_bits = 16, .field_layers = 2, .lifted = false});
+  ModelData data = synthetic_model({.levels = 3, .lifted = false});
   data.info.lambda_min = 2.5e-6;
   data.provenance = R"({"frontier": [{"threshold": 0.5}]})";
-  std::uint64_t blocks[17] = {};
+  std::uint64_t blocks[17] = {}, field = 0;
   for (LevelData& level : data.levels) {
     level.counts.patch_force_error = 0.25;
-    for (const auto& partner : level.couplings) {
-      for (const CouplingsData& couplings : partner) blocks[couplings.value_bits] += couplings.value.size() / 9;
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      const std::uint64_t count = level.couplings[layer].index.size();
+      blocks[layout::layer[layer].value_bits] += count;
+      field += layout::layer[layer].field ? count : 0;
     }
   }
   write_file(folder / "own.gloop", encode(data));
   const Json found = inspect_json(folder / "own.gloop");
   CHECK(found["wavelet"] == "linear");
-  CHECK(found["field_layers"] == 2);
+  CHECK(found["field_couplings"] == field);
   CHECK(found["field_rms_error"] >= found["rms_error"]);
   CHECK(found["lambda_min"] == 2.5e-6);
   CHECK(found["certificate"] == true);
@@ -187,7 +190,7 @@ double least_eigenvalue(const ModelData& data) {
   const AlignedBytes bytes(encode(data));
   ModelView view;
   REQUIRE(verify(bytes.span(), view).ok());
-  const CompressedCompliance compressed(view, all_layers);
+  const CompressedCompliance compressed(view, layout::layers);
   const auto rows = static_cast<Eigen::Index>(compressed.rows(compressed.finest()));
   Eigen::MatrixXd dense(3 * rows, 3 * rows);
   for (Eigen::Index j = 0; j < rows; ++j) {

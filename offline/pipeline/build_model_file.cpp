@@ -6,8 +6,8 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <map>
 #include <iterator>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>

@@ -225,7 +225,7 @@ TEST_CASE("the finest constraint level's bytes are all scales and couplings") {
     names.push_back(kind.name);
     if (kind.name == "scales" || has(kind.name, "couplings")) sum += kind.bytes;
   }
-  for (const char* name : {"scales", "strong couplings", "medium couplings", "weak couplings", "representatives"}) {
+  for (const char* name : {"scales", "field couplings, 8 bits", "force couplings, 4 bits", "representatives"}) {
     CAPTURE(name);
     CHECK(std::count(names.begin(), names.end(), name) == 1);
   }
@@ -244,16 +244,25 @@ TEST_CASE("facts say wavelet, bits, layers and certificate") {
     }
     return std::string();
   };
-  ModelData data = synthetic_model({.strong_bits = 16, .field_layers = 2, .lifted = false});
+  ModelData data = synthetic_model({.lifted = false});
   CHECK(fact(data, "wavelet") == "linear");
-  CHECK(fact(data, "bits per value, strong to weak") == "16, 8, 4");
-  CHECK(fact(data, "layers the field sums") == "2 of 3");
+  std::size_t field = 0, all = 0, nibbles = 0;
+  for (const LevelData& level : data.levels) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      const std::size_t count = level.couplings[layer].index.size();
+      all += count;
+      field += layout::layer[layer].field ? count : 0;
+      nibbles += layout::layer[layer].value_bits == 4 ? count : 0;
+    }
+  }
+  CHECK(field < all);
+  CHECK(fact(data, "couplings that make fields") == readable_count(field) + " of " + readable_count(all));
+  CHECK(has(fact(data, "couplings by bits per value"), "4: " + readable_count(nibbles)));
   CHECK(fact(data, "positive definite") == "none");
   data.info.lambda_min = 2.5e-5;
   CHECK(fact(data, "positive definite") == "every eigenvalue is above 2.5e-05\u202fm/N");
   data = synthetic_model({.levels = 1});
   CHECK(fact(data, "wavelet") == "lifted linear");
-  CHECK(fact(data, "bits per value, strong to weak") == "16, one level only");
 }
 
 TEST_CASE("the frontier has a panel for every pair of figures that two points have") {

@@ -121,8 +121,8 @@ TEST_CASE("where namespaces are refused, auto says so and runs in one process, a
 }
 
 TEST_CASE("starved, it answers at coarser levels and misses nothing") {
-  const auto fed = run_json({"--transport", "memq"});
-  const auto starved = run_json({"--transport", "memq", "--starve", "0.06"});
+  const auto fed = run_json({"--transport", "memq", "--budget", "2000000"});
+  const auto starved = run_json({"--transport", "memq", "--budget", "2000000", "--starve", "0.021"});
   CHECK(cycles_below(fed, 4) == 0);
   CHECK(cycles_below(starved, 4) > 50);
   CHECK(starved["misses"] == 0);
