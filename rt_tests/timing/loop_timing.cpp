@@ -101,8 +101,7 @@ void time_kernels(const TestModel& model) {
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
-    assemble_capacitance(body.refinement, body.set, body.touched, body.capacitance, body.force,
-                         matrix.data());
+    assemble_capacitance(body.refinement, body.set, body.touched, body.capacitance, body.force, matrix.data());
   });
   const double transform = median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, c, x.data()); });
   std::printf("%u nodes, %u in the domain; 16 contacts touch %llu coefficients, %.0f blocks of the field\n",
