@@ -51,11 +51,12 @@ std::uint32_t layer_of(const float* value, const layout::Info& info, bool field)
   return 0;
 }
 
-// how much larger a coefficient's own diagonal block is than its scale
-std::vector<double> own_sizes(const std::vector<CoefficientScale>& scales) {
+// how much larger a coefficient's own diagonal block is than its scale, over its weight
+std::vector<double> field_sizes(const std::vector<CoefficientScale>& scales, const Encoding& encoding) {
   std::vector<double> sizes;
   sizes.reserve(scales.size());
   for (const auto& scale : scales) sizes.push_back(std::sqrt(scale.diagonal().trace() / 3));
+  for (std::size_t i = 0; i < encoding.field_weight.size(); ++i) sizes[i] /= encoding.field_weight[i];
   return sizes;
 }
 
@@ -63,7 +64,7 @@ std::vector<double> own_sizes(const std::vector<CoefficientScale>& scales) {
 
 void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model) {
   choose_quanta(compliance, encoding.quantum, model.info);
-  const std::vector<double> sizes = own_sizes(compliance.scales);
+  const std::vector<double> sizes = field_sizes(compliance.scales, encoding);
   std::size_t column = 0;
   for (std::size_t level = 0; level < compliance.couplings.size(); ++level) {
     const CouplingCandidates& from = compliance.couplings[level];

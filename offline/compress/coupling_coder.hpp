@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "formats/writer.hpp"
 #include "offline/compress/wavelet_compliance.hpp"
 
@@ -10,8 +12,10 @@ namespace greenloop::offline {
 struct Encoding {
   double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
   double quantum = 0;    ///< of scaled values
-  /// Blocks of this norm and more relative to their coefficients' own diagonal blocks make fields; 0: all do.
+  /// Blocks make fields if their norm relative to their coefficients' own diagonal blocks, times both coefficients'
+  /// weights, reaches this; 0: all do.
   double field_threshold = 0;
+  std::vector<double> field_weight;  ///< [coefficient] or empty: all 1
 };
 
 /// Fills in quanta, scales and couplings of every level. `model.levels` must have one entry per level of the

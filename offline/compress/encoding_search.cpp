@@ -15,6 +15,7 @@ namespace {
 // rounding then weighs less than what the threshold drops
 constexpr double quantum_per_threshold = 0.5;
 constexpr int bisections = 7;
+constexpr double least_gain = 1.25, most_gain = 2;  // of a coefficient's weight at a time
 
 Encoding encoding_at(double threshold) {
   return {.threshold = threshold, .quantum = quantum_per_threshold * threshold};
@@ -66,8 +67,7 @@ std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPat
   return worst;
 }
 
-Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accuracy, Encoding encoding,
-                                const Progress& progress) {
+Encoding search_field_threshold(const TrialBench& bench, double rms, Encoding encoding, const Progress& progress) {
   double fails = 2, meets = 0.001;  // couplings are at most about as large as their coefficients' diagonal blocks
   bool found = false;
   for (int step = 0; step <= bisections; ++step) {
@@ -76,7 +76,7 @@ Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accurac
     const EncodedModel model(encoded(bench, trial));
     const FieldError error = field_error(bench, CompressedCompliance(model.view, layout::field_layers));
     if (progress) progress(static_cast<double>(step + 1) / (bisections + 1), "search field threshold");
-    if (error.rms() <= accuracy.rms && error.worst_column() <= accuracy.worst_column) {
+    if (error.rms() <= rms) {
       found = true;
       meets = trial.field_threshold;
     } else if (step == 0) {
@@ -87,6 +87,27 @@ Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accurac
   }
   encoding.field_threshold = found ? meets : 0;
   return encoding;
+}
+
+void weigh_columns(const LinearWavelet& wavelet, const WaveletCompliance& compliance,
+                   const std::vector<PoorColumn>& columns, Encoding& encoding) {
+  std::vector<double> factor(wavelet.rows(), 1.0), force(wavelet.rows());
+  for (const PoorColumn& column : columns) {
+    std::fill(force.begin(), force.end(), 0.0);
+    force[column.row] = 1;
+    for (std::size_t level = wavelet.finest(); level > 0; --level) wavelet.split_forces(level, 1, force.data());
+    double most = 0;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      if (force[i] == 0) continue;
+      const CoefficientScale& scale = compliance.scales[i];
+      force[i] = std::abs(force[i]) * (scale.root() * scale.diagonal() * scale.root()).norm();
+      most = std::max(most, force[i]);
+    }
+    const double gain = std::clamp(column.excess, least_gain, most_gain) - 1;
+    for (std::size_t i = 0; i < force.size(); ++i) factor[i] = std::max(factor[i], 1 + gain * force[i] / most);
+  }
+  encoding.field_weight.resize(wavelet.rows(), 1.0);
+  for (std::size_t i = 0; i < factor.size(); ++i) encoding.field_weight[i] *= factor[i];
 }
 
 Trial search_encoding(const TrialBench& bench, const ContactPatches& patches, const Accuracy& accuracy, double floor,

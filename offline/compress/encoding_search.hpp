@@ -66,11 +66,22 @@ struct EncodedModel {
 [[nodiscard]] std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPatches& patches,
                                                      std::size_t count, double threshold);
 
-/// `encoding` with the largest field threshold whose field couplings alone meet `accuracy` (rms and worst_column) on
-/// the sample's columns; 0, so that all couplings make fields, if not even a threshold of 1/1000 does. Work: some
-/// encodings and the sample's columns for each.
-[[nodiscard]] Encoding search_field_threshold(const TrialBench& bench, const Accuracy& accuracy, Encoding encoding,
+/// `encoding` with the largest field threshold whose field couplings alone have an RMS error of at most `rms` on the
+/// sample's columns; 0, so that all couplings make fields, if not even a threshold of 1/1000 does. Work: some encodings
+/// and the sample's columns for each.
+[[nodiscard]] Encoding search_field_threshold(const TrialBench& bench, double rms, Encoding encoding,
                                               const Progress& progress);
+
+/// A column whose field is not accurate enough.
+struct PoorColumn {
+  std::size_t row = 0;
+  double excess = 1;  ///< its error over the one allowed
+};
+
+/// Gives more weight to the coefficients that the forces on those columns' nodes reach, most to those that move most:
+/// more of their couplings make fields. Work: a transform per column.
+void weigh_columns(const LinearWavelet& wavelet, const WaveletCompliance& compliance,
+                   const std::vector<PoorColumn>& columns, Encoding& encoding);
 
 /// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2. If none
 /// does, the most accurate one. Adds every trial to `trials`.

@@ -84,28 +84,47 @@ TEST_CASE("the worst patches are those with the largest errors") {
   CHECK(worst_patches(bench().get(), patches, 1000, 0.005).size() == patches.size());
 }
 
+FieldError field_errors(const Encoding& encoding) {
+  const test::File file(test::model_of(bench().body, true, encoding));
+  const CompressedCompliance field(file.view, layout::field_layers);
+  FieldError error;
+  for (const auto& column : bench().sample.columns()) error.add(field, 2, column.row, column.exact.data(), column.area);
+  return error;
+}
+
 TEST_CASE("the field threshold is the largest whose couplings make an accurate field") {
-  const Accuracy wanted{.rms = 0.02, .worst_column = 0.06, .patch_force = 0};
-  const auto encoding = search_field_threshold(bench().get(), wanted, {.threshold = 0.004, .quantum = 0.002}, {});
+  constexpr double rms = 0.02;
+  const Encoding given{.threshold = 0.004, .quantum = 0.002, .field_threshold = 0, .field_weight = {}};
+  const auto encoding = search_field_threshold(bench().get(), rms, given, {});
   CHECK(encoding.threshold == 0.004);
   CHECK(encoding.field_threshold > 0.001);
-  const auto errors = [&](double field_threshold) {
-    Encoding other = encoding;
-    other.field_threshold = field_threshold;
-    const test::File file(test::model_of(bench().body, true, other));
-    const CompressedCompliance field(file.view, layout::field_layers);
-    FieldError error;
-    for (const auto& column : bench().sample.columns())
-      error.add(field, 2, column.row, column.exact.data(), column.area);
-    return error;
-  };
-  CHECK(errors(encoding.field_threshold).rms() <= wanted.rms);
-  CHECK(errors(encoding.field_threshold).worst_column() <= wanted.worst_column);
-  const auto coarser = errors(1.2 * encoding.field_threshold);
-  CHECK((coarser.rms() > wanted.rms || coarser.worst_column() > wanted.worst_column));
+  CHECK(field_errors(encoding).rms() <= rms);
+  Encoding coarser = encoding;
+  coarser.field_threshold *= 1.2;
+  CHECK(field_errors(coarser).rms() > rms);
   // where not even the least threshold meets it, all couplings make fields
-  const Accuracy none{.rms = 1e-9, .worst_column = 1e-9, .patch_force = 0};
-  CHECK(search_field_threshold(bench().get(), none, encoding, {}).field_threshold == 0);
+  CHECK(search_field_threshold(bench().get(), 1e-9, given, {}).field_threshold == 0);
+}
+
+TEST_CASE("columns that are given weight become more accurate, their couplings more") {
+  Encoding encoding{.threshold = 0.001, .quantum = 0.0005, .field_threshold = 0.05, .field_weight = {}};
+  const std::size_t row = bench().wavelet.rows() - 1;
+  const auto column_error = [&] {
+    const test::File file(test::model_of(bench().body, true, encoding));
+    const CompressedCompliance field(file.view, layout::field_layers);
+    const Eigen::MatrixXd exact = bench().body.compliance.middleCols(static_cast<Eigen::Index>(3 * row), 3);
+    return FieldError().add(field, 2, row, blocks_of(exact, 0).data(), 1);
+  };
+  const double before = column_error();
+  weigh_columns(bench().wavelet, bench().compliance, {{.row = row, .excess = 2}}, encoding);
+  const double once = column_error();
+  CHECK(once < before);
+  for (int k = 0; k < 8; ++k) {
+    weigh_columns(bench().wavelet, bench().compliance, {{.row = row, .excess = 2}}, encoding);
+  }
+  CHECK(column_error() < 0.6 * before);
+  REQUIRE(encoding.field_weight.size() == bench().wavelet.rows());
+  CHECK(*std::min_element(encoding.field_weight.begin(), encoding.field_weight.end()) == 1);  // not all are reached
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 
 namespace greenloop::offline {
 
-void FieldError::add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact,
-                     double area) {
+double FieldError::add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact,
+                       double area) {
   const auto found = compressed.column(level, j);
   double error = 0, norm = 0, largest_error = 0, largest = 0;
   for (std::size_t i = 0; i < compressed.rows(level); ++i) {
@@ -22,7 +22,9 @@ void FieldError::add(const CompressedCompliance& compressed, std::size_t level, 
   }
   error_energy_ += area * area * error;
   exact_energy_ += area * area * norm;
-  worst_column_ = std::max(worst_column_, std::sqrt(largest_error / largest));
+  const double column_error = std::sqrt(largest_error / largest);
+  worst_column_ = std::max(worst_column_, column_error);
+  return column_error;
 }
 
 double FieldError::rms() const { return std::sqrt(error_energy_ / exact_energy_); }

@@ -13,8 +13,9 @@ namespace greenloop::offline {
 class FieldError {
  public:
   /// Adds column `j` of `level`; `exact`: rows(level) blocks of 9, 3 c + r, m/N; `area` [m^2] of the column's node.
-  /// Work: one column.
-  void add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact, double area);
+  /// Returns its share of worst_column. Work: one column.
+  double add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact,
+             double area);
 
   [[nodiscard]] double rms() const;            ///< ||Xi^ - Xi||_F / ||Xi||_F over the columns added
   [[nodiscard]] double worst_column() const {  ///< max_j ||Xi^_j - Xi_j||_inf / ||Xi_j||_inf, block-wise Frobenius

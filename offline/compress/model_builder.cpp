@@ -20,8 +20,8 @@ constexpr std::size_t search_patches = 16;  // the worst ones, which encodings a
 constexpr double ranking_threshold = 0.005;
 constexpr std::size_t stream_columns = 64;  // read at a time
 constexpr double first_floor = 0.0005, least_floor = 1e-5;
-constexpr double field_safety = 0.9;  // of the field's errors, searched on a sample
-constexpr double least_field_threshold = 1e-3;
+constexpr double field_safety = 0.95;      // of the field's RMS error, searched on a sample
+constexpr int field_rounds = 40;           // of weighing columns and measurement
 constexpr int rounds = 6;                  // of search and measurement per transform
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
@@ -67,11 +67,17 @@ ConstraintLevelReport measure_coarse(const CompressionInput& input, const Linear
           .patch_force_error = patches.worst_force_error(compressed, level)};
 }
 
-// errors of the finest level over all exact columns, of each of several compressed compliances
-std::vector<FieldError> measure_finest(const CompressionInput& input,
-                                       std::initializer_list<const CompressedCompliance*> compressed,
-                                       const Progress& progress) {
-  std::vector<FieldError> errors(compressed.size());
+// errors over all exact columns
+struct ColumnErrors {
+  FieldError error;
+  std::vector<PoorColumn> poor;  // beyond the accuracy asked for
+};
+
+// of the finest level, for each of several compressed compliances
+std::vector<ColumnErrors> measure_finest(const CompressionInput& input,
+                                         std::initializer_list<const CompressedCompliance*> compressed,
+                                         const Progress& progress) {
+  std::vector<ColumnErrors> errors(compressed.size());
   const std::size_t rows = input.column_nodes.size();
   for (std::size_t first = 0; first < rows; first += stream_columns) {
     const std::size_t count = std::min(stream_columns, rows - first);
@@ -79,8 +85,13 @@ std::vector<FieldError> measure_finest(const CompressionInput& input,
     for (std::size_t j = 0; j < count; ++j) {
       const auto exact = blocks_of(block, j);
       const double area = input.area[input.column_nodes[first + j]];
-      auto error = errors.begin();
-      for (const auto* one : compressed) (error++)->add(*one, one->finest(), first + j, exact.data(), area);
+      auto one = errors.begin();
+      for (const auto* compliance : compressed) {
+        const double error = one->error.add(*compliance, compliance->finest(), first + j, exact.data(), area);
+        const double excess = error / input.accuracy.worst_column;
+        if (excess > 1) one->poor.push_back({.row = first + j, .excess = excess});
+        ++one;
+      }
     }
     progress(static_cast<double>(first + count) / static_cast<double>(rows), "measure all columns");
   }
@@ -184,9 +195,8 @@ class Build {
           search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.6));
       closest_ = chosen;
       if (!chosen.meets(aim)) return false;
-      const Accuracy field{.rms = field_safety * input_.accuracy.rms,
-                           .worst_column = field_safety * input_.accuracy.worst_column};
-      chosen.encoding = search_field_threshold(bench, field, chosen.encoding, part(0.6, 0.7));
+      chosen.encoding =
+          search_field_threshold(bench, field_safety * input_.accuracy.rms, chosen.encoding, part(0.6, 0.7));
       const Measured measured = measure(compliance, chosen);
       if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
         describe(measured);
@@ -200,36 +210,42 @@ class Build {
     return false;
   }
 
-  // Encodes. Where the sample promised too much of the field, more couplings make it.
   [[nodiscard]] Measured measure(const WaveletCompliance& compliance, const Trial& chosen) {
     Measured measured{.trial = chosen, .field = {}, .worst_patches = {}};
-    double& field_threshold = measured.trial.encoding.field_threshold;
-    for (bool first = true;; first = false) {
-      encode_couplings(compliance, measured.trial.encoding, model_);
+    encode_couplings(compliance, chosen.encoding, model_);
+    const EncodedModel encoded(model_);
+    const CompressedCompliance all(encoded.view, layout::layers), field(encoded.view, layout::field_layers);
+    const auto errors = measure_finest(input_, {&all, &field}, part(0.7, 0.75));
+    measured.trial.rms = errors[0].error.rms();
+    measured.trial.worst_column = errors[0].error.worst_column();
+    const auto patches = sample_.patches().force_errors(all, wavelet_.finest());
+    measured.trial.patch_force = patches.front().force;
+    for (std::size_t p = 0; p < std::min(search_patches, patches.size()); ++p) {
+      measured.worst_patches.push_back(patches[p].patch);
+    }
+    if (measured.trial.meets(input_.accuracy)) {
+      measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.75, 0.85));
+      improve_field(compliance, errors[1], measured);
+    }
+    return measured;
+  }
+
+  // Where the sample promised too much of the field, more couplings make it, first those of the poor columns, in the
+  // end all. No value changes by that.
+  void improve_field(const WaveletCompliance& compliance, ColumnErrors errors, Measured& measured) {
+    Encoding& encoding = measured.trial.encoding;
+    for (int round = 0; encoding.field_threshold > 0; ++round) {
+      if (errors.error.rms() <= input_.accuracy.rms && errors.poor.empty()) break;
+      if (errors.error.rms() > input_.accuracy.rms) encoding.field_threshold *= 0.8;
+      if (round == field_rounds) encoding.field_threshold = 0;
+      weigh_columns(wavelet_, compliance, errors.poor, encoding);
+      encode_couplings(compliance, encoding, model_);
       const EncodedModel encoded(model_);
       const CompressedCompliance field(encoded.view, layout::field_layers);
-      measured.trial.bytes = encoded.bytes.size();
-      if (first) {
-        const CompressedCompliance all(encoded.view, layout::layers);
-        const auto errors = measure_finest(input_, {&all, &field}, part(0.7, 0.8));
-        measured.field = errors[1];
-        measured.trial.rms = errors[0].rms();
-        measured.trial.worst_column = errors[0].worst_column();
-        const auto patches = sample_.patches().force_errors(all, wavelet_.finest());
-        measured.trial.patch_force = patches.front().force;
-        for (std::size_t p = 0; p < std::min(search_patches, patches.size()); ++p) {
-          measured.worst_patches.push_back(patches[p].patch);
-        }
-        if (!measured.trial.meets(input_.accuracy)) return measured;
-        measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.8, 0.9));
-      } else {
-        measured.field = measure_finest(input_, {&field}, part(0.9, 0.95))[0];
-      }
-      const bool field_meets =
-          measured.field.rms() <= input_.accuracy.rms && measured.field.worst_column() <= input_.accuracy.worst_column;
-      if (field_meets || field_threshold == 0) return measured;
-      field_threshold = field_threshold > least_field_threshold ? 0.7 * field_threshold : 0;
+      errors = measure_finest(input_, {&field}, part(0.85, 0.9))[0];
     }
+    measured.field = errors.error;
+    measured.trial.bytes = EncodedModel(model_).bytes.size();
   }
 
   // asks the next search for as much less as this one's choice fell short by; patches it has learned of itself
