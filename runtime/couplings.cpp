@@ -48,7 +48,7 @@ void count_with_level(const ModelView& view, std::uint32_t other, Window& window
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const auto count = [&](std::uint32_t place) {
       ++window.stored[place - window.first];
-      window.field[place - window.first] += layout::layer[layer].field ? list_blocks(layer) : 0;
+      window.field[place - window.first] += layout::layer[layer].field ? 1 : 0;
     };
     if (other <= window.level) {
       const LevelView& own = view.level[window.level];

@@ -1,25 +1,14 @@
 #include "runtime/field_couplings.hpp"
 
+#include <bit>
 #include <cstring>
 
+#include "formats/field_value.hpp"
 #include "runtime/couplings.hpp"
 #include "runtime/domain.hpp"
 
 namespace greenloop {
 namespace {
-
-std::uint32_t bits_of(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
-float upper_half(float value) {
-  const std::uint32_t bits = bits_of(value) & 0xffff0000;
-  float half;
-  std::memcpy(&half, &bits, sizeof half);
-  return half;
-}
 
 // calls visit(row, column, section, position) for every block of a layer, by columns
 template <class Visit>
@@ -46,7 +35,7 @@ class LayerGroup {
     for (std::uint32_t layer = 0; layer < layout::field_layers; ++layer) {
       for (std::uint32_t q = 0; has(layer) && q < view_.levels; ++q) {
         const CouplingsView& couplings = view_.level[q].couplings[layer];
-        blocks += std::uint64_t{2} * list_blocks(layer) * couplings.begin[couplings.columns];
+        blocks += std::uint64_t{2} * couplings.begin[couplings.columns];
       }
     }
     return blocks;
@@ -58,23 +47,24 @@ class LayerGroup {
       return std::size_t{source} * view_.levels + level[target];
     };
     std::memset(begin, 0, sizeof(std::uint32_t) * (lists + 1));
-    visit_group([&](std::uint32_t layer, std::uint32_t row, std::uint32_t column, const CouplingsView&, std::uint32_t) {
-      begin[list(row, column) + 1] += list_blocks(layer);
-      begin[list(column, row) + 1] += list_blocks(layer);
+    visit_group([&](std::uint32_t, std::uint32_t row, std::uint32_t column, const CouplingsView&, std::uint32_t) {
+      ++begin[list(row, column) + 1];
+      ++begin[list(column, row) + 1];
     });
     for (std::size_t k = 0; k < lists; ++k) {
       begin[k + 1] += begin[k];
     }
     visit_group([&](std::uint32_t layer, std::uint32_t row, std::uint32_t column, const CouplingsView& from,
                     std::uint32_t position) {
-      float value[9];
-      float transposed[9];
+      FieldBlock& direct = blocks[begin[list(column, row)]++];
+      FieldBlock& mirrored = blocks[begin[list(row, column)]++];
+      direct = {.byte_offset = byte_offset(level[row], row), .value = {}, .zero = 0};
+      mirrored = {.byte_offset = byte_offset(level[column], column), .value = {}, .zero = 0};
       for (std::uint32_t k = 0; k < 9; ++k) {
-        value[k] = static_cast<float>(stored_value(from, layout::layer[layer].value_bits, position, k));
-        transposed[3 * (k % 3) + k / 3] = value[k];
+        const int element = stored_value(from, layout::layer[layer].value_bits, position, k);
+        direct.value[k] = mirrored.value[3 * (k % 3) + k / 3] =
+            static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(field_value(element)) >> 16);
       }
-      append(layer, value, byte_offset(level[row], row), blocks, begin[list(column, row)]);
-      append(layer, transposed, byte_offset(level[column], column), blocks, begin[list(row, column)]);
     });
     std::memmove(begin + 1, begin, sizeof(std::uint32_t) * lists);
     begin[0] = 0;
@@ -96,23 +86,6 @@ class LayerGroup {
   [[nodiscard]] std::uint32_t byte_offset(std::uint8_t q, std::uint32_t coefficient) const {
     const LevelView& level = view_.level[q];
     return (coefficient - level.domain_begin + level.node_begin) * static_cast<std::uint32_t>(sizeof(Float4));
-  }
-
-  // what is left of the values after an upper half of them is the next block
-  static void append(std::uint32_t layer, const float* values, std::uint32_t byte_offset, FieldBlock* blocks,
-                     std::uint32_t& end) {
-    float rest[9];
-    std::memcpy(rest, values, sizeof rest);
-    for (std::uint32_t n = 0; n < list_blocks(layer); ++n) {
-      FieldBlock& block = blocks[end++];
-      block.byte_offset = byte_offset;
-      block.zero = 0;
-      for (std::uint32_t k = 0; k < 9; ++k) {
-        const float half = upper_half(rest[k]);
-        block.value[k] = static_cast<std::uint16_t>(bits_of(half) >> 16);
-        rest[k] -= half;
-      }
-    }
   }
 
   const ModelView& view_;

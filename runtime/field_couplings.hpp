@@ -10,8 +10,8 @@
 namespace greenloop {
 
 // The couplings of the field layers, copied at start-up so that everything a coefficient's force moves stands in one
-// list: the blocks of its column, and those of its row transposed. A value of up to 8 bits is the upper half of a
-// float exactly and loads without conversion; one of 16 bits is the sum of two.
+// list: the blocks of its column, and those of its row transposed. Their values are upper halves of floats
+// (field_value), which load without conversion.
 
 /// A block of a list, in quanta.
 struct alignas(8) FieldBlock {
@@ -19,9 +19,6 @@ struct alignas(8) FieldBlock {
   std::uint16_t value[9];     ///< by columns, upper halves of floats
   std::uint16_t zero;
 };
-
-/// Blocks of a list that a stored block of a layer becomes, on each of its sides.
-constexpr std::uint32_t list_blocks(std::uint32_t layer) { return layout::layer[layer].value_bits == 16 ? 2 : 1; }
 
 /// The lists of all layers that share a quantum: of every coefficient, and within it of every level of what it moves.
 struct FieldLists {

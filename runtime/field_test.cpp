@@ -126,7 +126,7 @@ TEST_CASE("the blocks of a field are those between what is touched and what is k
             for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
               const std::uint32_t row = couplings.index[b];
               const std::uint32_t seen = (row < end ? times[column] : 0) + (column < end ? times[row] : 0);
-              blocks += std::uint64_t{list_blocks(layer)} * seen;
+              blocks += seen;
             }
           }
         }

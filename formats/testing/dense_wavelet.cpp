@@ -1,5 +1,7 @@
 #include "formats/testing/dense_wavelet.hpp"
 
+#include "formats/field_value.hpp"
+
 #include <algorithm>
 
 namespace greenloop {
@@ -27,7 +29,12 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::u
         for (std::size_t b = data.begin[j]; b < data.begin[j + 1]; ++b) {
           const Index i = data.index[b], column = first + j;
           Matrix3d block;
-          for (Index k = 0; k < 9; ++k) block(k % 3, k / 3) = double{model.info.quantum[layer]} * data.value[9 * b + k];
+          for (Index k = 0; k < 9; ++k) {
+            const std::int16_t value = data.value[9 * b + k];
+            block(k % 3, k / 3) =
+                double{model.info.quantum[layer]} *
+                (layers == layout::field_layers ? double{field_value(value)} : static_cast<double>(value));
+          }
           form.block<3, 3>(3 * i, 3 * column) += root[i] * block * root[column];
           form.block<3, 3>(3 * column, 3 * i) = form.block<3, 3>(3 * i, 3 * column).transpose();
         }

@@ -59,7 +59,8 @@ void to_wavelet_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> co
 void from_wavelet_form(const DenseWavelet& wavelet, std::uint32_t c, Eigen::Ref<Eigen::MatrixXd> form);
 
 /// The compliance (m/N) between the averages of level `c` that a model stands for, with its first `layers` layers of
-/// couplings: 3x3 blocks over the domain nodes of K(c). Work: as above.
+/// couplings (the layers of fields: with their values rounded as fields round them): 3x3 blocks over the domain nodes
+/// of K(c). Work: as above.
 [[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c,
                                                  std::uint32_t layers = layout::layers);
 

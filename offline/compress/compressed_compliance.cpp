@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "formats/field_value.hpp"
 #include "offline/compress/scale.hpp"
 
 namespace greenloop::offline {
@@ -63,8 +64,9 @@ std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(con
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
           ends.emplace_back(row_at(couplings, b), view.level[level].domain_begin + j);
           for (std::size_t k = 0; k < 9; ++k) {
+            const std::int16_t value = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
             block_.push_back(quantum *
-                             static_cast<float>(value_at(couplings.value, layout::layer[layer].value_bits, b, k)));
+                             (layers == layout::field_layers ? field_value(value) : static_cast<float>(value)));
           }
         }
       }

@@ -14,8 +14,8 @@ namespace greenloop::offline {
 /// certified on. Two-sided wavelet form, see formats/layout.hpp. Offline only.
 class CompressedCompliance {
  public:
-  /// `layers`: how many layers of couplings count, the first ones: layout::field_layers or layout::layers. The view may
-  /// go. Memory: about 80 bytes per coupling.
+  /// `layers`: how many layers of couplings count, the first ones; with layout::field_layers it is what fields are made
+  /// of, their values those of field_value. The view may go. Memory: about 80 bytes per coupling.
   CompressedCompliance(const ModelView& view, std::uint32_t layers);
 
   [[nodiscard]] std::size_t finest() const { return wavelet_.finest(); }

@@ -15,7 +15,7 @@ struct Encoding {
   /// Blocks make fields if their norm relative to their coefficients' own diagonal blocks, times both coefficients'
   /// weights, reaches this; 0: all do.
   double field_threshold = 0;
-  std::vector<double> field_weight;  ///< [coefficient] or empty: all 1
+  std::vector<double> field_weight{};  ///< [coefficient] or empty: all 1
 };
 
 /// Fills in quanta, scales and couplings of every level. `model.levels` must have one entry per level of the

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "formats/field_value.hpp"
 #include "formats/verify.hpp"
 #include "offline/compress/model_tables.hpp"
 #include "offline/compress/wavelet_compliance.hpp"
@@ -80,7 +81,10 @@ Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
             const Eigen::Index row = at(row_at(couplings, b)) + static_cast<Eigen::Index>(k % 3);
             const Eigen::Index column = at(from.domain_begin + j) + static_cast<Eigen::Index>(k / 3);
             const double value = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
-            scaled(row, column) = scaled(column, row) = static_cast<double>(view.info->quantum[layer]) * value;
+            const bool rounded = layers == layout::field_layers;
+            scaled(row, column) = scaled(column, row) =
+                static_cast<double>(view.info->quantum[layer]) *
+                (rounded ? static_cast<double>(field_value(static_cast<int>(value))) : value);
           }
         }
       }
