@@ -134,7 +134,6 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
   body.couplings = place_field_couplings(arena, view, tables.mesh_level);
-  body.roots = place_roots(arena, view);
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
   carve_set(arena, view, sizes.counts.max_contacts, body.set);

@@ -11,7 +11,6 @@
 #include "runtime/field_couplings.hpp"
 #include "runtime/plan.hpp"
 #include "runtime/requirement.hpp"
-#include "runtime/scales.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/wavelet.hpp"
 
@@ -26,7 +25,6 @@ struct Body {
   Lifting lifting;
   Refinement refinement;
   FieldCouplings couplings;
-  Roots roots;
   std::uint32_t* stored = nullptr;                  ///< [domain] blocks of all layers in a coefficient's column
   const ColumnCost* cost[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]
   NodeFacts* facts = nullptr;                       ///< [node_count]

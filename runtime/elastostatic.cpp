@@ -103,7 +103,7 @@ void answer_field(Body& body, std::span<const Contact> contacts, std::uint32_t f
     const float* at = force + std::size_t{3} * k;
     body.force[body.set.column[k]] = Float4{at[0], at[1], at[2], 0.0F};
   }
-  const FieldModel model{body.refinement, body.couplings, body.roots};
+  const FieldModel model{body.refinement, body.couplings};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   compute_field(model, body.touched, field_level, body.force, x);
   if (body.set.level + 1 == view.levels) {

@@ -5,7 +5,7 @@
 namespace greenloop {
 namespace {
 
-// scaled displacements of the coefficients of levels 0..field_level by those of level q
+// displacements of the coefficients of levels 0..field_level by the forces on those of level q
 void add_level(const FieldModel& model, const Touched& touched, std::uint32_t q, std::uint32_t field_level,
                Float4* force, Float4* x) {
   constexpr std::uint32_t ahead = 2;  // coefficients whose lists are on their way while one is summed
@@ -17,14 +17,12 @@ void add_level(const FieldModel& model, const Touched& touched, std::uint32_t q,
       prefetch_couplings(model.couplings, list[k + ahead]);
     }
     const std::uint32_t i = list[k];
-    const std::uint32_t place = i - level.domain_begin;
-    const layout::Scale& scale = level.scales[place];
-    const Float4 scaled = without_denormals(product(symmetric_block(scale.root), force[i]));
+    const Float4 own = without_denormals(force[i]);
     force[i] = Float4{};
     if (q <= field_level) {
-      x[level.node_begin + place] += product(symmetric_block(scale.diagonal), scaled);
+      x[level.node_begin + (i - level.domain_begin)] += product(symmetric_block(model.couplings.own[i].element), own);
     }
-    add_couplings(model.couplings, i, field_level, scaled, x);
+    add_couplings(model.couplings, i, field_level, own, x);
   }
 }
 
@@ -38,7 +36,6 @@ void compute_field(const FieldModel& model, const Touched& touched, std::uint32_
   for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
     add_level(model, touched, q, field_level, force, x);
   }
-  scale_back(view, model.roots, field_level, x);
   inverse_transform(view, *model.refinement.lifting, field_level, x);
 }
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "runtime/field_couplings.hpp"
-#include "runtime/scales.hpp"
 #include "runtime/sparse_forces.hpp"
 
 namespace greenloop {
@@ -12,7 +11,6 @@ namespace greenloop {
 struct FieldModel {
   const Refinement& refinement;
   const FieldCouplings& couplings;
-  const Roots& roots;
 };
 
 /// Fast summation (James & Pai 2003, section 5.4) of the two-sided form: the displacement of every node by the forces

@@ -80,7 +80,7 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
         CAPTURE(field_level);
         const Forces forces(view, body, c, random);
         std::vector<Float4> x(view.node_count, splat(1e30F));
-        compute_field({body.refinement, body.couplings, body.roots}, body.touched, field_level, body.force, x.data());
+        compute_field({body.refinement, body.couplings}, body.touched, field_level, body.force, x.data());
         CHECK(all_zero(body.force, view.domain_count));
         for (std::uint32_t q = 0; q < view.levels; ++q) {
           const LevelView& level = view.level[q];

@@ -42,8 +42,8 @@ std::uint64_t count_field_work(const SetCounts& set) noexcept { return 8 * set.c
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level,
                          std::uint64_t blocks) noexcept {
-  return 3 * set.visits + 24 * set.coefficients + 9 * blocks + 9 * model.rows[field_level] + model.nodes +
-         model.transform_work[field_level] + 4 * set.contacts;
+  return 3 * set.visits + 24 * set.coefficients + 9 * blocks + model.nodes + model.transform_work[field_level] +
+         4 * set.contacts;
 }
 
 SetCounts count_set(const ContactSet& set, const Touched& touched, std::uint64_t contacts, const ColumnCost* cost,

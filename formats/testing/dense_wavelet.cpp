@@ -1,6 +1,6 @@
 #include "formats/testing/dense_wavelet.hpp"
 
-#include "formats/field_value.hpp"
+#include "formats/field_block.hpp"
 
 #include <algorithm>
 
@@ -14,28 +14,32 @@ using Eigen::MatrixXd;
 // both halves of the wavelet form
 MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::uint32_t layers) {
   std::vector<Matrix3d> root;
+  std::vector<layout::Scale> scale;
   const Index rows = 3 * wavelet.end(wavelet.levels() - 1);
   MatrixXd form = MatrixXd::Zero(rows, rows);
   for (const LevelData& level : model.levels) {
     const auto first = static_cast<Index>(root.size());
-    for (const layout::Scale& scale : level.scales) {
+    for (const layout::Scale& own : level.scales) {
       const auto i = static_cast<Index>(root.size());
-      root.push_back(symmetric_matrix(scale.root));
-      form.block<3, 3>(3 * i, 3 * i) = root.back() * symmetric_matrix(scale.diagonal) * root.back();
+      root.push_back(symmetric_matrix(own.root));
+      scale.push_back(own);
+      form.block<3, 3>(3 * i, 3 * i) = root.back() * symmetric_matrix(own.diagonal) * root.back();
     }
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
       const CouplingsData& data = level.couplings[layer];
       for (Index j = 0; j + 1 < static_cast<Index>(data.begin.size()); ++j) {
         for (std::size_t b = data.begin[j]; b < data.begin[j + 1]; ++b) {
           const Index i = data.index[b], column = first + j;
-          Matrix3d block;
-          for (Index k = 0; k < 9; ++k) {
-            const std::int16_t value = data.value[9 * b + k];
-            block(k % 3, k / 3) =
-                double{model.info.quantum[layer]} *
-                (layers == layout::field_layers ? double{field_value(value)} : static_cast<double>(value));
+          const auto element = [&](std::uint32_t k) { return data.value[9 * b + k]; };
+          if (layers == layout::field_layers) {
+            float block[9];
+            field_block(scale[i], scale[column], model.info.quantum[layer], element, block);
+            form.block<3, 3>(3 * i, 3 * column) += Eigen::Map<const Eigen::Matrix3f>(block).cast<double>();
+          } else {
+            Matrix3d block;
+            for (std::uint32_t k = 0; k < 9; ++k) block(k % 3, k / 3) = double{model.info.quantum[layer]} * element(k);
+            form.block<3, 3>(3 * i, 3 * column) += root[i] * block * root[column];
           }
-          form.block<3, 3>(3 * i, 3 * column) += root[i] * block * root[column];
           form.block<3, 3>(3 * column, 3 * i) = form.block<3, 3>(3 * i, 3 * column).transpose();
         }
       }

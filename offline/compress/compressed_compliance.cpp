@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "formats/field_value.hpp"
+#include "formats/field_block.hpp"
 #include "offline/compress/scale.hpp"
 
 namespace greenloop::offline {
@@ -35,22 +35,27 @@ std::uint32_t row_at(const CouplingsView& couplings, std::size_t block) {
   return static_cast<const std::uint32_t*>(couplings.index)[block];
 }
 
-void append(const float (&six)[6], std::vector<float>& matrices) {
-  const Eigen::Matrix3f matrix = symmetric_matrix(six).cast<float>();
-  matrices.insert(matrices.end(), matrix.data(), matrix.data() + 9);
+void append(const Eigen::Matrix3d& matrix, std::vector<float>& matrices) {
+  for (int k = 0; k < 9; ++k) matrices.push_back(static_cast<float>(matrix.data()[k]));
 }
 
 }  // namespace
 
 CompressedCompliance::CompressedCompliance(const ModelView& view, std::uint32_t layers) : wavelet_(view) {
+  const bool field = layers == layout::field_layers;
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& at = view.level[level];
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-      append(at.scales[i].root, root_);
-      append(at.scales[i].diagonal, diagonal_);
+      scales_.push_back(at.scales[i]);
+      const Eigen::Matrix3d root = symmetric_matrix(at.scales[i].root),
+                            diagonal = symmetric_matrix(at.scales[i].diagonal);
+      const Eigen::Matrix3d own = root * diagonal * root;
+      append(field ? Eigen::Matrix3d::Identity() : root, root_);
+      append(field ? Eigen::Matrix3d(0.5 * (own + own.transpose())) : diagonal, diagonal_);
     }
   }
   link(load_couplings(view, layers));
+  scales_ = {};
 }
 
 std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(const ModelView& view,
@@ -59,15 +64,20 @@ std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(con
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
       const CouplingsView& couplings = view.level[level].couplings[layer];
-      const float quantum = view.info->quantum[layer];
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-          ends.emplace_back(row_at(couplings, b), view.level[level].domain_begin + j);
-          for (std::size_t k = 0; k < 9; ++k) {
-            const std::int16_t value = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
-            block_.push_back(quantum *
-                             (layers == layout::field_layers ? field_value(value) : static_cast<float>(value)));
+          const Ends own{row_at(couplings, b), view.level[level].domain_begin + j};
+          const auto element = [&](std::uint32_t k) {
+            return value_at(couplings.value, layout::layer[layer].value_bits, b, k);
+          };
+          float value[9];
+          if (layers == layout::field_layers) {
+            field_block(scales_[own.first], scales_[own.second], view.info->quantum[layer], element, value);
+          } else {
+            for (std::uint32_t k = 0; k < 9; ++k) value[k] = view.info->quantum[layer] * static_cast<float>(element(k));
           }
+          block_.insert(block_.end(), value, value + 9);
+          ends.push_back(own);
         }
       }
     }

@@ -15,7 +15,7 @@ namespace greenloop::offline {
 class CompressedCompliance {
  public:
   /// `layers`: how many layers of couplings count, the first ones; with layout::field_layers it is what fields are made
-  /// of, their values those of field_value. The view may go. Memory: about 80 bytes per coupling.
+  /// of, see field_block. The view may go. Memory: about 80 bytes per coupling.
   CompressedCompliance(const ModelView& view, std::uint32_t layers);
 
   [[nodiscard]] std::size_t finest() const { return wavelet_.finest(); }
@@ -42,6 +42,7 @@ class CompressedCompliance {
   void link(const std::vector<Ends>& ends);
 
   LinearWavelet wavelet_;
+  std::vector<layout::Scale> scales_;    // while couplings are loaded
   std::vector<float> root_, diagonal_;   // [coefficient] 9 numbers
   std::vector<float> block_;             // [coupling] 9 numbers
   std::vector<std::size_t> link_begin_;  // [coefficient + 1]

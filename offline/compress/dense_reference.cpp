@@ -3,7 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "formats/field_value.hpp"
+#include "formats/field_block.hpp"
 #include "formats/verify.hpp"
 #include "offline/compress/model_tables.hpp"
 #include "offline/compress/wavelet_compliance.hpp"
@@ -62,35 +62,49 @@ std::size_t row_at(const CouplingsView& couplings, std::size_t block) {
   return static_cast<const std::uint32_t*>(couplings.index)[block];
 }
 
+// the block that a stored one stands for, m/N
+Eigen::Matrix3d unscaled(const layout::Scale& row, const layout::Scale& column, float quantum, const double* element,
+                         bool field) {
+  if (!field) {
+    return static_cast<double>(quantum) * symmetric(row.root) * Eigen::Map<const Eigen::Matrix3d>(element) *
+           symmetric(column.root);
+  }
+  float block[9];
+  field_block(
+      row, column, quantum, [&](std::uint32_t k) { return element[k]; }, block);
+  return Eigen::Map<const Eigen::Matrix3f>(block).cast<double>();
+}
+
 // W U^ W^T
 Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
   const Eigen::Index size = at(view.domain_count);
-  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(size, size), scaled = root;
+  Eigen::MatrixXd form = Eigen::MatrixXd::Zero(size, size);
+  std::vector<layout::Scale> scales;
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& from = view.level[level];
-    for (std::size_t i = 0; i < from.counts->domain_count; ++i) {
-      const Eigen::Index place = at(from.domain_begin + i);
-      root.block<3, 3>(place, place) = symmetric(from.scales[i].root);
-      scaled.block<3, 3>(place, place) = symmetric(from.scales[i].diagonal);
-    }
+    scales.insert(scales.end(), from.scales, from.scales + from.counts->domain_count);
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
       const CouplingsView& couplings = from.couplings[layer];
       for (std::size_t j = 0; j < couplings.columns; ++j) {
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
+          double element[9];
           for (std::size_t k = 0; k < 9; ++k) {
-            const Eigen::Index row = at(row_at(couplings, b)) + static_cast<Eigen::Index>(k % 3);
-            const Eigen::Index column = at(from.domain_begin + j) + static_cast<Eigen::Index>(k / 3);
-            const double value = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
-            const bool rounded = layers == layout::field_layers;
-            scaled(row, column) = scaled(column, row) =
-                static_cast<double>(view.info->quantum[layer]) *
-                (rounded ? static_cast<double>(field_value(static_cast<int>(value))) : value);
+            element[k] = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
           }
+          const std::size_t row = row_at(couplings, b), column = from.domain_begin + j;
+          const Eigen::Matrix3d block =
+              unscaled(scales[row], scales[column], view.info->quantum[layer], element, layers == layout::field_layers);
+          form.block<3, 3>(at(row), at(column)) = block;
+          form.block<3, 3>(at(column), at(row)) = block.transpose();
         }
       }
     }
   }
-  return root * scaled * root;
+  for (std::size_t i = 0; i < scales.size(); ++i) {
+    const Eigen::Matrix3d root = symmetric(scales[i].root);
+    form.block<3, 3>(at(i), at(i)) = root * symmetric(scales[i].diagonal) * root;
+  }
+  return form;
 }
 
 }  // namespace
