@@ -71,7 +71,7 @@ TEST_CASE("every level and every number of layers is the wavelet form evaluated 
         CHECK((found - expected[level]).cwiseAbs().maxCoeff() < 1e-6 * largest);
         CHECK((found - found.transpose()).cwiseAbs().maxCoeff() < 1e-12 * largest);
       }
-      if (before.size() > 0) {
+      if (before.size() > 0 && layers != layout::field_layers + 1) {  // one with all layers is not rounded any more
         const bool changes = (expected[3] - before).norm() > 1e-5 * before.norm();
         CHECK(changes == (couplings_of(file(lifted).view, layers - 1) > 0));
         layers_that_matter += changes ? 1 : 0;

@@ -94,8 +94,8 @@ Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
           const std::size_t row = row_at(couplings, b), column = from.domain_begin + j;
           const Eigen::Matrix3d block =
               unscaled(scales[row], scales[column], view.info->quantum[layer], element, layers == layout::field_layers);
-          form.block<3, 3>(at(row), at(column)) = block;
-          form.block<3, 3>(at(column), at(row)) = block.transpose();
+          form.block<3, 3>(at(row), at(column)) += block;
+          form.block<3, 3>(at(column), at(row)) += block.transpose();
         }
       }
     }
