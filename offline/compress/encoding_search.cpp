@@ -14,7 +14,7 @@ namespace {
 
 // rounding then weighs less than what the threshold drops
 constexpr double quantum_per_threshold = 0.5;
-constexpr int bisections = 7;
+constexpr int bisections = 9;
 constexpr double least_gain = 1.25, most_gain = 2;  // of a coefficient's weight at a time
 
 Encoding encoding_at(double threshold) {

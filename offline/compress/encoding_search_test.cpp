@@ -51,7 +51,7 @@ TEST_CASE("the search finds the largest threshold that meets every accuracy") {
   const auto& patches = bench().sample.patches();
   const auto best = search_encoding(bench().get(), patches, wanted, candidate_floor, trials, {});
   CHECK(best.meets(wanted));
-  CHECK(trials.size() == 8);
+  CHECK(trials.size() == 10);
   for (const auto& trial : trials) {
     if (trial.meets(wanted)) {
       CHECK(trial.bytes >= best.bytes);
