@@ -80,7 +80,8 @@ Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
             const Eigen::Index row = at(row_at(couplings, b)) + static_cast<Eigen::Index>(k % 3);
             const Eigen::Index column = at(from.domain_begin + j) + static_cast<Eigen::Index>(k / 3);
             const double value = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
-            scaled(row, column) = scaled(column, row) = static_cast<double>(view.info->quantum[layer]) * value;
+            scaled(row, column) += static_cast<double>(view.info->quantum[layer]) * value;
+            scaled(column, row) = scaled(row, column);
           }
         }
       }
