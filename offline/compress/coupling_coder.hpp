@@ -5,8 +5,8 @@
 
 namespace greenloop::offline {
 
-/// How couplings are thresholded and quantised. All but the very largest share one quantum; they take as few bits as
-/// hold them.
+/// How couplings are thresholded and quantised. All are right to half a quantum and take as few bits as hold them; what
+/// 16 bits do not hold stands in the first layer, of a coarser quantum, and what is left of it in another one.
 struct Encoding {
   double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
   double quantum = 0;    ///< of scaled values

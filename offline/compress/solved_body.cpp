@@ -79,15 +79,15 @@ Body solve_body(const SemiRegularMesh& surface, const Region& fixed, const Mater
 }
 
 SemiRegularMesh eared_ball(int levels) {
-  return moved(icosphere(levels), [](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+  return moved(octasphere(levels), [](const Eigen::Vector3d& x) -> Eigen::Vector3d {
     const double drawn = std::clamp(2.5 * (x.z() + 0.1), 0.0, 1.0);  // nothing below, a blade from the middle on
     return {x.x() * (1 - 0.92 * drawn), x.y() * (1 - 0.4 * drawn), x.z() < 0 ? x.z() : 2.2 * x.z()};
   });
 }
 
 SemiRegularMesh bowl(int levels) {
-  return moved(icosphere(levels), [](const Eigen::Vector3d& x) -> Eigen::Vector3d {
-    return {x.x(), x.y(), 0.15 * x.z() + 0.3 * (x.x() * x.x() + x.y() * x.y())};
+  return moved(octasphere(levels), [](const Eigen::Vector3d& x) -> Eigen::Vector3d {
+    return {x.x(), x.y(), 0.04 * x.z() + 0.3 * (x.x() * x.x() + x.y() * x.y())};
   });
 }
 
