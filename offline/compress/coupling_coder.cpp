@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace greenloop::offline {
@@ -43,6 +45,11 @@ void choose_quanta(const WaveletCompliance& compliance, double quantum, layout::
   double most = 0;
   for (const auto& level : compliance.couplings) {
     for (const float value : level.value) most = std::max(most, static_cast<double>(std::abs(value)));
+  }
+  if (most > largest_value(0)) {  // a quantum is at most 1
+    throw std::runtime_error("compression: a coupling is " + std::to_string(most) +
+                             " times its coefficients' stiffness, at most " + std::to_string(largest_value(0)) +
+                             " can be stored: the body is too thin for its nodes; thicken it or take fewer levels");
   }
   info.quantum[0] = static_cast<float>(std::max(quantum, most / largest_value(0)));
 }

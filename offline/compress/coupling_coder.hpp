@@ -15,7 +15,8 @@ struct Encoding {
 };
 
 /// Fills in quanta, scales and couplings of every level. `model.levels` must have one entry per level of the
-/// compliance, with its nodes. Work: linear in the candidates.
+/// compliance, with its nodes. Throws std::runtime_error if a scaled value is above 32767. Work: linear in the
+/// candidates.
 void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model);
 
 }  // namespace greenloop::offline

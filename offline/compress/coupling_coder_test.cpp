@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
 
 namespace greenloop::offline {
 namespace {
@@ -215,6 +216,15 @@ TEST_CASE("scales are stored as root and scaled diagonal") {
     CHECK(std::abs(scale.root[k] - root[k]) < 1e-9F);
     CHECK(std::abs(scale.diagonal[k] - diagonal[k]) < 1e-5F);
   }
+}
+
+TEST_CASE("a value beyond what can be stored is refused with the remedy") {
+  auto from = compliance();
+  from.couplings[1].value[9] = -32767;
+  CHECK(encoded(from, {.threshold = 0.001, .quantum = 0.0005}).info.quantum[0] == 1);
+  from.couplings[1].value[9] = -32768;
+  CHECK_THROWS_WITH_AS((void)encoded(from, {.threshold = 0.001, .quantum = 0.0005}), doctest::Contains("too thin"),
+                       std::runtime_error);
 }
 
 }  // namespace

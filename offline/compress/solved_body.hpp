@@ -15,7 +15,7 @@ using Region = std::function<bool(const Eigen::Vector3d&)>;  ///< of positions, 
 /// `surface` closed, m. Throws what tetrahedralize and solve_green_functions throw.
 [[nodiscard]] Body solve_body(const SemiRegularMesh& surface, const Region& fixed, const Material& material);
 
-/// A ball whose upper half is drawn out to a blade: 2 m tall, 1.2 m wide and a tenth of a metre thick, held below.
+/// A ball whose upper half is drawn out to a blade: 2.2 m tall, 1.2 m wide and at most 16 cm thick.
 [[nodiscard]] SemiRegularMesh eared_ball(int levels);
 
 /// A bowl 2 m across and at most 8 cm thick, with a sharp rim.
