@@ -61,7 +61,7 @@ enum class SectionKind : std::uint32_t {
 
 /// Couplings are stored in layers by what needs them and by size. Fields are made of the first four alone; forces need
 /// all; fields round what they take (field_block). The first layer, of a coarser quantum, is for what is too large for
-/// the second. A file has every section, even an empty one.
+/// the second; what is left of it stands in another. A file has every section, even an empty one.
 struct Layer {
   std::uint32_t value_bits;  ///< of one element of a block
   bool field;                ///< part of fields

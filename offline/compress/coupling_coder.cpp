@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace greenloop::offline {
@@ -11,24 +13,30 @@ namespace {
 
 constexpr std::size_t width = 9;
 
-using Block = std::array<std::int16_t, width>;
+using Values = std::array<double, width>;  // of a scaled block
 
 double largest_value(std::uint32_t layer) {
   return std::ldexp(1, static_cast<int>(layout::layer[layer].value_bits) - 1) - 1;
 }
 
-double largest(const float* value) {
-  float most = 0;
-  for (std::size_t k = 0; k < width; ++k) most = std::max(most, std::abs(value[k]));
-  return static_cast<double>(most);
+double largest(const Values& values) {
+  double most = 0;
+  for (const double value : values) most = std::max(most, std::abs(value));
+  return most;
 }
 
-Block quantize(const float* value, double quantum) {
-  Block block;
+// stores the multiples of a layer's quantum nearest to the values, unless all are zero; what is left of the values
+Values add_block(Values values, float quantum, std::uint32_t row, CouplingsData& layer) {
+  std::array<std::int16_t, width> block{};
   for (std::size_t k = 0; k < width; ++k) {
-    block[k] = static_cast<std::int16_t>(std::lround(static_cast<double>(value[k]) / quantum));
+    block[k] = static_cast<std::int16_t>(std::lround(values[k] / static_cast<double>(quantum)));
+    values[k] -= static_cast<double>(quantum) * block[k];
   }
-  return block;
+  if (std::any_of(block.begin(), block.end(), [](std::int16_t q) { return q != 0; })) {
+    layer.index.push_back(row);
+    layer.value.insert(layer.value.end(), block.begin(), block.end());
+  }
+  return values;
 }
 
 // the common quantum; in the first layer one that holds the largest value
@@ -36,15 +44,20 @@ void choose_quanta(const WaveletCompliance& compliance, double quantum, layout::
   std::fill(std::begin(info.quantum), std::end(info.quantum), static_cast<float>(quantum));
   double most = 0;
   for (const auto& level : compliance.couplings) {
-    for (std::size_t b = 0; b < level.row.size(); ++b) most = std::max(most, largest(level.value.data() + width * b));
+    for (const float value : level.value) most = std::max(most, static_cast<double>(std::abs(value)));
+  }
+  if (most > largest_value(0)) {  // a quantum is at most 1
+    throw std::runtime_error("compression: a coupling is " + std::to_string(most) +
+                             " times its coefficients' stiffness, at most " + std::to_string(largest_value(0)) +
+                             " can be stored: the body is too thin for its nodes; thicken it or take fewer levels");
   }
   info.quantum[0] = static_cast<float>(std::max(quantum, most / largest_value(0)));
 }
 
 // the layer of fewest bits that holds a block; the first holds all
-std::uint32_t layer_of(const float* value, const layout::Info& info, bool field) {
+std::uint32_t layer_of(const Values& values, const layout::Info& info, bool field) {
   for (std::uint32_t layer = layout::layers; layer-- > 1;) {
-    const bool fits = largest(value) < (largest_value(layer) + 0.5) * static_cast<double>(info.quantum[layer]);
+    const bool fits = largest(values) < (largest_value(layer) + 0.5) * static_cast<double>(info.quantum[layer]);
     const bool serves = layout::layer[layer].field == field || layout::layer[layer].value_bits == 16;
     if (serves && fits) return layer;
   }
@@ -76,13 +89,15 @@ void encode_couplings(const WaveletCompliance& compliance, const Encoding& encod
       for (std::size_t b = from.begin[j]; b < from.begin[j + 1]; ++b) {
         const auto norm = static_cast<double>(from.norm[b]);
         if (norm < encoding.threshold) continue;
-        const float* value = from.value.data() + width * b;
+        Values values;
+        std::copy_n(from.value.begin() + static_cast<std::ptrdiff_t>(width * b), width, values.begin());
         const bool field = norm >= encoding.field_threshold * sizes[from.row[b]] * sizes[column];
-        const std::uint32_t layer = layer_of(value, model.info, field);
-        const Block block = quantize(value, static_cast<double>(model.info.quantum[layer]));
-        if (std::all_of(block.begin(), block.end(), [](std::int16_t q) { return q == 0; })) continue;
-        to.couplings[layer].index.push_back(from.row[b]);
-        to.couplings[layer].value.insert(to.couplings[layer].value.end(), block.begin(), block.end());
+        std::uint32_t layer = layer_of(values, model.info, field);
+        if (layer == 0) {  // too coarse alone: what is left of the block stands in a finer layer
+          values = add_block(values, model.info.quantum[0], from.row[b], to.couplings[0]);
+          layer = layer_of(values, model.info, field);
+        }
+        (void)add_block(values, model.info.quantum[layer], from.row[b], to.couplings[layer]);
       }
       for (auto& layer : to.couplings) layer.begin.push_back(static_cast<std::uint32_t>(layer.index.size()));
     }

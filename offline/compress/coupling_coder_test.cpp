@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <stdexcept>
 
 namespace greenloop::offline {
 namespace {
@@ -78,21 +79,25 @@ std::size_t check_block(const CouplingCandidates& source, std::size_t b, const L
                         const layout::Info& info, const Encoding& encoding) {
   const float* value = source.value.data() + 9 * b;
   const auto norm = static_cast<double>(source.norm[b]);
+  std::array<double, 9> left{};
+  std::copy_n(value, left.size(), left.begin());
   std::size_t found = absent;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const auto& data = level.couplings[layer];
     const std::size_t at = find(data, j, source.row[b]);
     if (at == absent) continue;
-    CHECK(found == absent);
-    found = layer;
     const auto quantum = static_cast<double>(info.quantum[layer]);
     double most = 0;
     for (std::size_t k = 0; k < 9; ++k) {
       const double q = data.value[9 * at + k];
-      CHECK(std::abs(q * quantum - static_cast<double>(value[k])) <= 0.5000001 * quantum);
+      left[k] -= q * quantum;
+      CHECK(std::abs(left[k]) <= 0.5000001 * quantum);
       most = std::max(most, std::abs(q));
     }
     CHECK(most <= largest_value(layer));
+    if (found == 0) continue;  // this is what is left of a large one
+    CHECK(found == absent);
+    found = layer;
     const bool makes_field = norm >= encoding.field_threshold * own_size * own_size;
     CHECK(layout::layer[layer].field == (makes_field || layout::layer[layer].value_bits > 8));
     const std::uint32_t bits = layout::layer[layer].value_bits;
@@ -100,10 +105,14 @@ std::size_t check_block(const CouplingCandidates& source, std::size_t b, const L
     CHECK(largest(value) >= (too_few + 0.4999) * encoding.quantum);
   }
   CHECK((found == absent) == (norm < encoding.threshold));
+  for (const double value_left : left) {
+    if (found != absent) CHECK(std::abs(value_left) <= 0.5000001 * encoding.quantum);
+  }
   return found;
 }
 
-TEST_CASE("every block above the threshold stands once, in the fewest bits that hold it, within half a quantum") {
+TEST_CASE(
+    "every block above the threshold stands in the fewest bits that hold it, within half a quantum, however large") {
   const auto from = compliance();
   std::array<std::size_t, layout::layers> found{};
   std::size_t dropped = 0;
@@ -207,6 +216,15 @@ TEST_CASE("scales are stored as root and scaled diagonal") {
     CHECK(std::abs(scale.root[k] - root[k]) < 1e-9F);
     CHECK(std::abs(scale.diagonal[k] - diagonal[k]) < 1e-5F);
   }
+}
+
+TEST_CASE("a value beyond what can be stored is refused with the remedy") {
+  auto from = compliance();
+  from.couplings[1].value[9] = -32767;
+  CHECK(encoded(from, {.threshold = 0.001, .quantum = 0.0005}).info.quantum[0] == 1);
+  from.couplings[1].value[9] = -32768;
+  CHECK_THROWS_WITH_AS((void)encoded(from, {.threshold = 0.001, .quantum = 0.0005}), doctest::Contains("too thin"),
+                       std::runtime_error);
 }
 
 }  // namespace

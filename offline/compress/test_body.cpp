@@ -101,6 +101,11 @@ SemiRegularMesh icosphere(int levels) {
   return refine(std::move(positions), base, levels, true);
 }
 
+SemiRegularMesh octasphere(int levels) {
+  return refine({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+                {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}, levels, true);
+}
+
 SemiRegularMesh blob(int levels) {
   auto mesh = icosphere(levels);
   for (auto& position : mesh.positions) position *= blob_radius(position);

@@ -11,7 +11,10 @@ namespace greenloop::offline::test {
 /// An icosahedron split `levels` times and projected onto the unit sphere.
 [[nodiscard]] SemiRegularMesh icosphere(int levels);
 
-/// The same connectivity on a lobed blob about 1.5 m across.
+/// An octahedron split `levels` times and projected onto the unit sphere.
+[[nodiscard]] SemiRegularMesh octasphere(int levels);
+
+/// The icosphere's connectivity on a lobed blob about 1.5 m across.
 [[nodiscard]] SemiRegularMesh blob(int levels);
 
 /// A flat unit square of two triangles split `levels` times; it has a border.

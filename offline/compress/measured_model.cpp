@@ -1,0 +1,36 @@
+#include "offline/compress/measured_model.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "offline/compress/certificate.hpp"
+#include "offline/compress/contact_patches.hpp"
+#include "offline/compress/dense_reference.hpp"
+#include "offline/compress/exact_sample.hpp"
+
+namespace greenloop::offline::test {
+
+MeasuredModel measure_model(const Body& body) {
+  MeasuredModel result;
+  result.built = build_model({body.mesh,
+                              body.flags,
+                              body.area,
+                              body.column_nodes,
+                              columns_of(body.compliance),
+                              default_accuracy,
+                              true,
+                              facts(),
+                              "{}",
+                              {}},
+                             {});
+  const File file(result.built.model);
+  const CompressedCompliance compressed(file.view, layout::layers);
+  ContactPatches patches(row_positions(body.mesh, compressed.wavelet(), compressed.finest()),
+                         ExactSample::most_patches);
+  patches.add(body.compliance, 0);
+  result.patch_force = patches.worst_force_error(compressed, compressed.finest());
+  result.certified = check_certificate(compressed, file.view.info->lambda_min, {}).holds;
+  result.definite = dense_compliances(file.view, layout::layers).back().llt().info() == Eigen::Success;
+  return result;
+}
+
+}  // namespace greenloop::offline::test
