@@ -85,40 +85,6 @@ Bytes encode_values(const CouplingsData& data, const std::string& what) {
   }
 }
 
-Bytes encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows, bool dense,
-                       const std::string& name) {
-  require_size(name + ".begin", data.begin.size(), columns + std::size_t{1});
-  require(data.value_bits == 4 || data.value_bits == 8 || data.value_bits == 16,
-          fmt::format("{}.value_bits = {}, expected 4, 8 or 16", name, data.value_bits));
-  const std::size_t blocks = data.begin.back();
-  require_size(name + ".index", data.index.size(), dense ? 0 : blocks);
-  require_size(name + ".value", data.value.size(), 9 * blocks);
-
-  CouplingsHeader header{};
-  header.columns = columns;
-  header.rows = rows;
-  header.value_bits = data.value_bits;
-  header.index_bytes = dense ? 0 : rows <= 65536 ? 2 : 4;
-  header.block_count = blocks;
-  header.quantum = data.quantum;
-
-  Bytes bytes(sizeof(CouplingsHeader));
-  header.begin_offset = bytes.size();
-  append(bytes, bytes_of(data.begin));
-  pad(bytes);
-  if (header.index_bytes != 0) {
-    header.index_offset = bytes.size();
-    append(bytes,
-           header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));
-    pad(bytes);
-  }
-  header.value_offset = bytes.size();
-  append(bytes, encode_values(data, name + ".value"));
-  bytes.resize(bytes.size() + tail_bytes);
-  std::memcpy(bytes.data(), &header, sizeof(header));
-  return bytes;
-}
-
 struct SectionBytes {
   SectionEntry entry{};
   Bytes bytes;
@@ -281,6 +247,40 @@ ModelView require_valid(const AlignedBytes& file) {
 }
 
 }  // namespace
+
+std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows,
+                                        bool dense, const std::string& name) {
+  require_size(name + ".begin", data.begin.size(), columns + std::size_t{1});
+  require(data.value_bits == 4 || data.value_bits == 8 || data.value_bits == 16,
+          fmt::format("{}.value_bits = {}, expected 4, 8 or 16", name, data.value_bits));
+  const std::size_t blocks = data.begin.back();
+  require_size(name + ".index", data.index.size(), dense ? 0 : blocks);
+  require_size(name + ".value", data.value.size(), 9 * blocks);
+
+  CouplingsHeader header{};
+  header.columns = columns;
+  header.rows = rows;
+  header.value_bits = data.value_bits;
+  header.index_bytes = dense ? 0 : rows <= 65536 ? 2 : 4;
+  header.block_count = blocks;
+  header.quantum = data.quantum;
+
+  Bytes bytes(sizeof(CouplingsHeader));
+  header.begin_offset = bytes.size();
+  append(bytes, bytes_of(data.begin));
+  pad(bytes);
+  if (header.index_bytes != 0) {
+    header.index_offset = bytes.size();
+    append(bytes,
+           header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));
+    pad(bytes);
+  }
+  header.value_offset = bytes.size();
+  append(bytes, encode_values(data, name + ".value"));
+  bytes.resize(bytes.size() + tail_bytes);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  return bytes;
+}
 
 std::vector<std::byte> encode(const ModelData& model) {
   require(!model.levels.empty() && model.levels.size() <= layout::max_levels,
