@@ -8,6 +8,8 @@ namespace {
 
 constexpr std::uint32_t longest_average = 400;
 constexpr std::int32_t largest_logit = 2047;
+constexpr std::int32_t largest_weight = 1 << 22;
+constexpr std::int32_t one = 256;  // the logit that always speaks
 
 // 65536 / (n + 1.5)
 constexpr auto rates = [] {
@@ -41,6 +43,10 @@ constexpr auto stretched = [] {
   return table;
 }();
 
+void move(std::int32_t& weight, std::int32_t gradient) {
+  weight = std::clamp(weight + gradient / (1 << 17), -largest_weight, largest_weight);
+}
+
 }  // namespace
 
 void AdaptiveBit::learn(bool bit) {
@@ -63,32 +69,39 @@ std::uint32_t squash(std::int32_t logit) {
                    : squashed[static_cast<std::size_t>(std::min(logit, largest_logit))];
 }
 
-MixedBit::MixedBit(std::span<const std::uint32_t> sizes, std::uint32_t selectors) : logits_(sizes.size() + 1, 256) {
-  std::uint32_t size = 0;
-  for (const std::uint32_t contexts : sizes) {
+MixedBits::MixedBits(std::span<const std::uint32_t> sizes, std::uint32_t selectors, std::uint32_t decisions)
+    : decisions_(decisions) {
+  std::size_t size = 0;
+  for (const std::uint32_t values : sizes) {
     begin_.push_back(size);
-    size += contexts;
+    size += std::size_t{values} * decisions;
   }
   bits_.resize(size);
-  weights_.assign(selectors * logits_.size(), static_cast<std::int32_t>(65536 * 2 / (sizes.size() + 3)));
-  for (std::size_t k = logits_.size() - 1; k < weights_.size(); k += logits_.size()) weights_[k] = 0;
+  Weights equal{};
+  equal.of_context.fill(static_cast<std::int32_t>(65536 * 2 / (sizes.size() + 3)));
+  weights_.assign(std::size_t{selectors} * decisions, equal);
 }
 
-bool MixedBit::code(BitCoder& coder, bool bit, std::span<const std::uint32_t> contexts, std::uint32_t selector) {
-  std::int32_t* const weight = &weights_[selector * logits_.size()];
-  std::int64_t sum = 0;
-  for (std::size_t k = 0; k < logits_.size(); ++k) {
-    if (k < contexts.size()) logits_[k] = stretch(bits_[begin_[k] + contexts[k]].probability());
-    sum += std::int64_t{weight[k]} * logits_[k];
+bool MixedBits::code(BitCoder& coder, bool bit, std::span<const std::uint32_t> contexts, std::uint32_t selector,
+                     std::uint32_t decision) {
+  Weights& weights = weights_[std::size_t{selector} * decisions_ + decision];
+  std::array<AdaptiveBit*, most_contexts> bits;
+  std::array<std::int32_t, most_contexts> logits;
+  std::int64_t sum = std::int64_t{weights.of_one} * one;
+  for (std::size_t k = 0; k < contexts.size(); ++k) {
+    bits[k] = &bits_[begin_[k] + std::size_t{contexts[k]} * decisions_ + decision];
+    logits[k] = stretch(bits[k]->probability());
+    sum += std::int64_t{weights.of_context[k]} * logits[k];
   }
   const std::uint32_t probability =
       squash(static_cast<std::int32_t>(std::clamp<std::int64_t>(sum / 65536, -largest_logit, largest_logit)));
   bit = coder.code(bit, probability);
   const std::int32_t error = (bit ? 65536 : 0) - static_cast<std::int32_t>(probability);
-  for (std::size_t k = 0; k < logits_.size(); ++k) {
-    weight[k] += logits_[k] * error / (1 << 17);
-    if (k < contexts.size()) bits_[begin_[k] + contexts[k]].learn(bit);
+  for (std::size_t k = 0; k < contexts.size(); ++k) {
+    move(weights.of_context[k], logits[k] * error);
+    bits[k]->learn(bit);
   }
+  move(weights.of_one, one * error);
   return bit;
 }
 

@@ -3,6 +3,7 @@
 // Probabilities that learn, and their mixture in the logistic domain (Mahoney 2005, "Adaptive weighing of context
 // models for lossless data compression"). Integer arithmetic only, so that writer and reader agree on every machine.
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -33,21 +34,29 @@ class AdaptiveBit {
 /// The inverse; 16 .. 65520 or so, argument clamped to -2047 .. 2047.
 [[nodiscard]] std::uint32_t squash(std::int32_t logit);
 
-/// One kind of decision, predicted from several contexts at once. Each context has its own table of probabilities; what
-/// they say is weighed by weights that learn which context knows best.
-class MixedBit {
+/// Decisions predicted from several contexts at once. Each context has its own table of probabilities; what they say is
+/// weighed by weights that learn which context knows best.
+class MixedBits {
  public:
-  /// sizes[k]: number of values of context k. `selectors`: number of sets of weights.
-  MixedBit(std::span<const std::uint32_t> sizes, std::uint32_t selectors);
+  static constexpr std::size_t most_contexts = 8;
 
-  /// contexts[k] < sizes[k], selector < selectors.
-  bool code(BitCoder& coder, bool bit, std::span<const std::uint32_t> contexts, std::uint32_t selector);
+  /// sizes[k]: number of values of context k, of at most most_contexts. `selectors`: sets of weights. `decisions`:
+  /// kinds of decisions, each with tables and weights of its own.
+  MixedBits(std::span<const std::uint32_t> sizes, std::uint32_t selectors, std::uint32_t decisions = 1);
+
+  /// contexts[k] < sizes[k], selector < selectors, decision < decisions.
+  bool code(BitCoder& coder, bool bit, std::span<const std::uint32_t> contexts, std::uint32_t selector,
+            std::uint32_t decision = 0);
 
  private:
-  std::vector<std::uint32_t> begin_;  // of each context's table
-  std::vector<AdaptiveBit> bits_;
-  std::vector<std::int32_t> weights_;  // [selectors][contexts + 1], in 1/65536; the last one of a constant
-  std::vector<std::int32_t> logits_;
+  struct Weights {
+    std::array<std::int32_t, most_contexts> of_context;  // in 1/65536
+    std::int32_t of_one;
+  };
+  std::uint32_t decisions_;
+  std::vector<std::size_t> begin_;  // of each context's table
+  std::vector<AdaptiveBit> bits_;   // per context [value][decision]
+  std::vector<Weights> weights_;    // [selector][decision]
 };
 
 }  // namespace greenloop::transport

@@ -53,12 +53,12 @@ std::uint64_t AdaptiveInteger::code(BitCoder& coder, std::uint64_t value, std::u
 }
 
 MixedInteger::MixedInteger(std::span<const std::uint32_t> sizes, std::uint32_t selectors)
-    : decisions_(2 + one_by_one + longest_rest, MixedBit(sizes, selectors)) {}
+    : decisions_(sizes, selectors, 2 + one_by_one + longest_rest) {}
 
 std::int32_t MixedInteger::code(BitCoder& coder, std::int32_t value, std::span<const std::uint32_t> contexts,
                                 std::uint32_t selector) {
-  auto decide = [&](std::size_t decision, bool bit) {
-    return decisions_[decision].code(coder, bit, contexts, selector);
+  auto decide = [&](std::uint32_t decision, bool bit) {
+    return decisions_.code(coder, bit, contexts, selector, decision);
   };
   if (!decide(0, value != 0)) return 0;
   const bool negative = decide(1, value < 0);

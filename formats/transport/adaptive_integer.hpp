@@ -38,12 +38,12 @@ class MixedInteger {
  public:
   MixedInteger(std::span<const std::uint32_t> sizes, std::uint32_t selectors);
 
-  /// As MixedBit::code. Throws DamagedPacket if the magnitude read is larger than any that is written.
+  /// As MixedBits::code. Throws DamagedPacket if the magnitude read is larger than any that is written.
   std::int32_t code(BitCoder& coder, std::int32_t value, std::span<const std::uint32_t> contexts,
                     std::uint32_t selector);
 
  private:
-  std::vector<MixedBit> decisions_;
+  MixedBits decisions_;
 };
 
 }  // namespace greenloop::transport

@@ -83,8 +83,8 @@ class CouplingsModel {
   std::array<std::uint32_t, 9> typical_error_;                     // of each element, in 1/256
   std::uint32_t error_so_far_ = 0;                                 // in this block, in 1/256
 
-  MixedBit presence_;
-  std::vector<MixedBit> layers_;
+  MixedBits presence_;
+  MixedBits layers_;
   MixedInteger values_;
 };
 
@@ -113,7 +113,7 @@ CouplingsModel::CouplingsModel(BitCoder& coder, CouplingBlocks& couplings, std::
       above_(rows.size()),
       row_predictors_(3 * rows.size()),
       presence_(presence_contexts(couplings.rows), classes),
-      layers_(couplings.bits.size() - 1, MixedBit(layer_contexts(couplings.rows), 1)),
+      layers_(layer_contexts(couplings.rows), 1, most_layers),
       values_(value_contexts(), 9 * most_layers) {
   for (auto& column : beside_) column.resize(rows.size());
   typical_error_.fill(4 * 256);
@@ -187,7 +187,7 @@ void CouplingsModel::code_layer(std::uint32_t row, CouplingBlock& block) {
   };
   const std::array contexts{triple(left_[0], left_[1], left_[2]), triple(up_[0], up_[1], left_[0]), expected_, row};
   std::uint32_t coded = 0;
-  while (coded < layers_.size() && layers_[coded].code(coder_, block.layer != coded, contexts, 0)) ++coded;
+  while (coded + 1 < couplings_.bits.size() && layers_.code(coder_, block.layer != coded, contexts, 0, coded)) ++coded;
   block.layer = coded;
 }
 

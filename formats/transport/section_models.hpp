@@ -23,7 +23,7 @@ class ByteModel {
   void code(BitCoder& coder, std::span<std::byte> bytes);
 
  private:
-  MixedBit bits_;
+  MixedBits bits_;
 };
 
 /// Words of records with `fields` words each, by their difference from a prediction in the order of floating-point
