@@ -79,7 +79,7 @@ struct StreamResult {
 struct UnpackedModel {
   std::vector<std::byte> model;     ///< a whole, verified model file; empty if there is none
   std::uint32_t levels = 0;         ///< mesh levels in it
-  std::uint32_t stream_levels = 0;  ///< of the model that was packed
+  std::uint32_t stream_levels = 0;  ///< of the model that was packed; 0 if the stream's header is not right
 };
 
 inline constexpr std::uint32_t all_levels = 0xffffffff;

@@ -71,8 +71,8 @@ bool StreamReader::take(Header& header) {
 }
 
 bool StreamReader::read_header() {
-  const std::size_t seen = std::min(stream_.size(), sizeof(magic));
-  if (std::memcmp(stream_.data(), magic, seen) != 0) return refuse(StreamRule::bad_magic, 0, "magic", 0, 0);
+  const auto seen = std::as_bytes(std::span(magic)).first(std::min(stream_.size(), sizeof(magic)));
+  if (!std::equal(seen.begin(), seen.end(), stream_.begin())) return refuse(StreamRule::bad_magic, 0, "magic", 0, 0);
   return take(header_) &&
          require(header_.major == version_major, StreamRule::unsupported_version, offsetof(StreamHeader, major),
                  "major", header_.major, version_major) &&
@@ -168,6 +168,7 @@ StreamResult unpack(std::span<const std::byte> stream, UnpackedModel& unpacked, 
   unpacked = {};
   StreamReader reader(stream, result);
   if (!reader.read_header()) return result;
+  unpacked.stream_levels = reader.header().levels;
   const std::uint32_t wanted = std::min<std::uint32_t>(levels, reader.header().levels);
   while (reader.packets() < wanted && reader.read_packet()) continue;
   if (result.ok() && levels >= reader.header().levels && !reader.finish()) return result;
@@ -176,7 +177,6 @@ StreamResult unpack(std::span<const std::byte> stream, UnpackedModel& unpacked, 
   const AlignedBytes model(reader.model());
   ModelView view;
   const VerifyResult verdict = verify(model.span(), view);
-  unpacked.stream_levels = reader.header().levels;
   if (verdict.ok()) {
     unpacked.model.assign(model.span().begin(), model.span().end());
     unpacked.levels = reader.packets();
