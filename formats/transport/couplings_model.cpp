@@ -4,7 +4,6 @@
 #include <cstdlib>
 #include <utility>
 
-#include "formats/transport/adaptive_integer.hpp"
 #include "formats/transport/linear_predictor.hpp"
 
 namespace greenloop::transport {
@@ -33,16 +32,14 @@ std::uint32_t signed_class(std::int64_t value) {
   return value < 0 ? 15 - size : 15 + size;
 }
 
-// 0: 0; 1: 1; 2: 2, 3; 3: more
-std::uint32_t coarse_class(std::int32_t value) {
-  const std::int32_t size = std::abs(value);
-  return size < 2 ? static_cast<std::uint32_t>(size) : size < 4 ? 2 : 3;
-}
+// of an error in 1/256, two a doubling from 1/16 on
+constexpr std::uint32_t size_steps = 24;
+std::uint32_t size_step(std::uint32_t error) { return std::min(half_octave(error / 16), size_steps - 1); }
 
 class CouplingsModel {
  public:
-  CouplingsModel(BitCoder& coder, CouplingBlocks& couplings, std::span<const GridPoint> columns,
-                 std::span<const GridPoint> rows);
+  CouplingsModel(BitCoder& coder, CouplingStatistics& statistics, CouplingBlocks& couplings,
+                 std::span<const GridPoint> columns, std::span<const GridPoint> rows);
   void code();
 
  private:
@@ -59,6 +56,7 @@ class CouplingsModel {
 
   [[nodiscard]] std::uint32_t size(std::uint32_t seen) const;
   [[nodiscard]] std::uint32_t layer(std::uint32_t seen) const;  // 0: none
+  [[nodiscard]] std::uint32_t error_around() const;
   [[nodiscard]] std::int32_t value(std::uint32_t seen, std::size_t element) const;
 
   BitCoder& coder_;
@@ -67,6 +65,7 @@ class CouplingsModel {
   std::vector<Neighbours> column_neighbours_, row_neighbours_;
   std::vector<CouplingBlock> blocks_;  // those coded so far
   std::vector<std::uint32_t> sizes_;   // sums of magnitudes of their values
+  std::vector<std::uint32_t> errors_;  // mean errors of the predictions of their values, in 1/256
 
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> seen_from_;  // per column: row, block
   std::array<std::vector<std::uint32_t>, neighbour_count> beside_;               // per neighbour of the column: by row
@@ -82,27 +81,25 @@ class CouplingsModel {
   std::vector<LinearPredictor<column_inputs>> column_predictors_;  // [3], of the column at hand
   std::array<std::uint32_t, 9> typical_error_;                     // of each element, in 1/256
   std::uint32_t error_so_far_ = 0;                                 // in this block, in 1/256
+  std::uint32_t error_around_ = 0;                                 // of a value in neighbouring blocks, in 1/256
 
   MixedBits presence_;
   MixedBits layers_;
-  MixedInteger values_;
+  MixedInteger& values_;
 };
 
 constexpr std::uint32_t classes = 8;
 constexpr std::uint32_t distances = 160;
 
-std::array<std::uint32_t, 8> presence_contexts(std::uint32_t rows) {
-  return {512, 512, distances * classes, 64, rows, 64 * classes, 512, distances * classes};
-}
+std::array<std::uint32_t, 4> presence_contexts(std::uint32_t rows) { return {512, 512, distances * classes, rows}; }
 std::array<std::uint32_t, 4> layer_contexts(std::uint32_t rows) { return {729, 729, 64, rows}; }
-std::array<std::uint32_t, 8> value_contexts() {
-  constexpr std::uint32_t element = 9 * most_layers;
-  constexpr std::uint32_t two = 9 * signed_classes * signed_classes;
-  return {element * 64, element * signed_classes, two, element * 64 * 4, two, two, element * 64, element * 256};
+std::array<std::uint32_t, 4> value_contexts() {
+  constexpr std::uint32_t places = 9 * most_layers;
+  return {places * 64, places * size_steps * size_steps, places * signed_classes * size_steps, places * 64 * 4};
 }
 
-CouplingsModel::CouplingsModel(BitCoder& coder, CouplingBlocks& couplings, std::span<const GridPoint> columns,
-                               std::span<const GridPoint> rows)
+CouplingsModel::CouplingsModel(BitCoder& coder, CouplingStatistics& statistics, CouplingBlocks& couplings,
+                               std::span<const GridPoint> columns, std::span<const GridPoint> rows)
     : coder_(coder),
       couplings_(couplings),
       column_points_(columns),
@@ -114,7 +111,7 @@ CouplingsModel::CouplingsModel(BitCoder& coder, CouplingBlocks& couplings, std::
       row_predictors_(3 * rows.size()),
       presence_(presence_contexts(couplings.rows), classes),
       layers_(layer_contexts(couplings.rows), 1, most_layers),
-      values_(value_contexts(), 9 * most_layers) {
+      values_(statistics.values) {
   for (auto& column : beside_) column.resize(rows.size());
   typical_error_.fill(4 * 256);
 }
@@ -175,9 +172,8 @@ bool CouplingsModel::code_presence(std::uint32_t row, bool present) {
   const auto [l0, l1, l2] = left_class_;
   const auto [u0, u1, u2] = up_class_;
   const std::uint32_t distance = quarter_octave(squared_distance(column_points_[column_], row_points_[row]));
-  const std::array contexts{
-      (l0 * classes + l1) * classes + l2, (u0 * classes + u1) * classes + u2, distance * classes + l0, expected_, row,
-      expected_ * classes + l0,           (u0 * classes + l0) * classes + l1, distance * classes + u0};
+  const std::array contexts{(l0 * classes + l1) * classes + l2, (u0 * classes + u1) * classes + u2,
+                            distance * classes + l0, row};
   return presence_.code(coder_, present, contexts, l0);
 }
 
@@ -193,6 +189,7 @@ void CouplingsModel::code_layer(std::uint32_t row, CouplingBlock& block) {
 
 void CouplingsModel::code_values(std::uint32_t row, CouplingBlock& block) {
   error_so_far_ = 0;
+  error_around_ = error_around();
   for (std::size_t element = 0; element < 9; ++element) {
     block.value[element] = static_cast<std::int16_t>(code_value(row, block, element, block.value[element]));
   }
@@ -224,23 +221,12 @@ std::int32_t CouplingsModel::code_value(std::uint32_t row, const CouplingBlock& 
 
   const std::uint32_t place = block.layer * 9 + static_cast<std::uint32_t>(element);
   const auto e = static_cast<std::uint32_t>(element);
-  const auto pair = [&](std::int64_t a, std::int64_t b) {
-    return (e * signed_classes + signed_class(a)) * signed_classes + signed_class(b);
-  };
-  std::uint32_t squares = 0;
-  for (std::size_t k = 0; k < element; ++k) squares += static_cast<std::uint32_t>(block.value[k] * block.value[k]);
-  const std::uint32_t before = coarse_class(element > 0 ? block.value[element - 1] : 0) +
-                               4 * coarse_class(element > 2 ? block.value[element - 3] : 0) +
-                               16 * coarse_class(mirror < element ? block.value[mirror] : 0) +
-                               64 * coarse_class(element > 1 ? block.value[element - 2] : 0);
-  const std::array contexts{place * 64 + fine_class((error_so_far_ / (e + 1) + typical_error_[element] / 4) / 16),
-                            place * signed_classes + signed_class(exact),
-                            pair(256 * left[0], exact),
-                            (place * 64 + expected_) * 4 + fraction,
-                            pair(mirror < element ? 256 * block.value[mirror] : 0, exact),
-                            pair(element > 0 ? 256 * block.value[element - 1] : 0, exact),
-                            place * 64 + fine_class(squares),
-                            place * 256 + before};
+  const std::uint32_t in_block = (error_so_far_ + typical_error_[element]) / (e + 1);
+  const std::uint32_t around = size_step(error_around_);
+  const std::array contexts{place * 64 + fine_class((error_so_far_ + error_around_) / (e + 2) / 8),
+                            (place * size_steps + size_step(in_block)) * size_steps + around,
+                            (place * signed_classes + signed_class(exact)) * size_steps + around,
+                            (place * 64 + expected_) * 4 + fraction};
   const auto error = static_cast<std::int32_t>(value_given - rounded);
   const std::int64_t coded = rounded + values_.code(coder_, error, contexts, place);
   if (coded < -largest || coded > largest) throw DamagedPacket("a value that does not fit in its layer");
@@ -260,6 +246,7 @@ void CouplingsModel::remember(std::uint32_t row, std::uint32_t block, const Coup
   for (const std::int16_t element : values.value) sum += static_cast<std::uint32_t>(std::abs(element));
   blocks_.push_back(values);
   sizes_.push_back(sum);
+  errors_.push_back(error_so_far_ / 9);
   above_[row] = as_stored(block);
   seen_from_[column_].emplace_back(row, as_stored(block));
   if (couplings_.triangular) seen_from_[row].emplace_back(column_, transposed(block));
@@ -273,6 +260,19 @@ std::uint32_t CouplingsModel::layer(std::uint32_t seen) const {
   return seen == no_block ? 0 : seen == own_block ? 1 : 1 + blocks_[seen / 2].layer;
 }
 
+std::uint32_t CouplingsModel::error_around() const {
+  constexpr std::array<std::uint32_t, 4> weights{4, 2, 1, 1};
+  std::uint32_t sum = 0, weight = 0;
+  for (const auto* side : {&left_, &up_}) {
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if ((*side)[k] == no_block || (*side)[k] == own_block) continue;
+      sum += weights[k] * errors_[(*side)[k] / 2];
+      weight += weights[k];
+    }
+  }
+  return weight == 0 ? 256 : sum / weight;
+}
+
 std::int32_t CouplingsModel::value(std::uint32_t seen, std::size_t element) const {
   if (seen == no_block || seen == own_block) return 0;
   return blocks_[seen / 2].value[seen % 2 == 0 ? element : 3 * (element % 3) + element / 3];
@@ -280,9 +280,11 @@ std::int32_t CouplingsModel::value(std::uint32_t seen, std::size_t element) cons
 
 }  // namespace
 
-void code_couplings(BitCoder& coder, CouplingBlocks& couplings, std::span<const GridPoint> columns,
-                    std::span<const GridPoint> rows) {
-  CouplingsModel(coder, couplings, columns, rows).code();
+CouplingStatistics::CouplingStatistics() : values(value_contexts(), 9 * most_layers) {}
+
+void code_couplings(BitCoder& coder, CouplingStatistics& statistics, CouplingBlocks& couplings,
+                    std::span<const GridPoint> columns, std::span<const GridPoint> rows) {
+  CouplingsModel(coder, statistics, couplings, columns, rows).code();
 }
 
 }  // namespace greenloop::transport

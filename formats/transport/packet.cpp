@@ -162,7 +162,7 @@ void PacketModel::code_couplings_of(BitCoder& coder, std::uint32_t q, std::uint3
         static_cast<std::uint32_t>(coder.code_plain(std::bit_cast<std::uint32_t>(layer.quantum), 32)));
     joined->bits[k] = layer.value_bits;
   }
-  code_couplings(coder, *joined, columns, rows);
+  code_couplings(coder, couplings_, *joined, columns, rows);
   if (model != nullptr) return;
   try {
     if (!reproduces(*joined, data, layers, true)) throw DamagedPacket("couplings of another length than announced");

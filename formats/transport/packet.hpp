@@ -8,6 +8,7 @@
 
 #include "formats/layout.hpp"
 #include "formats/transport/adaptive_integer.hpp"
+#include "formats/transport/couplings_model.hpp"
 #include "formats/transport/range_coder.hpp"
 #include "formats/transport/section_models.hpp"
 #include "formats/view.hpp"
@@ -45,6 +46,7 @@ class PacketModel {
   AdaptiveInteger table_{8};
   ByteModel bytes_;
   MeshModel mesh_;
+  CouplingStatistics couplings_;
 };
 
 /// Checksum of what a packet decodes to: of the table's entries, then of the sections' bytes.
