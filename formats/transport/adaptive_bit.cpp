@@ -44,7 +44,7 @@ constexpr auto stretched = [] {
 }();
 
 void move(std::int32_t& weight, std::int32_t gradient) {
-  weight = std::clamp(weight + gradient / (1 << 17), -largest_weight, largest_weight);
+  weight = std::clamp(weight + gradient / (1 << 16), -largest_weight, largest_weight);
 }
 
 }  // namespace

@@ -92,9 +92,11 @@ constexpr std::uint32_t classes = 8;
 constexpr std::uint32_t distances = 160;
 
 std::array<std::uint32_t, 4> presence_contexts(std::uint32_t rows) { return {512, 512, distances * classes, rows}; }
-std::array<std::uint32_t, 4> layer_contexts(std::uint32_t rows) { return {729, 729, 64, rows}; }
+constexpr std::uint32_t layer_classes = layout::strengths + 1;
+constexpr std::uint32_t layer_triples = layer_classes * layer_classes * layer_classes;
+std::array<std::uint32_t, 4> layer_contexts(std::uint32_t rows) { return {layer_triples, layer_triples, 64, rows}; }
 std::array<std::uint32_t, 4> value_contexts() {
-  constexpr std::uint32_t places = 9 * most_layers;
+  constexpr std::uint32_t places = 9 * layout::strengths;
   return {places * 64, places * size_steps * size_steps, places * signed_classes * size_steps, places * 64 * 4};
 }
 
@@ -110,7 +112,7 @@ CouplingsModel::CouplingsModel(BitCoder& coder, CouplingStatistics& statistics, 
       above_(rows.size()),
       row_predictors_(3 * rows.size()),
       presence_(presence_contexts(couplings.rows), classes),
-      layers_(layer_contexts(couplings.rows), 1, most_layers),
+      layers_(layer_contexts(couplings.rows), 1, layout::strengths),
       values_(statistics.values) {
   for (auto& column : beside_) column.resize(rows.size());
   typical_error_.fill(4 * 256);
@@ -179,7 +181,7 @@ bool CouplingsModel::code_presence(std::uint32_t row, bool present) {
 
 void CouplingsModel::code_layer(std::uint32_t row, CouplingBlock& block) {
   const auto triple = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    return (layer(a) * 9 + layer(b)) * 9 + layer(c);
+    return (layer(a) * layer_classes + layer(b)) * layer_classes + layer(c);
   };
   const std::array contexts{triple(left_[0], left_[1], left_[2]), triple(up_[0], up_[1], left_[0]), expected_, row};
   std::uint32_t coded = 0;
@@ -280,7 +282,7 @@ std::int32_t CouplingsModel::value(std::uint32_t seen, std::size_t element) cons
 
 }  // namespace
 
-CouplingStatistics::CouplingStatistics() : values(value_contexts(), 9 * most_layers) {}
+CouplingStatistics::CouplingStatistics() : values(value_contexts(), 9 * layout::strengths) {}
 
 void code_couplings(BitCoder& coder, CouplingStatistics& statistics, CouplingBlocks& couplings,
                     std::span<const GridPoint> columns, std::span<const GridPoint> rows) {

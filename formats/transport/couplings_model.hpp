@@ -9,9 +9,6 @@
 
 namespace greenloop::transport {
 
-/// Layers that can be joined.
-inline constexpr std::uint32_t most_layers = 8;
-
 /// What the values of couplings are like: learned on one level and partner, of use on the next.
 struct CouplingStatistics {
   CouplingStatistics();
@@ -19,9 +16,9 @@ struct CouplingStatistics {
 };
 
 /// Codes `begin` and `blocks` of `couplings`; what else it says both sides know. Whether a block is stored, in which
-/// of at most `most_layers` layers, and its nine values are predicted from the blocks of neighbouring columns and rows
-/// coded before. `columns` and `rows`: where the coefficients are, one point each. A decoder throws DamagedPacket if it
-/// reads a value that does not fit in its layer. Work: columns times rows, and some hundred operations a value.
+/// of at most layout::strengths layers, and its nine values are predicted from the blocks of neighbouring columns and
+/// rows coded before. `columns` and `rows`: where the coefficients are, one point each. A decoder throws DamagedPacket
+/// if it reads a value that does not fit in its layer. Work: columns times rows, and some hundred operations a value.
 void code_couplings(BitCoder& coder, CouplingStatistics& statistics, CouplingBlocks& couplings,
                     std::span<const GridPoint> columns, std::span<const GridPoint> rows);
 

@@ -146,13 +146,13 @@ void PacketModel::code_couplings_of(BitCoder& coder, std::uint32_t q, std::uint3
       data[k] = read_couplings(model->level[q].couplings[partner][layers[k]->entry.b % layout::strengths]);
     }
     joined = join_layers(known, data);
-    if (joined && (layers.size() > most_layers || !reproduces(*joined, data, layers, false))) joined.reset();
+    if (joined && (layers.size() > layout::strengths || !reproduces(*joined, data, layers, false))) joined.reset();
   }
   if (coder.code_plain(joined.has_value() ? 1 : 0, 1) == 0) {
     for (PacketSection* const section : layers) bytes_.code(coder, section->bytes);
     return;
   }
-  if (layers.size() > most_layers) throw DamagedPacket("more layers of couplings than are joined");
+  if (layers.size() > layout::strengths) throw DamagedPacket("more layers of couplings than are joined");
   joined->bits.resize(layers.size());
   for (std::size_t k = 0; k < layers.size(); ++k) {
     CouplingsData& layer = data[k];

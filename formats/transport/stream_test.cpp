@@ -156,7 +156,7 @@ TEST_CASE("transport: cut at any length, it gives the levels that are whole and 
     const std::size_t whole = std::upper_bound(ends.begin(), ends.end(), length) - ends.begin();
     // decoding every length takes too long: all near the ends of packets, some elsewhere
     const std::size_t begin = whole == 0 ? 0 : ends[whole - 1];
-    if (length - begin > 40 && ends[whole] - length > 8 && length % 211 != 0) continue;
+    if (length - begin > 34 && ends[whole] - length > 2 && length % 499 != 0) continue;
     CAPTURE(length);
     UnpackedModel unpacked;
     const StreamResult result = unpack(std::span(stream).first(length), unpacked);
@@ -168,7 +168,7 @@ TEST_CASE("transport: cut at any length, it gives the levels that are whole and 
   }
 }
 
-TEST_CASE("transport: every length of a small stream is truncated") {
+TEST_CASE("transport: cut at every length, a small stream gives nothing") {
   const Bytes stream = pack(encode(smallest_model()));
   for (std::size_t length = 0; length < stream.size(); ++length) {
     CAPTURE(length);
@@ -203,7 +203,7 @@ TEST_CASE("transport: every changed byte is found") {
   const Bytes model = encode(synthetic_model({.levels = 2}));
   const Bytes stream = pack(model);
   std::mt19937_64 random(11);
-  for (std::size_t i = 0; i < 3000; ++i) {
+  for (std::size_t i = 0; i < 1400; ++i) {
     const std::size_t at = i < 1024 ? i : random() % stream.size();
     const auto flip = static_cast<std::byte>(1U << random() % 8);
     CAPTURE(at);
@@ -222,7 +222,7 @@ TEST_CASE("transport: changed bytes with checksums made right are refused or giv
   const Bytes stream = pack(encode(synthetic_model({.levels = 2})));
   std::mt19937_64 random(12);
   std::size_t refused = 0;
-  for (std::size_t i = 0; i < 600; ++i) {
+  for (std::size_t i = 0; i < 300; ++i) {
     Bytes broken = stream;
     const std::size_t changes = 1 + random() % 3;
     for (std::size_t k = 0; k < changes; ++k) {
@@ -240,7 +240,7 @@ TEST_CASE("transport: changed bytes with checksums made right are refused or giv
       CHECK(!result.ok());
     }
   }
-  CHECK(refused > 400);
+  CHECK(refused > 200);
 }
 
 TEST_CASE("transport: each fault by name") {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "formats/aligned_bytes.hpp"
@@ -49,10 +50,10 @@ class StreamReader {
   std::span<const std::byte> stream_;
   StreamResult& result_;
   StreamHeader header_{};
-  std::size_t next_ = 0;      // byte of the stream
-  std::uint32_t packet_ = 0;  // number of those read
-  std::uint64_t end_ = 0;     // of the model file so far
-  PacketModel model_;
+  std::size_t next_ = 0;              // byte of the stream
+  std::uint32_t packet_ = 0;          // number of those read
+  std::uint64_t end_ = 0;             // of the model file so far
+  std::optional<PacketModel> model_;  // made when there is something to decode
   std::vector<PacketSection> sections_;
 };
 
@@ -116,7 +117,8 @@ bool StreamReader::decode(const PacketHeader& packet, std::span<const std::byte>
   std::vector<PacketSection> sections;
   try {
     RangeDecoder decoder(coded);
-    model_.code(decoder, packet_, {end_, end_ + packet.content_bytes}, sections, nullptr);
+    if (!model_) model_.emplace();
+    model_->code(decoder, packet_, {end_, end_ + packet.content_bytes}, sections, nullptr);
   } catch (const DamagedPacket& damage) {
     return refuse(StreamRule::damaged, next_, "coded bytes", 0, 0, damage.what());
   }
