@@ -235,7 +235,7 @@ std::int32_t CouplingsModel::code_value(std::uint32_t row, const CouplingBlock& 
 
   const std::int64_t missed = 256 * coded - exact;
   const std::int64_t step = (missed << 16) / energy;
-  row_predictor.learn(up, step * 3 / 10);
+  row_predictor.learn(up, step / 2);
   column_predictor.learn(left, step / 10);
   const auto absolute = static_cast<std::uint32_t>(std::min<std::int64_t>(std::abs(missed), 1 << 22));
   error_so_far_ += absolute;
