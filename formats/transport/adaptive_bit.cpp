@@ -78,7 +78,7 @@ MixedBits::MixedBits(std::span<const std::uint32_t> sizes, std::uint32_t selecto
   }
   bits_.resize(size);
   Weights equal{};
-  equal.of_context.fill(static_cast<std::int32_t>(65536 * 2 / (sizes.size() + 3)));
+  equal.of_context.fill(static_cast<std::int32_t>((2 << 16) / (sizes.size() + 3)));
   weights_.assign(std::size_t{selectors} * decisions, equal);
 }
 

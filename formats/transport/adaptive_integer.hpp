@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,7 +23,8 @@ namespace greenloop::transport {
 /// the first, learned; the others as they are.
 class AdaptiveInteger {
  public:
-  explicit AdaptiveInteger(std::uint32_t contexts) : lengths_(contexts * 128), digits_(contexts * 65 * 4) {}
+  explicit AdaptiveInteger(std::uint32_t contexts)
+      : lengths_(std::size_t{contexts} * 128), digits_(std::size_t{contexts} * 65 * 4) {}
 
   /// context < contexts.
   std::uint64_t code(BitCoder& coder, std::uint64_t value, std::uint32_t context);

@@ -214,7 +214,7 @@ std::int32_t CouplingsModel::code_value(std::uint32_t row, const CouplingBlock& 
   for (const std::int32_t input : up) energy += std::int64_t{input} * input;
   for (const std::int32_t input : left) energy += std::int64_t{input} * input;
 
-  auto& row_predictor = row_predictors_[3 * row + r];
+  auto& row_predictor = row_predictors_[3 * std::size_t{row} + r];
   auto& column_predictor = column_predictors_[c];
   const std::int64_t exact = row_predictor.predict(up) + column_predictor.predict(left);
   const std::int64_t largest = (std::int64_t{1} << (couplings_.bits[block.layer] - 1)) - 1;

@@ -66,6 +66,7 @@ void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std:
                        const ModelView* model) {
   code_table(coder, extent, sections);
   std::vector<PacketSection*> order;
+  order.reserve(sections.size());
   for (PacketSection& section : sections) order.push_back(&section);
   std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return rank(*a) < rank(*b); });
 
