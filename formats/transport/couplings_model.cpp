@@ -44,7 +44,7 @@ constexpr std::uint32_t size_steps = 24;
 std::uint32_t size_step(std::uint32_t error) { return std::min(half_octave(error / 16), size_steps - 1); }
 
 constexpr std::array<std::uint32_t, 6> presence_contexts{triples * steps, triples* steps, distances* classes* steps,
-                                                         some_rows * 2,   pairs* pairs,   64 * steps};
+                                                         some_rows,       pairs* pairs,   64 * steps};
 constexpr std::uint32_t ratios = 512;
 constexpr std::uint32_t layer_pairs = 49;
 constexpr std::array<std::uint32_t, 3> layer_contexts{ratios * 3, 3 * layer_pairs* layer_pairs, 3 * some_rows};
@@ -55,7 +55,8 @@ constexpr std::array<std::uint32_t, 5> value_contexts{places * 64, places* size_
 }  // namespace
 
 CouplingsModel::CouplingsModel()
-    : presence_(presence_contexts, classes * steps),
+    : lonely_presence_(distances * steps),
+      presence_(presence_contexts, classes * steps),
       coarse_(std::array<std::uint32_t, 2>{3, 64}, 1),
       layers_(layer_contexts, 3, layout::layers),
       values_(value_contexts, places) {
@@ -117,32 +118,51 @@ void CouplingsModel::begin_column() {
 void CouplingsModel::see_neighbours(std::uint32_t row) {
   constexpr std::array<std::uint32_t, neighbour_count> left_weight{6, 4, 2, 2, 0, 0, 1, 1},
       up_weight{3, 2, 1, 0, 0, 0, 1, 1};
-  std::uint32_t sum = 0;
+  here_.step = std::min(coefficients_[column_].level - coefficients_[row].level, steps - 1);
+  here_.distance = quarter_octave(squared_distance(coefficients_[column_].point, coefficients_[row].point));
   here_.left = beside_[row];
   for (std::size_t k = 0; k < neighbour_count; ++k) {
     const std::uint32_t neighbour = neighbours_[row][k];
     here_.up[k] = neighbour == no_neighbour ? no_block : above_[neighbour];
+  }
+  std::uint32_t none = no_block;
+  for (std::size_t k = 0; k < neighbour_count; ++k) none &= here_.left[k] & here_.up[k];
+  here_.any = none != no_block;
+  if (!here_.any) {
+    here_.left_class.fill(0);
+    here_.up_class.fill(0);
+    here_.expected = 0;
+    return;
+  }
+  std::uint32_t sum = 0;
+  for (std::size_t k = 0; k < neighbour_count; ++k) {
     const std::uint32_t left = size(here_.left[k]), up = size(here_.up[k]);
     here_.left_class[k] = size_class(left);
     here_.up_class[k] = size_class(up);
     sum += left_weight[k] * left + up_weight[k] * up;
   }
   here_.expected = fine_class(sum / 4);
-  here_.step = std::min(coefficients_[column_].level - coefficients_[row].level, steps - 1);
 }
 
 bool CouplingsModel::code_presence(BitCoder& coder, std::uint32_t row, bool present) {
+  if (!here_.any) return lonely_presence_[here_.distance * steps + here_.step].code(coder, present);
   const auto& l = here_.left_class;
   const auto& u = here_.up_class;
-  const std::uint32_t distance =
-      quarter_octave(squared_distance(coefficients_[column_].point, coefficients_[row].point));
   const std::array contexts{((l[0] * classes + l[1]) * classes + l[2]) * steps + here_.step,
                             ((u[0] * classes + u[1]) * classes + u[2]) * steps + here_.step,
-                            (distance * classes + l[0]) * steps + here_.step,
-                            std::min(row, some_rows - 1) * 2 + static_cast<std::uint32_t>(here_.expected > 0),
+                            (here_.distance * classes + l[0]) * steps + here_.step,
+                            std::min(row, some_rows - 1),
                             (l[6] * classes + l[7]) * pairs + u[6] * classes + u[7],
                             here_.expected * steps + here_.step};
   return presence_.code(coder, present, contexts, l[0] * steps + here_.step);
+}
+
+void CouplingsModel::see_values() {
+  for (std::size_t k = 0; k < neighbour_count; ++k) {
+    here_.left_values[k] = values(here_.left[k]);
+    here_.up_values[k] = values(here_.up[k]);
+  }
+  here_.error = error_around();
 }
 
 void CouplingsModel::code_block(BitCoder& coder, CouplingBlock& block) {
@@ -150,7 +170,7 @@ void CouplingsModel::code_block(BitCoder& coder, CouplingBlock& block) {
   const std::array contexts{coarse(here_.left[0]) + coarse(here_.up[0]), here_.expected};
   const bool is_coarse = coarse_.code(coder, block.layer == 0, contexts, 0);
   error_so_far_ = squares_so_far_ = 0;
-  here_.error = error_around();
+  see_values();
   for (std::size_t element = 0; element < 9; ++element) {
     block.value[element] = static_cast<std::int16_t>(code_value(coder, block, element, block.value[element]));
   }
@@ -169,8 +189,8 @@ std::int32_t CouplingsModel::code_value(BitCoder& coder, const CouplingBlock& bl
   std::int64_t energy = 20;
   for (std::size_t k = 0; k < neighbour_count; ++k) {
     for (std::size_t d = 0; d < 3; ++d) {
-      up[3 * k + d] = value(here_.up[k], 3 * c + (r + d) % 3);
-      left[3 * k + d] = value(here_.left[k], 3 * ((c + d) % 3) + r);
+      up[3 * k + d] = here_.up_values[k][3 * c + (r + d) % 3];
+      left[3 * k + d] = here_.left_values[k][3 * ((c + d) % 3) + r];
     }
   }
   for (std::size_t d = 0; d < r; ++d) up[3 * neighbour_count + d] = block.value[3 * c + d];
@@ -264,9 +284,12 @@ std::uint32_t CouplingsModel::error_around() const {
   return weight == 0 ? 256 : sum / weight;
 }
 
-std::int32_t CouplingsModel::value(std::uint32_t seen, std::size_t element) const {
-  if (!is_stored(seen)) return 0;
-  return blocks_[seen / 2].value[seen % 2 == 0 ? element : 3 * (element % 3) + element / 3];
+std::array<std::int32_t, 9> CouplingsModel::values(std::uint32_t seen) const {
+  std::array<std::int32_t, 9> values{};
+  if (!is_stored(seen)) return values;
+  const auto& stored = blocks_[seen / 2].value;
+  for (std::size_t k = 0; k < 9; ++k) values[k] = stored[seen % 2 == 0 ? k : 3 * (k % 3) + k / 3];
+  return values;
 }
 
 }  // namespace greenloop::transport

@@ -41,15 +41,19 @@ class CouplingsModel {
   struct Surroundings {
     Seen left{}, up{};  // the blocks in neighbouring columns and at neighbouring rows
     std::array<std::uint32_t, neighbour_count> left_class{}, up_class{};
+    bool any = false;            // whether there are any
     std::uint32_t step = 0;      // levels from the row to the column
     std::uint32_t expected = 0;  // fine class of the size
+    std::uint32_t distance = 0;  // class of that between row and column
     std::uint32_t error = 0;     // of a value in neighbouring blocks, in 1/256
+    std::array<std::array<std::int32_t, 9>, neighbour_count> left_values{}, up_values{};
   };
 
   void begin_level(std::span<const Coefficient> coefficients, std::uint32_t first);
   void begin_column();
   void see_neighbours(std::uint32_t row);
   bool code_presence(BitCoder& coder, std::uint32_t row, bool present);
+  void see_values();
   void code_block(BitCoder& coder, CouplingBlock& block);
   std::int32_t code_value(BitCoder& coder, const CouplingBlock& block, std::size_t element, std::int32_t value);
   void code_layer(BitCoder& coder, CouplingBlock& block);
@@ -58,7 +62,7 @@ class CouplingsModel {
   [[nodiscard]] std::uint32_t size(std::uint32_t seen) const;
   [[nodiscard]] std::uint32_t layer(std::uint32_t seen) const;
   [[nodiscard]] std::uint32_t error_around() const;
-  [[nodiscard]] std::int32_t value(std::uint32_t seen, std::size_t element) const;
+  [[nodiscard]] std::array<std::int32_t, 9> values(std::uint32_t seen) const;
 
   std::span<const Coefficient> coefficients_;
   std::vector<Neighbours> neighbours_;  // of all coefficients
@@ -78,6 +82,7 @@ class CouplingsModel {
   std::uint32_t error_so_far_ = 0;                                   // in this block, in 1/256
   std::uint32_t squares_so_far_ = 0;                                 // of its values
 
+  std::vector<AdaptiveBit> lonely_presence_;  // of blocks without neighbours: [distance][step]
   MixedBits presence_, coarse_, layers_;
   MixedInteger values_;
 };

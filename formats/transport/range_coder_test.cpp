@@ -154,6 +154,16 @@ TEST_CASE("logarithmic scales: monotone, one step at a time") {
   CHECK(half_octave(~std::uint64_t{0}) == 127);
 }
 
+TEST_CASE("binary logarithm: rounded down to 1/256, at every size") {
+  CHECK(binary_log(0) == 0);
+  CHECK(binary_log(1) == 0);
+  CHECK(binary_log(~std::uint64_t{0}) == 64 * 256 - 1);
+  for (std::uint32_t log = 0; log < 64; ++log) CHECK(binary_log(std::uint64_t{1} << log) == 256 * log);
+  for (std::uint64_t value = 3; value < (std::uint64_t{1} << 62); value += value / 3 + 1) {
+    CHECK(std::abs(binary_log(value) + 0.5 - 256 * std::log2(static_cast<double>(value))) < 0.51);
+  }
+}
+
 std::uint32_t bits(float number) { return std::bit_cast<std::uint32_t>(number); }
 
 TEST_CASE("float bits: the order is that of the numbers, any pattern comes back") {
@@ -179,19 +189,26 @@ TEST_CASE("float bits: fixed numbers are exact as far as they reach") {
   CHECK(from_fixed((to_fixed(bits(0.25F), exponent) + to_fixed(bits(1.0F), exponent)) / 2, exponent) == bits(0.625F));
 }
 
-TEST_CASE("neighbours: the nearest of the points before, by distance") {
+TEST_CASE("neighbours: the nearest of the points before, by distance, peers and coarser ones apart") {
   std::mt19937_64 random(8);
   std::vector<GridPoint> points(120);  // fewer than are looked at on the curve, so that the answer is exact
   for (auto& point : points) {
     for (auto& coordinate : point) coordinate = static_cast<std::int32_t>(random() % 131071) - 65535;
   }
-  const auto found = neighbours_before(points);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
+  const auto nearest = [&](std::uint32_t i, std::uint32_t begin, std::uint32_t end, std::size_t k) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> all;
-    for (std::uint32_t j = 0; j < i; ++j) all.emplace_back(squared_distance(points[i], points[j]), j);
+    for (std::uint32_t j = begin; j < end; ++j) all.emplace_back(squared_distance(points[i], points[j]), j);
     std::sort(all.begin(), all.end());
-    for (std::size_t k = 0; k < neighbour_count; ++k) {
-      CHECK(found[i][k] == (k < all.size() ? all[k].second : no_neighbour));
+    return k < all.size() ? all[k].second : no_neighbour;
+  };
+  for (const std::uint32_t first : {0U, 1U, 50U, 120U}) {
+    const auto found = neighbours_before(points, first);
+    REQUIRE(found.size() == points.size() - first);
+    for (std::uint32_t i = first; i < points.size(); ++i) {
+      for (std::size_t k = 0; k < peer_count; ++k) CHECK(found[i - first][k] == nearest(i, first, i, k));
+      for (std::size_t k = 0; k < coarser_count; ++k) {
+        CHECK(found[i - first][peer_count + k] == nearest(i, 0, first, k));
+      }
     }
   }
   const std::vector<GridPoint> same(1000, GridPoint{1, 2, 3});
