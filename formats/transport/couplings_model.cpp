@@ -54,7 +54,7 @@ constexpr std::array<std::uint32_t, 4> value_contexts{places * 64, places* signe
 }  // namespace
 
 CouplingsModel::CouplingsModel()
-    : lonely_presence_(distances * steps),
+    : lonely_presence_(std::size_t{distances} * steps),
       presence_(presence_contexts, classes * steps),
       coarse_(std::array<std::uint32_t, 2>{3, 64}, 1),
       layers_(layer_contexts, 3, layout::layers),

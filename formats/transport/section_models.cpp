@@ -162,6 +162,7 @@ void MeshModel::code_scales(BitCoder& coder, std::uint32_t q, std::span<std::byt
   constexpr std::size_t fields = sizeof(layout::Scale) / sizeof(std::uint32_t);
   const std::vector<std::size_t> nodes = domain_nodes(q);
   std::vector<GridPoint> points;
+  points.reserve(nodes.size());
   const std::uint32_t exponent = largest_exponent();
   for (const std::size_t node : nodes) points.push_back(grid_point(nodes_[node], exponent));
   const auto near = neighbours_before(points);
