@@ -11,6 +11,7 @@
 #include "formats/describe.hpp"
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
+#include "formats/transport/stream.hpp"
 
 namespace greenloop {
 namespace {
@@ -49,6 +50,15 @@ TEST_CASE("docs/format.md: names every rule by which a file can be refused") {
   const std::string text = document();
   for (int i = 1; i <= static_cast<int>(VerifyRule::inconsistent); ++i) {
     const std::string row = "| `" + std::string(rule_name(static_cast<VerifyRule>(i))) + "` |";
+    CAPTURE(row);
+    CHECK(text.find(row) != std::string::npos);
+  }
+}
+
+TEST_CASE("docs/format.md: names every rule by which a transport form can be refused") {
+  const std::string text = document();
+  for (int i = 1; i <= static_cast<int>(transport::StreamRule::not_a_model); ++i) {
+    const std::string row = "| `" + std::string(rule_name(static_cast<transport::StreamRule>(i))) + "` |";
     CAPTURE(row);
     CHECK(text.find(row) != std::string::npos);
   }

@@ -82,35 +82,6 @@ Bytes encode_values(const std::vector<std::int16_t>& values, std::uint32_t bits,
   }
 }
 
-Bytes encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows, std::uint32_t value_bits,
-                       const std::string& name) {
-  require_size(name + ".begin", data.begin.size(), columns + std::size_t{1});
-  const std::size_t blocks = data.begin.back();
-  require_size(name + ".index", data.index.size(), blocks);
-  require_size(name + ".value", data.value.size(), 9 * blocks);
-
-  CouplingsHeader header{};
-  header.columns = blocks > 0 ? columns : 0;
-  header.rows = rows;
-  header.index_bytes = rows <= 65536 ? 2 : 4;
-  header.block_count = blocks;
-
-  Bytes bytes;
-  bytes.reserve(sizeof(CouplingsHeader) + 4 * (columns + std::size_t{1}) + 40 * blocks);
-  bytes.resize(sizeof(CouplingsHeader));
-  header.begin_offset = bytes.size();
-  append(bytes, std::as_bytes(std::span(data.begin).first(header.columns + std::size_t{1})));
-  pad(bytes);
-  header.index_offset = bytes.size();
-  append(bytes, header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));
-  pad(bytes);
-  header.value_offset = bytes.size();
-  append(bytes, encode_values(data.value, value_bits, name + ".value"));
-  bytes.resize(bytes.size() + tail_bytes);
-  std::memcpy(bytes.data(), &header, sizeof(header));
-  return bytes;
-}
-
 struct SectionBytes {
   SectionEntry entry{};
   Bytes bytes;
@@ -251,6 +222,35 @@ ModelView require_valid(const AlignedBytes& file) {
 }
 
 }  // namespace
+
+std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows,
+                                        std::uint32_t value_bits, const std::string& name) {
+  require_size(name + ".begin", data.begin.size(), columns + std::size_t{1});
+  const std::size_t blocks = data.begin.back();
+  require_size(name + ".index", data.index.size(), blocks);
+  require_size(name + ".value", data.value.size(), 9 * blocks);
+
+  CouplingsHeader header{};
+  header.columns = blocks > 0 ? columns : 0;
+  header.rows = rows;
+  header.index_bytes = rows <= 65536 ? 2 : 4;
+  header.block_count = blocks;
+
+  Bytes bytes;
+  bytes.reserve(sizeof(CouplingsHeader) + 4 * (columns + std::size_t{1}) + 40 * blocks);
+  bytes.resize(sizeof(CouplingsHeader));
+  header.begin_offset = bytes.size();
+  append(bytes, std::as_bytes(std::span(data.begin).first(header.columns + std::size_t{1})));
+  pad(bytes);
+  header.index_offset = bytes.size();
+  append(bytes, header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));
+  pad(bytes);
+  header.value_offset = bytes.size();
+  append(bytes, encode_values(data.value, value_bits, name + ".value"));
+  bytes.resize(bytes.size() + tail_bytes);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  return bytes;
+}
 
 std::vector<std::byte> encode(const ModelData& model) {
   require(!model.levels.empty() && model.levels.size() <= layout::max_levels,

@@ -43,6 +43,13 @@ struct ModelData {
 /// Level's node, domain, triangle, kept and dense counts. The result has passed verify.
 [[nodiscard]] std::vector<std::byte> encode(const ModelData& model);
 
+/// The bytes of one section of couplings, without its entry. `columns`: of the level, even if there is no block;
+/// `rows`: domain nodes of K(q). `name` stands in messages. Throws std::invalid_argument naming the field that does not
+/// fit.
+[[nodiscard]] std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t columns,
+                                                      std::uint32_t rows, std::uint32_t value_bits,
+                                                      const std::string& name);
+
 /// The same model cut off after level q: a prefix with its header rewritten. Throws std::invalid_argument if q is not
 /// a level of the file or no constraint level at or below q has columns.
 [[nodiscard]] std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint32_t q);

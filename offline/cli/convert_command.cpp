@@ -16,12 +16,14 @@
 #include "formats/exchange/volume_io.hpp"
 #include "formats/model_file.hpp"
 #include "formats/model_surface.hpp"
+#include "formats/transport/stream.hpp"
 #include "formats/writer.hpp"
 
 namespace greenloop::offline {
 namespace {
 
 bool is_model(const std::string& extension) { return extension == ".gloop"; }
+bool is_stream(const std::string& extension) { return extension == ".gloopz"; }
 bool is_c_source(const std::string& extension) { return extension == ".h" || extension == ".c"; }
 bool is_surface(const std::string& extension) {
   constexpr std::array surfaces{".off", ".obj", ".stl", ".ply"};
@@ -37,29 +39,57 @@ bool is_volume(const std::string& extension) {
       fmt::format("convert {} to {}: {}", arguments.input.string(), arguments.output.string(), why));
 }
 
-ModelFile read_model(const ConvertArguments& arguments) {
-  ModelFile model = open_model_file(arguments.input);
-  if (!arguments.levels) return model;
-  if (*arguments.levels < 1 || *arguments.levels > model.view.levels) {
-    refuse(arguments, fmt::format("--levels {}, but the model has {}: name 1 to {}", *arguments.levels,
-                                  model.view.levels, model.view.levels));
+void check_levels(const ConvertArguments& arguments, std::uint32_t available) {
+  if (arguments.levels && (*arguments.levels < 1 || *arguments.levels > available)) {
+    refuse(arguments,
+           fmt::format("--levels {}, but the model has {}: name 1 to {}", *arguments.levels, available, available));
   }
+}
+
+ModelFile read_stream(const ConvertArguments& arguments) {
+  const AlignedBytes stream = load_file(arguments.input);
+  transport::UnpackedModel unpacked;
+  const auto result = transport::unpack(stream.span(), unpacked, arguments.levels.value_or(transport::all_levels));
+  const std::uint32_t whole = unpacked.levels, all = unpacked.stream_levels;
+  if (result.rule == transport::StreamRule::truncated) {
+    refuse(arguments,
+           whole == 0
+               ? fmt::format("THE STREAM IS TRUNCATED before its coarsest model is whole ({}); fetch the rest",
+                             describe(result))
+               : fmt::format("THE STREAM IS TRUNCATED after level {}: {} of {} mesh levels are whole ({}); fetch "
+                             "the rest, or take the coarser model with --levels {}",
+                             whole - 1, whole, all, describe(result), whole));
+  }
+  if (!result.ok()) refuse(arguments, describe(result));
+  check_levels(arguments, all);
+  return verified_model(AlignedBytes(unpacked.model), arguments.input.string());
+}
+
+ModelFile read_model(const ConvertArguments& arguments) {
+  if (is_stream(arguments.input.extension().string())) return read_stream(arguments);
+  ModelFile model = open_model_file(arguments.input);
+  check_levels(arguments, model.view.levels);
+  if (!arguments.levels) return model;
   const auto whole = model.bytes.span();
   const auto cut = truncate_to_level({whole.begin(), whole.end()}, *arguments.levels - 1);
   return verified_model(AlignedBytes(cut), arguments.output.string());
 }
 
 void convert_model(const ConvertArguments& arguments, const std::string& to) {
+  if (arguments.input.extension() == to && !arguments.levels) {
+    refuse(arguments, "name the mesh levels to keep with --levels");
+  }
   const ModelFile model = read_model(arguments);
   if (is_c_source(to)) {
     write_c_array(arguments.output, model.bytes.span());
   } else if (is_surface(to)) {
     write_surface(arguments.output, finest_surface(model.view));
   } else if (is_model(to)) {
-    if (!arguments.levels) refuse(arguments, "name the mesh levels to keep with --levels");
     write_file(arguments.output, model.bytes.span());
+  } else if (is_stream(to)) {
+    write_file(arguments.output, transport::pack(model.bytes.span()));
   } else {
-    refuse(arguments, "a model becomes .h and .c, .gloop with --levels, or .off, .obj, .stl, .ply");
+    refuse(arguments, "a model becomes .gloopz, .h and .c, .gloop with --levels, or .off, .obj, .stl, .ply");
   }
 }
 
@@ -79,31 +109,35 @@ void convert_volume(const ConvertArguments& arguments, const std::string& to) {
 
 int run_convert(const ConvertArguments& arguments, std::ostream& out) {
   const std::string from = arguments.input.extension().string(), to = arguments.output.extension().string();
-  if (is_model(from)) {
+  if (is_model(from) || is_stream(from)) {
     convert_model(arguments, to);
   } else if (is_surface(from)) {
     convert_surface(arguments, to);
   } else if (is_volume(from)) {
     convert_volume(arguments, to);
   } else {
-    refuse(arguments, fmt::format("do not know \"{}\"; expected a model (.gloop), a surface (.off .obj .stl .ply) or a "
-                                  "volume (.msh .mesh .vtk .vtu .node .ele .veg)",
-                                  from));
+    refuse(arguments,
+           fmt::format("do not know \"{}\"; expected a model (.gloop .gloopz), a surface (.off .obj .stl .ply) or "
+                       "a volume (.msh .mesh .vtk .vtu .node .ele .veg)",
+                       from));
   }
   fmt::print(out, "wrote {}\n", arguments.output.string());
   return 0;
 }
 
 void add_convert(CLI::App& parent, int& exit_code) {
-  CLI::App* command =
-      parent.add_subcommand("convert", "Model to C source, coarser model or surface; meshes to other formats");
+  CLI::App* command = parent.add_subcommand(
+      "convert", "Model to transport form and back, C source, coarser model or surface; meshes to other formats");
   const auto arguments = std::make_shared<ConvertArguments>();
   command
       ->add_option("input", arguments->input,
-                   "Model (.gloop), surface (.off .obj .stl .ply) or volume (.msh .mesh .vtk .vtu .node .ele .veg)")
+                   "Model (.gloop), its transport form (.gloopz), surface (.off .obj .stl .ply) or volume (.msh .mesh "
+                   ".vtk .vtu .node .ele .veg)")
       ->required();
   command->add_option("-o,--output", arguments->output, "File to write; its extension says what")->required();
-  command->add_option("--levels", arguments->levels, "Keep this many mesh levels of the model, coarsest first");
+  command->add_option(
+      "--levels", arguments->levels,
+      "Keep this many mesh levels of the model, coarsest first; of a transport form the rest is not read");
   command->callback([arguments, &exit_code] { exit_code = run_convert(*arguments, std::cout); });
 }
 

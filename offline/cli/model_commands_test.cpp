@@ -290,6 +290,74 @@ TEST_CASE("convert: a volume becomes another format") {
   CHECK(convert_refusal({folder / "one.msh", folder / "one.obj", {}}).find("a volume becomes") != std::string::npos);
 }
 
+std::vector<std::byte> contents(const std::filesystem::path& file) {
+  const AlignedBytes bytes = load_file(file);
+  return {bytes.span().begin(), bytes.span().end()};
+}
+
+TEST_CASE("convert: a model becomes its transport form and comes back, whole or cut") {
+  const Folder folder("convert_transport");
+  const auto sphere = folder / "sphere.gloop", stream = folder / "sphere.gloopz", coarse = folder / "coarse.gloop";
+  std::ostringstream out;
+  CHECK(run_convert({sphere, stream, {}}, out) == 0);
+  CHECK(out.str().find("wrote " + stream.string()) != std::string::npos);
+  CHECK(5 * std::filesystem::file_size(stream) < 3 * std::filesystem::file_size(sphere));
+  CHECK(run_convert({stream, folder / "back.gloop", {}}, out) == 0);
+  CHECK(contents(folder / "back.gloop") == contents(sphere));
+
+  CHECK(run_convert({sphere, coarse, 2}, out) == 0);
+  CHECK(run_convert({stream, folder / "unpacked.gloop", 2}, out) == 0);
+  CHECK(contents(folder / "unpacked.gloop") == contents(coarse));
+  CHECK(run_convert({sphere, folder / "coarse.gloopz", 2}, out) == 0);
+  CHECK(run_convert({folder / "coarse.gloopz", folder / "again.gloop", {}}, out) == 0);
+  CHECK(contents(folder / "again.gloop") == contents(coarse));
+
+  CHECK(run_convert({stream, folder / "fine.off", {}}, out) == 0);
+  CHECK(read_surface(folder / "fine.off").triangles.size() == 128);
+  CHECK(run_convert({stream, folder / "sphere.h", 1}, out) == 0);
+  CHECK(std::filesystem::exists(folder / "sphere.c"));
+  CHECK(convert_refusal({stream, folder / "b.gloop", 4}).find("--levels 4, but the model has 3") != std::string::npos);
+  CHECK(convert_refusal({stream, folder / "b.gloop", 0}).find("--levels 0, but the model has 3") != std::string::npos);
+  CHECK(convert_refusal({stream, folder / "b.gloopz", {}}).find("--levels") != std::string::npos);
+  CHECK(convert_refusal({folder / "fine.off", folder / "b.gloopz", {}}).find("a surface becomes") != std::string::npos);
+}
+
+TEST_CASE("convert: a truncated transport form is refused, its whole levels are given when asked for") {
+  const Folder folder("convert_truncated");
+  const auto sphere = folder / "sphere.gloop", stream = folder / "sphere.gloopz", cut = folder / "cut.gloopz";
+  std::ostringstream out;
+  REQUIRE(run_convert({sphere, stream, {}}, out) == 0);
+  REQUIRE(run_convert({sphere, folder / "coarse.gloop", 2}, out) == 0);
+  const std::vector<std::byte> whole = contents(stream);
+  write_file(cut, std::span(whole).first(whole.size() - 1));
+  const std::string refusal = convert_refusal({cut, folder / "b.gloop", {}});
+  CHECK(refusal.find(cut.string()) != std::string::npos);
+  CHECK(refusal.find("TRUNCATED after level 1: 2 of 3 mesh levels are whole (packet 2, offset ") != std::string::npos);
+  CHECK(refusal.find("fetch the rest, or take the coarser model with --levels 2") != std::string::npos);
+  CHECK(convert_refusal({cut, folder / "b.gloop", 3}).find("TRUNCATED after level 1") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder / "b.gloop"));
+  CHECK(run_convert({cut, folder / "taken.gloop", 2}, out) == 0);
+  CHECK(contents(folder / "taken.gloop") == contents(folder / "coarse.gloop"));
+
+  write_file(cut, std::span(whole).first(100));
+  CHECK(convert_refusal({cut, folder / "b.gloop", 1}).find("TRUNCATED before its coarsest") != std::string::npos);
+}
+
+TEST_CASE("convert: a corrupted transport form is refused with the place") {
+  const Folder folder("convert_corrupted");
+  const auto stream = folder / "sphere.gloopz";
+  std::ostringstream out;
+  REQUIRE(run_convert({folder / "sphere.gloop", stream, {}}, out) == 0);
+  std::vector<std::byte> bytes = contents(stream);
+  bytes[bytes.size() - 100] ^= std::byte{1};
+  write_file(stream, bytes);
+  const std::string refusal = convert_refusal({stream, folder / "b.gloop", {}});
+  CHECK(refusal.find(stream.string()) != std::string::npos);
+  CHECK(refusal.find("packet 2, offset ") != std::string::npos);
+  CHECK(refusal.find("(packet_checksum)") != std::string::npos);
+  CHECK(run_convert({stream, folder / "coarse.gloop", 2}, out) == 0);
+}
+
 TEST_CASE("convert: refuses what makes no sense, and says what would") {
   const Folder folder("convert_refuse");
   const auto sphere = folder / "sphere.gloop", obj = folder / "a.obj";

@@ -1,0 +1,64 @@
+#include "formats/transport/coupling_blocks.hpp"
+
+#include <algorithm>
+
+namespace greenloop::transport {
+namespace {
+
+std::int16_t element(const CouplingsView& view, std::uint32_t value_bits, std::size_t block, std::size_t k) {
+  if (value_bits == 16) return reinterpret_cast<const std::int16_t*>(view.value)[9 * block + k];
+  if (value_bits == 8) return reinterpret_cast<const std::int8_t*>(view.value)[9 * block + k];
+  const auto nibble = std::to_integer<int>(view.value[5 * block + k / 2]) >> (4 * (k % 2)) & 15;
+  return static_cast<std::int16_t>(nibble < 8 ? nibble : nibble - 16);
+}
+
+std::uint32_t row(const CouplingsView& view, std::size_t block) {
+  return view.index_bytes == 2 ? static_cast<const std::uint16_t*>(view.index)[block]
+                               : static_cast<const std::uint32_t*>(view.index)[block];
+}
+
+void append_column(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
+                   std::vector<CouplingBlock>& blocks) {
+  if (column >= view.columns) return;  // of an empty section
+  for (std::uint32_t b = view.begin[column]; b < view.begin[column + 1]; ++b) {
+    CouplingBlock block{.row = row(view, b), .layer = layer};
+    for (std::size_t k = 0; k < 9; ++k) block.value[k] = element(view, layout::layer[layer].value_bits, b, k);
+    blocks.push_back(block);
+  }
+}
+
+}  // namespace
+
+std::optional<CouplingBlocks> join_layers(const LevelView& level, std::uint32_t columns, std::uint32_t rows) {
+  CouplingBlocks joined{.columns = columns, .rows = rows};
+  auto& blocks = joined.blocks;
+  joined.begin = {0};
+  for (std::uint32_t j = 0; j < columns; ++j) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      append_column(level.couplings[layer], layer, j, blocks);
+    }
+    const auto column = blocks.begin() + joined.begin.back();
+    std::sort(column, blocks.end(), [](const auto& a, const auto& b) { return a.row < b.row; });
+    const auto twice =
+        std::adjacent_find(column, blocks.end(), [](const auto& a, const auto& b) { return a.row == b.row; });
+    if (twice != blocks.end()) return std::nullopt;
+    joined.begin.push_back(static_cast<std::uint32_t>(blocks.size()));
+  }
+  return joined;
+}
+
+CouplingsData take_layer(const CouplingBlocks& joined, std::uint32_t layer) {
+  CouplingsData data{.begin = {0}, .index = {}, .value = {}};
+  for (std::uint32_t j = 0; j < joined.columns; ++j) {
+    for (std::uint32_t b = joined.begin[j]; b < joined.begin[j + 1]; ++b) {
+      const CouplingBlock& block = joined.blocks[b];
+      if (block.layer != layer) continue;
+      data.index.push_back(block.row);
+      data.value.insert(data.value.end(), block.value.begin(), block.value.end());
+    }
+    data.begin.push_back(static_cast<std::uint32_t>(data.index.size()));
+  }
+  return data;
+}
+
+}  // namespace greenloop::transport

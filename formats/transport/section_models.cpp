@@ -1,0 +1,211 @@
+#include "formats/transport/section_models.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "formats/transport/float_bits.hpp"
+
+namespace greenloop::transport {
+namespace {
+
+constexpr std::uint32_t length_contexts = 17;
+
+std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t i) {
+  std::uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + sizeof(word) * i, sizeof(word));
+  return word;
+}
+
+void set_word(std::span<std::byte> bytes, std::size_t i, std::uint32_t word) {
+  std::memcpy(bytes.data() + sizeof(word) * i, &word, sizeof(word));
+}
+
+// codes word i in place and returns it
+std::uint32_t code_word(BitCoder& coder, WordModel& words, std::span<std::byte> bytes, std::size_t i,
+                        std::uint32_t field, std::uint32_t predicted) {
+  const std::uint32_t word = words.code(coder, field, word_at(bytes, i), predicted);
+  set_word(bytes, i, word);
+  return word;
+}
+
+// Coefficient::size of a scale
+std::int32_t own_size(std::span<const std::byte> scale) {
+  constexpr std::uint32_t reference = 127 + 16;  // steps of 2^-24
+  constexpr std::size_t diagonal = 6;
+  std::int64_t trace = 0;
+  for (const std::size_t k : {0, 3, 5}) trace += to_fixed(word_at(scale, diagonal + k), reference);
+  return static_cast<std::int32_t>(binary_log(static_cast<std::uint64_t>(std::max<std::int64_t>(trace, 1)))) - 24 * 256;
+}
+
+}  // namespace
+
+ByteModel::ByteModel() : bits_(std::array<std::uint32_t, 3>{256, 1U << 16, 1U << 16}, 1) {}
+
+void ByteModel::code(BitCoder& coder, std::span<std::byte> bytes) {
+  std::uint32_t last = 0, last_but_one = 0;
+  for (std::byte& byte : bytes) {
+    const auto value = std::to_integer<std::uint32_t>(byte);
+    std::uint32_t node = 1;
+    for (std::uint32_t i = 8; i-- > 0;) {
+      const std::uint32_t two = (last << 8 | last_but_one) * 0x9e3779b1U >> 16 ^ node * 0x101U;
+      const std::array contexts{node, last << 8 | node, two & 0xffff};
+      node = 2 * node + static_cast<std::uint32_t>(bits_.code(coder, (value >> i & 1) != 0, contexts, 0));
+    }
+    last_but_one = last;
+    last = node & 0xff;
+    byte = static_cast<std::byte>(last);
+  }
+}
+
+WordModel::WordModel(std::uint32_t fields) : differences_(fields * length_contexts), length_(fields) {}
+
+std::uint32_t WordModel::code(BitCoder& coder, std::uint32_t field, std::uint32_t word, std::uint32_t predicted) {
+  const std::int64_t from = order_of(predicted);
+  const std::uint64_t difference =
+      differences_.code(coder, interleave_sign(order_of(word) - from), field * length_contexts + length_[field] / 2);
+  length_[field] = std::min(static_cast<std::uint32_t>(std::bit_width(difference)), 33U);
+  return bits_of_order(static_cast<std::uint32_t>(from + restore_sign(difference)));
+}
+
+void MeshModel::code_words(BitCoder& coder, std::uint32_t fields, std::span<std::byte> section) {
+  WordModel words(fields);
+  for (std::size_t i = 0; i < section.size() / sizeof(std::uint32_t); ++i) {
+    code_word(coder, words, section, i, static_cast<std::uint32_t>(i % fields),
+              i < fields ? 0 : word_at(section, i - fields));
+  }
+}
+
+void MeshModel::code_refinement(BitCoder& coder, std::uint32_t q, std::span<std::byte> section) {
+  constexpr std::size_t fields = sizeof(layout::RefinementRecord) / sizeof(std::uint32_t);
+  code_words(coder, fields, section);
+  const std::size_t count = section.size() / sizeof(layout::RefinementRecord);
+  nodes_.resize(begin_[q] + count);
+  for (std::size_t i = 0; i < count; ++i) {
+    nodes_[begin_[q] + i].parent = {word_at(section, fields * i), word_at(section, fields * i + 1)};
+  }
+}
+
+void MeshModel::code_nodes(BitCoder& coder, std::uint32_t q, std::span<std::byte> section) {
+  constexpr std::size_t fields = sizeof(layout::NodeRecord) / sizeof(std::uint32_t);
+  const std::size_t count = section.size() / sizeof(layout::NodeRecord);
+  const std::uint32_t exponent = largest_exponent();
+  nodes_.resize(begin_[q] + count);
+  begin_[q + 1] = nodes_.size();
+  WordModel words(fields);
+  for (std::size_t i = 0; i < count; ++i) {
+    Node& node = nodes_[begin_[q] + i];
+    const auto predicted = predicted_position(begin_[q] + i, exponent);
+    for (std::uint32_t k = 0; k < fields; ++k) {
+      const std::uint32_t before = i == 0 ? 0 : word_at(section, fields * (i - 1) + k);
+      const std::uint32_t word = code_word(coder, words, section, fields * i + k, k, k < 3 ? predicted[k] : before);
+      if (k < 3) node.position[k] = word;
+      if (k == 4) node.flags = word;
+    }
+  }
+}
+
+std::uint32_t MeshModel::largest_exponent() const {
+  std::uint32_t largest = 0;
+  for (const Node& node : nodes_) {
+    for (const std::uint32_t coordinate : node.position) largest = std::max(largest, exponent_of(coordinate));
+  }
+  return largest;
+}
+
+std::array<std::uint32_t, 3> MeshModel::predicted_position(std::size_t node, std::uint32_t exponent) const {
+  const auto [a, b] = nodes_[node].parent;
+  std::array<std::uint32_t, 3> position{};
+  if (a < node && b < node) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int64_t sum = to_fixed(nodes_[a].position[k], exponent) + to_fixed(nodes_[b].position[k], exponent);
+      position[k] = from_fixed(sum / 2, exponent);
+    }
+  } else if (node > 0) {
+    position = nodes_[node - 1].position;
+  }
+  return position;
+}
+
+std::uint32_t MeshModel::representative(std::uint32_t c, std::uint32_t node) const {
+  return node < representatives_[c].size() ? representatives_[c][node] : layout::none;
+}
+
+void MeshModel::code_representatives(BitCoder& coder, std::uint32_t c, std::uint32_t q, std::span<std::byte> section) {
+  const std::size_t count = section.size() / sizeof(std::uint32_t);
+  auto& known = representatives_[c];
+  known.resize(std::max(known.size(), begin_[q] + count), layout::none);
+  std::array<AdaptiveBit, 4> first;
+  std::array<AdaptiveBit, 4> second;
+  WordModel words(1);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t node = begin_[q] + i;
+    std::uint32_t a = layout::none, b = layout::none;
+    const bool touchable = node < nodes_.size() && (nodes_[node].flags & layout::node_touchable) != 0;
+    if (touchable && q <= c) a = static_cast<std::uint32_t>(node);
+    if (touchable && q > c) {
+      a = representative(c, nodes_[node].parent[0]);
+      b = representative(c, nodes_[node].parent[1]);
+    }
+    const std::uint32_t given = word_at(section, i);
+    const auto context = static_cast<std::size_t>(touchable) * 2 + static_cast<std::size_t>(a == b);
+    std::uint32_t word = a;
+    if (!first[context].code(coder, given == a)) {
+      word = second[context].code(coder, given == b) ? b : words.code(coder, 0, given, a);
+    }
+    set_word(section, i, word);
+    known[node] = word;
+  }
+}
+
+void MeshModel::code_scales(BitCoder& coder, std::uint32_t q, std::span<std::byte> section) {
+  constexpr std::size_t fields = sizeof(layout::Scale) / sizeof(std::uint32_t);
+  const std::vector<std::size_t> nodes = domain_nodes(q);
+  std::vector<GridPoint> points;
+  points.reserve(nodes.size());
+  const std::uint32_t exponent = largest_exponent();
+  for (const std::size_t node : nodes) points.push_back(grid_point(nodes_[node], exponent));
+  const auto near = neighbours_before(points);
+  WordModel words(fields);
+  for (std::size_t i = 0; i < section.size() / sizeof(layout::Scale); ++i) {
+    const std::uint32_t like = i < near.size() ? near[i][0] : no_neighbour;
+    for (std::uint32_t k = 0; k < fields; ++k) {
+      code_word(coder, words, section, fields * i + k, k,
+                like == no_neighbour ? 0 : word_at(section, fields * like + k));
+    }
+    if (i < nodes.size()) nodes_[nodes[i]].size = own_size(section.subspan(sizeof(layout::Scale) * i));
+  }
+}
+
+std::vector<Coefficient> MeshModel::coefficients(std::uint32_t q) const {
+  const std::uint32_t exponent = largest_exponent();
+  std::vector<Coefficient> coefficients;
+  for (std::uint32_t r = 0; r <= q; ++r) {
+    for (const std::size_t node : domain_nodes(r)) {
+      coefficients.push_back({.point = grid_point(nodes_[node], exponent), .level = r, .size = nodes_[node].size});
+    }
+  }
+  return coefficients;
+}
+
+std::uint32_t MeshModel::own_coefficients(std::uint32_t q) const {
+  return static_cast<std::uint32_t>(domain_nodes(q).size());
+}
+
+std::vector<std::size_t> MeshModel::domain_nodes(std::uint32_t q) const {
+  std::vector<std::size_t> nodes;
+  for (std::size_t i = begin_[q]; i < std::min(begin_[q + 1], nodes_.size()); ++i) {
+    if ((nodes_[i].flags & layout::node_domain) != 0) nodes.push_back(i);
+  }
+  return nodes;
+}
+
+GridPoint MeshModel::grid_point(const Node& node, std::uint32_t exponent) {
+  GridPoint point{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    point[k] = static_cast<std::int32_t>(to_fixed(node.position[k], exponent) / (1 << 25));
+  }
+  return point;
+}
+
+}  // namespace greenloop::transport

@@ -1,0 +1,284 @@
+// Models through their transport form and back, whole, cut, broken.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <stdexcept>
+
+#include "formats/crc32c.hpp"
+#include "formats/testing/model_mutant.hpp"
+#include "formats/testing/smallest_model.hpp"
+#include "formats/testing/synthetic_model.hpp"
+#include "formats/transport/stream.hpp"
+#include "formats/writer.hpp"
+
+namespace greenloop::transport {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+Bytes unpacked_bytes(std::span<const std::byte> stream, std::uint32_t levels = all_levels) {
+  UnpackedModel unpacked;
+  const StreamResult result = unpack(stream, unpacked, levels);
+  CHECK_MESSAGE(result.ok(), describe(result));
+  CHECK(unpacked.levels == std::min<std::uint32_t>(levels, unpacked.stream_levels));
+  return unpacked.model;
+}
+
+// whole, and every prefix
+void check_round_trip(const Bytes& model) {
+  const Bytes stream = pack(model);
+  CHECK(pack(model) == stream);
+  CHECK(unpacked_bytes(stream) == model);
+  UnpackedModel whole;
+  REQUIRE(unpack(stream, whole).ok());
+  for (std::uint32_t levels = 1; levels < whole.levels; ++levels) {
+    CAPTURE(levels);
+    UnpackedModel prefix;
+    const StreamResult result = unpack(stream, prefix, levels);
+    Bytes expected;
+    try {
+      expected = truncate_to_level(model, levels - 1);
+    } catch (const std::invalid_argument&) {  // below the coarsest constraint level
+      CHECK(result.rule == StreamRule::not_a_model);
+      CHECK(prefix.model.empty());
+      continue;
+    }
+    CHECK(result.ok());
+    CHECK(prefix.model == expected);
+    CHECK(unpacked_bytes(pack(expected)) == expected);
+  }
+}
+
+TEST_CASE("transport: the smallest model and synthetic ones come back, and all their prefixes") {
+  check_round_trip(encode(smallest_model()));
+  for (std::uint32_t levels = 1; levels <= 4; ++levels) check_round_trip(encode(synthetic_model({.levels = levels})));
+  check_round_trip(encode(synthetic_model({.levels = 3, .coarsest_constraint_level = 1})));
+  check_round_trip(encode(synthetic_model({.levels = 3, .field = 0, .quantum = 1e-6})));
+  check_round_trip(encode(synthetic_model({.levels = 3, .lifted = false, .epsilon = 0, .touchable_above = 0.5})));
+}
+
+// every number that may be anything is random
+ModelData random_model(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  ModelData model = synthetic_model({.levels = 3});
+  const auto number = [&] { return static_cast<float>(random() % 2000001) / 1000000 - 1; };
+  model.provenance = "{\"seed\": " + std::to_string(seed) + "}";
+  for (LevelData& level : model.levels) {
+    for (auto& node : level.nodes) {
+      for (float& coordinate : node.position) coordinate = number();
+      node.area = number() + 1;
+    }
+    for (layout::Scale& scale : level.scales) {
+      for (float* matrix : {scale.root, scale.diagonal}) {
+        for (std::size_t k : {1, 2, 4}) matrix[k] = number() / 4;
+        for (std::size_t k : {0, 3, 5}) matrix[k] = number() / 4 + 1;
+      }
+    }
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      const std::uint32_t range = (1U << layout::layer[layer].value_bits) - 1;
+      const auto largest = static_cast<int>(range / 2);
+      for (auto& value : level.couplings[layer].value) {
+        value = static_cast<std::int16_t>(static_cast<int>(random() % range) - largest);
+      }
+    }
+  }
+  return model;
+}
+
+TEST_CASE("transport: random contents come back, hardly larger than they were") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    const Bytes model = encode(random_model(seed));
+    check_round_trip(model);
+    CHECK(pack(model).size() < model.size() * 21 / 20);
+  }
+}
+
+TEST_CASE(
+    "transport: blocks in two layers at once, unknown sections and reserved bytes of a newer minor version come back") {
+  ModelData model = synthetic_model({.levels = 3});
+  auto& layers = model.levels[2].couplings;
+  REQUIRE(!layers[2].index.empty());
+  layers[4] = layers[2];
+  check_round_trip(encode(model));
+
+  ModelMutant newer(encode(synthetic_model({.levels = 3})));
+  newer.rebuild([](std::vector<SectionCopy>& sections) {
+    SectionCopy unknown;
+    unknown.entry.kind = 77;
+    unknown.entry.a = 5;
+    unknown.entry.reserved = 0x12345678;
+    unknown.bytes.assign(1000, std::byte{42});
+    for (const std::size_t place : {std::size_t{1}, sections.size() / 2, sections.size()}) {
+      sections.insert(sections.begin() + static_cast<std::ptrdiff_t>(place), unknown);
+    }
+  });
+  newer.header().minor = layout::version_minor + 1;
+  newer.header().reserved[3] = 9;
+  REQUIRE(newer.verdict().ok());
+  check_round_trip({newer.bytes().begin(), newer.bytes().end()});
+}
+
+TEST_CASE("transport: what is not a model is not packed") {
+  CHECK_THROWS_AS(static_cast<void>(pack({})), std::invalid_argument);
+  Bytes model = encode(smallest_model());
+  model.back() ^= std::byte{1};
+  CHECK_THROWS_AS(static_cast<void>(pack(model)), std::invalid_argument);
+}
+
+// where each packet ends
+std::vector<std::size_t> packet_ends(const Bytes& stream) {
+  std::vector<std::size_t> ends;
+  for (std::size_t at = sizeof(StreamHeader); at < stream.size();) {
+    PacketHeader packet;
+    std::memcpy(&packet, stream.data() + at, sizeof(packet));
+    at += sizeof(packet) + packet.coded_bytes;
+    ends.push_back(at);
+  }
+  return ends;
+}
+
+TEST_CASE("transport: cut at any length, it gives the levels that are whole and says where it ends") {
+  const Bytes model = encode(synthetic_model({.levels = 3}));
+  const Bytes stream = pack(model);
+  const auto ends = packet_ends(stream);
+  REQUIRE(ends.size() == 3);
+  REQUIRE(ends.back() == stream.size());
+  const std::vector<Bytes> prefixes{{}, truncate_to_level(model, 0), truncate_to_level(model, 1)};
+  for (std::size_t length = 0; length < stream.size(); ++length) {
+    const std::size_t whole = std::upper_bound(ends.begin(), ends.end(), length) - ends.begin();
+    // decoding every length takes too long: all near the ends of packets, some elsewhere
+    const std::size_t begin = whole == 0 ? 0 : ends[whole - 1];
+    if (length - begin > 34 && ends[whole] - length > 2 && length % 499 != 0) continue;
+    CAPTURE(length);
+    UnpackedModel unpacked;
+    const StreamResult result = unpack(std::span(stream).first(length), unpacked);
+    CHECK(result.rule == StreamRule::truncated);
+    CHECK(result.offset <= length);
+    CHECK(unpacked.levels == whole);
+    CHECK(unpacked.model == prefixes[whole]);
+    if (length >= sizeof(StreamHeader)) CHECK(result.packet == whole);
+  }
+}
+
+TEST_CASE("transport: cut at every length, a small stream gives nothing") {
+  const Bytes stream = pack(encode(smallest_model()));
+  for (std::size_t length = 0; length < stream.size(); ++length) {
+    CAPTURE(length);
+    UnpackedModel unpacked;
+    CHECK(unpack(std::span(stream).first(length), unpacked).rule == StreamRule::truncated);
+    CHECK(unpacked.model.empty());
+  }
+}
+
+// Recomputes the checksums of headers and coded bytes, so that a reader believes them.
+void reseal_stream(Bytes& stream) {
+  const auto seal = [&](std::size_t at, std::size_t place) {
+    const std::uint32_t crc = crc32c(std::span(stream).subspan(at, place));
+    std::memcpy(stream.data() + at + place, &crc, sizeof(crc));
+  };
+  if (stream.size() < sizeof(StreamHeader)) return;
+  seal(0, offsetof(StreamHeader, header_crc));
+  for (std::size_t at = sizeof(StreamHeader); stream.size() - at >= sizeof(PacketHeader);) {
+    PacketHeader packet;
+    std::memcpy(&packet, stream.data() + at, sizeof(packet));
+    const std::size_t left = stream.size() - at - sizeof(packet);
+    if (packet.coded_bytes > left) return seal(at, offsetof(PacketHeader, header_crc));
+    const auto coded = std::span(stream).subspan(at + sizeof(packet), packet.coded_bytes);
+    packet.coded_crc = crc32c(coded);
+    std::memcpy(stream.data() + at, &packet, sizeof(packet));
+    seal(at, offsetof(PacketHeader, header_crc));
+    at += sizeof(packet) + coded.size();
+  }
+}
+
+TEST_CASE("transport: every changed byte is found") {
+  const Bytes model = encode(synthetic_model({.levels = 2}));
+  const Bytes stream = pack(model);
+  std::mt19937_64 random(11);
+  for (std::size_t i = 0; i < 1400; ++i) {
+    const std::size_t at = i < 1024 ? i : random() % stream.size();
+    const auto flip = static_cast<std::byte>(1U << random() % 8);
+    CAPTURE(at);
+    Bytes broken = stream;
+    broken[at] ^= flip;
+    UnpackedModel unpacked;
+    const StreamResult result = unpack(broken, unpacked);
+    CHECK(!result.ok());
+    CHECK(result.rule != StreamRule::truncated);
+    CHECK(unpacked.model.empty());
+    CHECK(describe(result).find(rule_name(result.rule)) != std::string::npos);
+  }
+}
+
+TEST_CASE("transport: changed bytes with checksums made right are refused or give a valid model, soon") {
+  const Bytes stream = pack(encode(synthetic_model({.levels = 2})));
+  std::mt19937_64 random(12);
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i < 300; ++i) {
+    Bytes broken = stream;
+    const std::size_t changes = 1 + random() % 3;
+    for (std::size_t k = 0; k < changes; ++k) {
+      const std::size_t at = random() % (i % 2 == 0 ? stream.size() : 2 * sizeof(StreamHeader));
+      broken[at] = static_cast<std::byte>(random());
+    }
+    reseal_stream(broken);
+    CAPTURE(i);
+    UnpackedModel unpacked;
+    const StreamResult result = unpack(broken, unpacked);
+    if (!unpacked.model.empty()) {
+      CHECK(ModelMutant(unpacked.model).verdict().ok());
+    } else {
+      ++refused;
+      CHECK(!result.ok());
+    }
+  }
+  CHECK(refused > 200);
+}
+
+TEST_CASE("transport: each fault by name") {
+  const Bytes stream = pack(encode(synthetic_model({.levels = 2})));
+  const auto ends = packet_ends(stream);
+  const auto check_refused = [&](StreamRule rule, const std::string& field, std::size_t offset, auto&& edit,
+                                 bool reseal = true) {
+    Bytes broken = stream;
+    edit(broken);
+    if (reseal) reseal_stream(broken);
+    UnpackedModel unpacked;
+    const StreamResult result = unpack(broken, unpacked);
+    CAPTURE(describe(result));
+    CHECK(std::string(rule_name(result.rule)) == rule_name(rule));
+    CHECK(result.field == field);
+    CHECK(result.offset == offset);
+    CHECK(unpacked.model.empty());
+  };
+  const auto set = [](std::size_t at, auto value) {
+    return [=](Bytes& bytes) { std::memcpy(bytes.data() + at, &value, sizeof(value)); };
+  };
+  constexpr std::size_t first = sizeof(StreamHeader), coded = first + sizeof(PacketHeader);
+  check_refused(StreamRule::bad_magic, "magic", 0, set(5, 'P'));
+  check_refused(StreamRule::unsupported_version, "major", 8, set(8, std::uint16_t{2}));
+  check_refused(StreamRule::unsupported_version, "model_major", 10, set(10, std::uint16_t{99}));
+  check_refused(StreamRule::out_of_range, "levels", 14, set(14, std::uint16_t{0}));
+  check_refused(StreamRule::out_of_range, "levels", 14, set(14, std::uint16_t{13}));
+  check_refused(StreamRule::header_checksum, "header_crc", 60, set(20, '\1'), false);
+  check_refused(StreamRule::out_of_range, "content_bytes", first + 16, set(16, std::uint64_t{64}));
+  check_refused(StreamRule::out_of_range, "model_bytes", 16, set(16, ~std::uint64_t{63}));
+  check_refused(StreamRule::out_of_range, "level", first, set(first, std::uint32_t{1}));
+  check_refused(StreamRule::header_checksum, "header_crc", first + 28, set(first + 9, '\1'), false);
+  check_refused(StreamRule::out_of_range, "content_bytes", first + 16, set(first + 16, ~std::uint64_t{63}));
+  check_refused(StreamRule::out_of_range, "coded_bytes", first + 8, set(first + 8, std::uint64_t{5}));
+  check_refused(StreamRule::truncated, "coded_bytes", coded, set(first + 8, std::uint64_t{1} << 60));
+  check_refused(StreamRule::packet_checksum, "coded_crc", coded, set(coded + 50, '\1'), false);
+  check_refused(StreamRule::content_checksum, "content_crc", coded, set(first + 24, 0));
+  check_refused(StreamRule::damaged, "coded bytes", coded,
+                [&](Bytes& bytes) { std::fill_n(bytes.begin() + coded, 100, std::byte{0x5a}); });
+  check_refused(StreamRule::trailing_bytes, "bytes after the last packet", ends.back(),
+                [](Bytes& bytes) { bytes.push_back(std::byte{0}); });
+}
+
+}  // namespace
+}  // namespace greenloop::transport
