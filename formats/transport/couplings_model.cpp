@@ -43,12 +43,13 @@ std::uint32_t signed_class(std::int64_t value) {
 constexpr std::uint32_t size_steps = 24;
 std::uint32_t size_step(std::uint32_t error) { return std::min(half_octave(error / 16), size_steps - 1); }
 
-constexpr std::array<std::uint32_t, 5> presence_contexts{triples * steps, triples* steps, distances* classes* steps,
-                                                         pairs* pairs, 64 * steps};
+constexpr std::array<std::uint32_t, 6> presence_contexts{triples * steps, triples* steps, distances* classes* steps,
+                                                         some_rows,       pairs* pairs,   64 * steps};
 constexpr std::uint32_t ratios = 512;
 constexpr std::uint32_t layer_pairs = 49;
 constexpr std::array<std::uint32_t, 3> layer_contexts{ratios * 3, 3 * layer_pairs* layer_pairs, 3 * some_rows};
-constexpr std::array<std::uint32_t, 4> value_contexts{places * 64, places* signed_classes* size_steps, places * 64 * 4,
+constexpr std::array<std::uint32_t, 5> value_contexts{places * 64, places* size_steps* size_steps,
+                                                      places* signed_classes* size_steps, places * 64 * 4,
                                                       places * 32 * size_steps};
 
 }  // namespace
@@ -58,7 +59,9 @@ CouplingsModel::CouplingsModel()
       presence_(presence_contexts, classes * steps),
       coarse_(std::array<std::uint32_t, 2>{3, 64}, 1),
       layers_(layer_contexts, 3, layout::layers),
-      values_(value_contexts, places) {}
+      values_(value_contexts, places) {
+  typical_error_.fill(4 * 256);
+}
 
 void CouplingsModel::code(BitCoder& coder, CouplingBlocks& couplings, std::span<const Coefficient> coefficients) {
   const std::vector<CouplingBlock> given = std::move(couplings.blocks);  // empty if this is a decoder's
@@ -73,7 +76,7 @@ void CouplingsModel::code(BitCoder& coder, CouplingBlocks& couplings, std::span<
     for (std::uint32_t row = 0; row < column_; ++row) {
       see_neighbours(row);
       const bool given_here = next < given.size() && next < end[column_ - first + 1] && given[next].row == row;
-      if (!code_presence(coder, given_here)) continue;
+      if (!code_presence(coder, row, given_here)) continue;
       CouplingBlock block = given_here ? given[next++] : CouplingBlock{.row = row};
       code_block(coder, block);
       remember(block);
@@ -141,13 +144,14 @@ void CouplingsModel::see_neighbours(std::uint32_t row) {
   here_.expected = fine_class(sum / 4);
 }
 
-bool CouplingsModel::code_presence(BitCoder& coder, bool present) {
+bool CouplingsModel::code_presence(BitCoder& coder, std::uint32_t row, bool present) {
   if (!here_.any) return lonely_presence_[here_.distance * steps + here_.step].code(coder, present);
   const auto& l = here_.left_class;
   const auto& u = here_.up_class;
   const std::array contexts{((l[0] * classes + l[1]) * classes + l[2]) * steps + here_.step,
                             ((u[0] * classes + u[1]) * classes + u[2]) * steps + here_.step,
                             (here_.distance * classes + l[0]) * steps + here_.step,
+                            std::min(row, some_rows - 1),
                             (l[6] * classes + l[7]) * pairs + u[6] * classes + u[7],
                             here_.expected * steps + here_.step};
   return presence_.code(coder, present, contexts, l[0] * steps + here_.step);
@@ -203,10 +207,12 @@ std::int32_t CouplingsModel::code_value(BitCoder& coder, const CouplingBlock& bl
 
   const auto e = static_cast<std::uint32_t>(element);
   const std::uint32_t place = here_.step * 9 + e;
+  const std::uint32_t in_block = (error_so_far_ + typical_error_[element]) / (e + 1);
   const std::uint32_t around = size_step(here_.error);
   const std::uint32_t squares = std::min(half_octave(squares_so_far_), 31U);
   const std::array contexts{
       place * 64 + fine_class((error_so_far_ + here_.error) / (e + 2) / 8),
+      (place * size_steps + size_step(in_block)) * size_steps + around,
       (place * signed_classes + signed_class(exact)) * size_steps + around,
       (place * 64 + here_.expected) * 4 + fraction,
       (place * 32 + squares) * size_steps +
@@ -222,6 +228,7 @@ std::int32_t CouplingsModel::code_value(BitCoder& coder, const CouplingBlock& bl
   const auto absolute = static_cast<std::uint32_t>(std::min<std::int64_t>(std::abs(missed), 1 << 22));
   error_so_far_ += absolute;
   squares_so_far_ = static_cast<std::uint32_t>(std::min<std::int64_t>(squares_so_far_ + coded * coded, 1 << 30));
+  typical_error_[element] += absolute / 64 - typical_error_[element] / 64;
   return static_cast<std::int32_t>(coded);
 }
 

@@ -52,7 +52,7 @@ class CouplingsModel {
   void begin_level(std::span<const Coefficient> coefficients, std::uint32_t first);
   void begin_column();
   void see_neighbours(std::uint32_t row);
-  bool code_presence(BitCoder& coder, bool present);
+  bool code_presence(BitCoder& coder, std::uint32_t row, bool present);
   void see_values();
   void code_block(BitCoder& coder, CouplingBlock& block);
   std::int32_t code_value(BitCoder& coder, const CouplingBlock& block, std::size_t element, std::int32_t value);
@@ -78,6 +78,7 @@ class CouplingsModel {
 
   std::vector<LinearPredictor<row_inputs>> row_predictors_;          // [rows][3]
   std::array<LinearPredictor<column_inputs>, 3> column_predictors_;  // of the column at hand
+  std::array<std::uint32_t, 9> typical_error_;                       // of each element, in 1/256
   std::uint32_t error_so_far_ = 0;                                   // in this block, in 1/256
   std::uint32_t squares_so_far_ = 0;                                 // of its values
 
