@@ -19,8 +19,18 @@ inline float upper_half(float value) {
   return std::bit_cast<float>((bits + (0x7fff + (bits >> 16 & 1))) & 0xffff0000);
 }
 
-/// What fields take a stored coupling for: 9 numbers 3 c + r of R_i M R_j (m/N), M in quanta, in single precision, then
-/// rounded to their upper halves. element(k): element k of the stored block.
+/// Upper halves that a number of a field's block is the sum of: 8 significant bits each. Where couplings are so large
+/// that they need the first layer's coarser quantum, they cancel, and 8 bits are too few.
+inline std::uint32_t field_halves(const layout::Info& info) { return info.quantum[0] > info.quantum[1] ? 2 : 1; }
+
+/// The sum of that many upper halves nearest to a value.
+inline float rounded_for_fields(float value, std::uint32_t halves) {
+  const float half = upper_half(value);
+  return halves == 1 ? half : half + upper_half(value - half);
+}
+
+/// What fields take a stored coupling for, before it is rounded: 9 numbers 3 c + r of R_i M R_j (m/N), M in quanta, in
+/// single precision. element(k): element k of the stored block.
 template <class Element>
 void field_block(const layout::Scale& row, const layout::Scale& column, float quantum, Element element,
                  float (&block)[9]) {
@@ -40,7 +50,7 @@ void field_block(const layout::Scale& row, const layout::Scale& column, float qu
       for (std::uint32_t k = 0; k < 3; ++k) {
         sum += symmetric_element(row.root, r, k) * product[3 * c + k];
       }
-      block[3 * c + r] = upper_half(sum);
+      block[3 * c + r] = sum;
     }
   }
 }

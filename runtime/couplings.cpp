@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
+#include "formats/field_block.hpp"
 #include "runtime/domain.hpp"
-#include "runtime/field_couplings.hpp"
 
 namespace greenloop {
 namespace {
@@ -45,10 +45,11 @@ struct Window {
 void count_with_level(const ModelView& view, std::uint32_t other, Window& window) {
   std::fill(window.field, window.field + Window::most, 0U);
   std::fill(window.stored, window.stored + Window::most, 0U);
+  const std::uint32_t halves = field_halves(*view.info);
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const auto count = [&](std::uint32_t place) {
       ++window.stored[place - window.first];
-      window.field[place - window.first] += layout::layer[layer].field ? 1 : 0;
+      window.field[place - window.first] += layout::layer[layer].field ? halves : 0;
     };
     if (other <= window.level) {
       const LevelView& own = view.level[window.level];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "formats/field_block.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/testing/test_body.hpp"
 
@@ -78,7 +79,7 @@ TEST_CASE("blocks are counted by pairs of levels, from both sides") {
           const std::uint32_t column = view.level[q].domain_begin + j;
           const std::uint32_t row = couplings.index[b];
           // of 16 bits: two halves
-          const std::uint32_t in_field = layout::layer[layer].field ? 1 : 0;
+          const std::uint32_t in_field = layout::layer[layer].field ? field_halves(data.info) : 0;
           field[column][level_of_place(row)] += in_field;
           field[row][q] += in_field;
           ++stored[column][level_of_place(row)];

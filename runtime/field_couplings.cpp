@@ -76,13 +76,14 @@ OwnBlock own_block(const layout::Scale& scale) {
 
 void fill(const ModelView& view, const std::uint8_t* level, std::uint32_t* begin, FieldBlock* blocks) {
   const std::size_t lists = std::size_t{view.domain_count} * view.levels;
+  const std::uint32_t halves = field_halves(*view.info);
   const auto list = [&](std::uint32_t source, std::uint32_t target) {
     return std::size_t{source} * view.levels + level[target];
   };
   std::memset(begin, 0, sizeof(std::uint32_t) * (lists + 1));
   visit_field(view, [&](std::uint32_t, std::uint32_t row, std::uint32_t column, const CouplingsView&, std::uint32_t) {
-    ++begin[list(row, column) + 1];
-    ++begin[list(column, row) + 1];
+    begin[list(row, column) + 1] += halves;
+    begin[list(column, row) + 1] += halves;
   });
   for (std::size_t k = 0; k < lists; ++k) {
     begin[k + 1] += begin[k];
@@ -94,13 +95,17 @@ void fill(const ModelView& view, const std::uint8_t* level, std::uint32_t* begin
     };
     float value[9];
     field_block(scale_of(view, level, row), scale_of(view, level, column), view.info->quantum[layer], element, value);
-    FieldBlock& direct = blocks[begin[list(column, row)]++];
-    FieldBlock& mirrored = blocks[begin[list(row, column)]++];
-    direct = {.byte_offset = byte_offset(view, level, row), .value = {}, .zero = 0};
-    mirrored = {.byte_offset = byte_offset(view, level, column), .value = {}, .zero = 0};
-    for (std::uint32_t k = 0; k < 9; ++k) {
-      direct.value[k] = mirrored.value[3 * (k % 3) + k / 3] =
-          static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(value[k]) >> 16);
+    for (std::uint32_t n = 0; n < halves; ++n) {
+      FieldBlock& direct = blocks[begin[list(column, row)]++];
+      FieldBlock& mirrored = blocks[begin[list(row, column)]++];
+      direct = {.byte_offset = byte_offset(view, level, row), .value = {}, .zero = 0};
+      mirrored = {.byte_offset = byte_offset(view, level, column), .value = {}, .zero = 0};
+      for (std::uint32_t k = 0; k < 9; ++k) {
+        const float half = upper_half(value[k]);
+        direct.value[k] = mirrored.value[3 * (k % 3) + k / 3] =
+            static_cast<std::uint16_t>(std::bit_cast<std::uint32_t>(half) >> 16);
+        value[k] -= half;
+      }
     }
   });
   std::memmove(begin + 1, begin, sizeof(std::uint32_t) * lists);
@@ -118,7 +123,7 @@ Block load(const FieldBlock& block) {
 FieldCouplings place_field_couplings(Arena& arena, const ModelView& view, const std::uint8_t* level) noexcept {
   auto* own = arena.take<OwnBlock>(view.domain_count);
   auto* begin = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels + 1);
-  auto* blocks = arena.take<FieldBlock>(2 * field_block_count(view));
+  auto* blocks = arena.take<FieldBlock>(std::uint64_t{2} * field_halves(*view.info) * field_block_count(view));
   if (own != nullptr) {
     for (std::uint32_t i = 0; i < view.domain_count; ++i) {
       own[i] = own_block(scale_of(view, level, i));

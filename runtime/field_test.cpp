@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "formats/field_block.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/testing/dense_reference.hpp"
 #include "runtime/testing/placed_body.hpp"
@@ -126,7 +127,7 @@ TEST_CASE("the blocks of a field are those between what is touched and what is k
             for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
               const std::uint32_t row = couplings.index[b];
               const std::uint32_t seen = (row < end ? times[column] : 0) + (column < end ? times[row] : 0);
-              blocks += seen;
+              blocks += std::uint64_t{field_halves(data.info)} * seen;
             }
           }
         }

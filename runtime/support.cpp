@@ -88,7 +88,7 @@ ReachBound bound_reach(const ModelView& view, std::uint32_t c, const std::uint32
   bound.visits = 1;
   for (std::uint32_t level = c; level > 0; --level) {
     constexpr std::uint32_t slots = OddNeighbours::most;
-    bound.visits += 2 * forced[level];
+    bound.visits += std::uint64_t{2} * forced[level];
     bound.visits += std::uint64_t{forced[level - 1]} * slots * ((most_neighbours[level] + slots - 1) / slots);
   }
   bound.bounded = true;

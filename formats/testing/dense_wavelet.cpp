@@ -34,6 +34,7 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::u
           if (layers == layout::field_layers) {
             float block[9];
             field_block(scale[i], scale[column], model.info.quantum[layer], element, block);
+            for (float& number : block) number = rounded_for_fields(number, field_halves(model.info));
             form.block<3, 3>(3 * i, 3 * column) += Eigen::Map<const Eigen::Matrix3f>(block).cast<double>();
           } else {
             Matrix3d block;

@@ -73,6 +73,7 @@ std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(con
           float value[9];
           if (layers == layout::field_layers) {
             field_block(scales_[own.first], scales_[own.second], view.info->quantum[layer], element, value);
+            for (float& number : value) number = rounded_for_fields(number, field_halves(*view.info));
           } else {
             for (std::uint32_t k = 0; k < 9; ++k) value[k] = view.info->quantum[layer] * static_cast<float>(element(k));
           }

@@ -40,7 +40,8 @@ Values add_block(Values values, float quantum, std::uint32_t row, CouplingsData&
 }
 
 // the common quantum; in the first layer one that holds the largest value
-void choose_quanta(const WaveletCompliance& compliance, double quantum, layout::Info& info) {
+void choose_quanta(const WaveletCompliance& compliance, const Encoding& encoding, layout::Info& info) {
+  const double quantum = encoding.quantum;
   std::fill(std::begin(info.quantum), std::end(info.quantum), static_cast<float>(quantum));
   double most = 0;
   for (const auto& level : compliance.couplings) {
@@ -52,6 +53,7 @@ void choose_quanta(const WaveletCompliance& compliance, double quantum, layout::
                              " can be stored: the body is too thin for its nodes; thicken it or take fewer levels");
   }
   info.quantum[0] = static_cast<float>(std::max(quantum, most / largest_value(0)));
+  if (encoding.fine_field) info.quantum[0] = std::max(info.quantum[0], std::nextafter(info.quantum[1], 1.0F));
 }
 
 // the layer of fewest bits that holds a block; the first holds all
@@ -76,7 +78,7 @@ std::vector<double> field_sizes(const std::vector<CoefficientScale>& scales, con
 }  // namespace
 
 void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model) {
-  choose_quanta(compliance, encoding.quantum, model.info);
+  choose_quanta(compliance, encoding, model.info);
   const std::vector<double> sizes = field_sizes(compliance.scales, encoding);
   std::size_t column = 0;
   for (std::size_t level = 0; level < compliance.couplings.size(); ++level) {

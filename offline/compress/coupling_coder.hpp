@@ -16,6 +16,7 @@ struct Encoding {
   /// weights, reaches this; 0: all do.
   double field_threshold = 0;
   std::vector<double> field_weight{};  ///< [coefficient] or empty: all 1
+  bool fine_field = false;             ///< fields of 16 significant bits: see field_halves
 };
 
 /// Fills in quanta, scales and couplings of every level. `model.levels` must have one entry per level of the

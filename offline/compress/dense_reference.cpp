@@ -62,16 +62,17 @@ std::size_t row_at(const CouplingsView& couplings, std::size_t block) {
   return static_cast<const std::uint32_t*>(couplings.index)[block];
 }
 
-// the block that a stored one stands for, m/N
+// the block that a stored one stands for, m/N; `halves` 0: not rounded for fields
 Eigen::Matrix3d unscaled(const layout::Scale& row, const layout::Scale& column, float quantum, const double* element,
-                         bool field) {
-  if (!field) {
+                         std::uint32_t halves) {
+  if (halves == 0) {
     return static_cast<double>(quantum) * symmetric(row.root) * Eigen::Map<const Eigen::Matrix3d>(element) *
            symmetric(column.root);
   }
   float block[9];
   field_block(
       row, column, quantum, [&](std::uint32_t k) { return element[k]; }, block);
+  for (float& number : block) number = rounded_for_fields(number, halves);
   return Eigen::Map<const Eigen::Matrix3f>(block).cast<double>();
 }
 
@@ -80,6 +81,7 @@ Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
   const Eigen::Index size = at(view.domain_count);
   Eigen::MatrixXd form = Eigen::MatrixXd::Zero(size, size);
   std::vector<layout::Scale> scales;
+  const std::uint32_t halves = layers == layout::field_layers ? field_halves(*view.info) : 0;
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& from = view.level[level];
     scales.insert(scales.end(), from.scales, from.scales + from.counts->domain_count);
@@ -93,7 +95,7 @@ Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
           }
           const std::size_t row = row_at(couplings, b), column = from.domain_begin + j;
           const Eigen::Matrix3d block =
-              unscaled(scales[row], scales[column], view.info->quantum[layer], element, layers == layout::field_layers);
+              unscaled(scales[row], scales[column], view.info->quantum[layer], element, halves);
           form.block<3, 3>(at(row), at(column)) += block;
           form.block<3, 3>(at(column), at(row)) += block.transpose();
         }

@@ -231,12 +231,13 @@ class Build {
   }
 
   // Where the sample promised too much of the field, more couplings make it, first those of the poor columns, in the
-  // end all. No value changes by that.
+  // end all, with more digits. The forces do not change by that.
   void improve_field(const WaveletCompliance& compliance, ColumnErrors errors, Measured& measured) {
     Encoding& encoding = measured.trial.encoding;
-    for (int round = 0; encoding.field_threshold > 0; ++round) {
-      if (errors.error.rms() <= input_.accuracy.rms && errors.poor.empty()) break;
+    for (int round = 0; errors.error.rms() > input_.accuracy.rms || !errors.poor.empty(); ++round) {
+      if (encoding.field_threshold == 0 && encoding.fine_field) break;
       if (errors.error.rms() > input_.accuracy.rms) encoding.field_threshold *= 0.8;
+      if (round == field_rounds / 2 || encoding.field_threshold == 0) encoding.fine_field = true;
       if (round == field_rounds) encoding.field_threshold = 0;
       weigh_columns(wavelet_, compliance, errors.poor, encoding);
       encode_couplings(compliance, encoding, model_);
