@@ -8,7 +8,7 @@ namespace {
 // displacements of the coefficients of levels 0..field_level by the forces on those of level q
 void add_level(const FieldModel& model, const Touched& touched, std::uint32_t q, std::uint32_t field_level,
                Float4* force, Float4* x) {
-  constexpr std::uint32_t ahead = 2;  // coefficients whose lists are on their way while one is summed
+  constexpr std::uint32_t ahead = 3;  // coefficients whose lists are on their way while one is summed
   const LevelView& level = model.refinement.view->level[q];
   const std::uint32_t* list = touched.list[q];
   const std::uint32_t count = touched.count[q];

@@ -112,6 +112,8 @@ void fill(const ModelView& view, const std::uint8_t* level, std::uint32_t* begin
   begin[0] = 0;
 }
 
+constexpr std::ptrdiff_t most_prefetched = 1024;  // bytes of a list; the rest follows by itself
+
 // fourth lanes: any of the block's values, or 0
 Block load(const FieldBlock& block) {
   return {{detail::load_upper_halves(block.value), detail::load_upper_halves(block.value + 3),
@@ -134,7 +136,13 @@ FieldCouplings place_field_couplings(Arena& arena, const ModelView& view, const 
 }
 
 void prefetch_couplings(const FieldCouplings& couplings, std::uint32_t coefficient) noexcept {
-  __builtin_prefetch(couplings.block + couplings.begin[std::size_t{coefficient} * couplings.levels]);
+  const std::uint32_t* begin = couplings.begin + std::size_t{coefficient} * couplings.levels;
+  const auto* at = reinterpret_cast<const std::byte*>(couplings.block + begin[0]);
+  const auto* end = reinterpret_cast<const std::byte*>(couplings.block + begin[couplings.levels]);
+  end = end - at > most_prefetched ? at + most_prefetched : end;
+  for (; at < end; at += 64) {
+    __builtin_prefetch(at);
+  }
 }
 
 void add_couplings(const FieldCouplings& couplings, std::uint32_t coefficient, std::uint32_t field_level, Float4 force,
