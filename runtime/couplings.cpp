@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "formats/field_block.hpp"
+#include "formats/stored_blocks.hpp"
 #include "runtime/domain.hpp"
 
 namespace greenloop {
@@ -99,34 +100,16 @@ std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::
   return count;
 }
 
-int stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t position,
-                 std::uint32_t k) noexcept {
-  if (value_bits == 4) {
-    const int byte = std::to_integer<int>(view.value[5 * std::size_t{position} + k / 2]);
-    const int nibble = k % 2 == 0 ? byte & 15 : byte >> 4;
-    return nibble < 8 ? nibble : nibble - 16;
-  }
-  const std::size_t at = 9 * std::size_t{position} + k;
-  if (value_bits == 8) {
-    return static_cast<std::int8_t>(view.value[at]);
-  }
-  std::int16_t value;
-  std::memcpy(&value, view.value + 2 * at, sizeof value);
-  return value;
-}
-
 CouplingCounts count_couplings(const ModelView& view) noexcept {
   CouplingCounts counts;
-  std::uint64_t blocks = 0;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     for (const CouplingsView& couplings : view.level[q].couplings) {
-      blocks += couplings.begin[couplings.columns];
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
         counts.longest_column = std::max(counts.longest_column, column_length(couplings, j));
       }
     }
   }
-  counts.countable = blocks < std::uint64_t{1} << 30;
+  counts.countable = block_count(view, 0, layout::layers) < std::uint64_t{1} << 30;
   for (std::uint32_t q = 0; counts.countable && q < view.levels; ++q) {
     const std::uint32_t end = domain_up_to(view, q);
     for (std::uint32_t first = view.level[q].domain_begin; first < end; first += Window::most) {

@@ -51,10 +51,6 @@ void visit_rows(const CouplingsView& view, std::uint32_t column, std::uint32_t f
 std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
                            const std::uint32_t* slot, BlockPlace* places, Block* blocks) noexcept;
 
-/// Element k of a stored block: see layout::CouplingsHeader. Start-up.
-[[nodiscard]] int stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t position,
-                               std::uint32_t k) noexcept;
-
 /// Blocks between the coefficients of a level and those of another.
 struct LevelPair {
   std::uint32_t all = 0;   ///< summed over the coefficients of the first: a block within one level counts twice

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/field_block.hpp"
+#include "formats/stored_blocks.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/testing/test_body.hpp"
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "formats/field_block.hpp"
+#include "formats/stored_blocks.hpp"
 #include "runtime/couplings.hpp"
 #include "runtime/domain.hpp"
 
@@ -32,17 +33,6 @@ void visit_field(const ModelView& view, Visit visit) {
                   visit(layer, row, column, from, position);
                 });
   }
-}
-
-std::uint64_t field_block_count(const ModelView& view) {
-  std::uint64_t blocks = 0;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    for (std::uint32_t layer = 0; layer < layout::field_layers; ++layer) {
-      const CouplingsView& couplings = view.level[q].couplings[layer];
-      blocks += couplings.begin[couplings.columns];
-    }
-  }
-  return blocks;
 }
 
 const layout::Scale& scale_of(const ModelView& view, const std::uint8_t* level, std::uint32_t coefficient) {
@@ -125,7 +115,8 @@ Block load(const FieldBlock& block) {
 FieldCouplings place_field_couplings(Arena& arena, const ModelView& view, const std::uint8_t* level) noexcept {
   auto* own = arena.take<OwnBlock>(view.domain_count);
   auto* begin = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels + 1);
-  auto* blocks = arena.take<FieldBlock>(std::uint64_t{2} * field_halves(*view.info) * field_block_count(view));
+  auto* blocks =
+      arena.take<FieldBlock>(std::uint64_t{2} * field_halves(*view.info) * block_count(view, 0, layout::field_layers));
   if (own != nullptr) {
     for (std::uint32_t i = 0; i < view.domain_count; ++i) {
       own[i] = own_block(scale_of(view, level, i));

@@ -1,8 +1,8 @@
 #include "formats/testing/dense_wavelet.hpp"
 
-#include "formats/field_block.hpp"
-
 #include <algorithm>
+
+#include "formats/field_block.hpp"
 
 namespace greenloop {
 namespace {

@@ -2,27 +2,17 @@
 
 #include <algorithm>
 
+#include "formats/stored_blocks.hpp"
+
 namespace greenloop::transport {
 namespace {
-
-std::int16_t element(const CouplingsView& view, std::uint32_t value_bits, std::size_t block, std::size_t k) {
-  if (value_bits == 16) return reinterpret_cast<const std::int16_t*>(view.value)[9 * block + k];
-  if (value_bits == 8) return reinterpret_cast<const std::int8_t*>(view.value)[9 * block + k];
-  const auto nibble = std::to_integer<int>(view.value[5 * block + k / 2]) >> (4 * (k % 2)) & 15;
-  return static_cast<std::int16_t>(nibble < 8 ? nibble : nibble - 16);
-}
-
-std::uint32_t row(const CouplingsView& view, std::size_t block) {
-  return view.index_bytes == 2 ? static_cast<const std::uint16_t*>(view.index)[block]
-                               : static_cast<const std::uint32_t*>(view.index)[block];
-}
 
 void append_column(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
                    std::vector<CouplingBlock>& blocks) {
   if (column >= view.columns) return;  // of an empty section
   for (std::uint32_t b = view.begin[column]; b < view.begin[column + 1]; ++b) {
-    CouplingBlock block{.row = row(view, b), .layer = layer};
-    for (std::size_t k = 0; k < 9; ++k) block.value[k] = element(view, layout::layer[layer].value_bits, b, k);
+    CouplingBlock block{.row = stored_row(view, b), .layer = layer};
+    for (std::uint32_t k = 0; k < 9; ++k) block.value[k] = stored_value(view, layout::layer[layer].value_bits, b, k);
     blocks.push_back(block);
   }
 }

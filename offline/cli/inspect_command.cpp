@@ -13,6 +13,7 @@
 
 #include "formats/describe.hpp"
 #include "formats/model_file.hpp"
+#include "formats/stored_blocks.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -58,15 +59,6 @@ Json provenance_of(const ModelView& view) {
   return parsed.is_discarded() ? Json(text) : parsed;
 }
 
-std::uint64_t coupling_count(const ModelView& view, std::uint32_t layer) {
-  std::uint64_t count = 0;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const CouplingsView& couplings = view.level[q].couplings[layer];
-    count += couplings.begin[couplings.columns];
-  }
-  return count;
-}
-
 std::string_view wavelet_name(std::uint32_t wavelet) {
   return wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
 }
@@ -75,18 +67,12 @@ std::string_view wavelet_name(std::uint32_t wavelet) {
 Json bits_of(const ModelView& view) {
   std::map<std::uint32_t, std::uint64_t> blocks;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-    const std::uint64_t count = coupling_count(view, layer);
+    const std::uint64_t count = block_count(view, layer, layer + 1);
     if (count > 0) blocks[layout::layer[layer].value_bits] += count;
   }
   Json bits = Json::object();
   for (const auto& [width, count] : blocks) bits[std::to_string(width)] = count;
   return bits;
-}
-
-std::uint64_t field_couplings(const ModelView& view) {
-  std::uint64_t count = 0;
-  for (std::uint32_t layer = 0; layer < layout::field_layers; ++layer) count += coupling_count(view, layer);
-  return count;
 }
 
 // what the build tried, if the model is its work
@@ -113,7 +99,7 @@ Json inspection_of(const ModelFile& model) {
       {"rms_error", finest.rms_error},
       {"worst_column_error", finest.worst_column_error},
       {"worst_patch_force_error", finest.patch_force_error},
-      {"field_couplings", field_couplings(view)},
+      {"field_couplings", block_count(view, 0, layout::field_layers)},
       {"field_rms_error", finest.field_rms_error},
       {"field_column_error", finest.field_column_error},
       {"lambda_min", info.lambda_min},

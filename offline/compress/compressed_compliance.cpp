@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "formats/field_block.hpp"
+#include "formats/stored_blocks.hpp"
 #include "offline/compress/scale.hpp"
 
 namespace greenloop::offline {
@@ -20,19 +21,6 @@ void multiply(const float* m, bool transposed, std::size_t columns, const double
 
 bool any(const double* f, std::size_t count) {
   return std::any_of(f, f + count, [](double x) { return x != 0; });
-}
-
-std::int16_t value_at(const std::byte* value, std::uint32_t bits, std::size_t block, std::size_t k) {
-  if (bits == 16) return reinterpret_cast<const std::int16_t*>(value)[9 * block + k];
-  if (bits == 8) return reinterpret_cast<const std::int8_t*>(value)[9 * block + k];
-  const auto byte = static_cast<unsigned>(value[5 * block + k / 2]);
-  const unsigned nibble = (k % 2 == 0 ? byte : byte >> 4) & 15;
-  return static_cast<std::int16_t>(nibble < 8 ? static_cast<int>(nibble) : static_cast<int>(nibble) - 16);
-}
-
-std::uint32_t row_at(const CouplingsView& couplings, std::size_t block) {
-  if (couplings.index_bytes == 2) return static_cast<const std::uint16_t*>(couplings.index)[block];
-  return static_cast<const std::uint32_t*>(couplings.index)[block];
 }
 
 void append(const Eigen::Matrix3d& matrix, std::vector<float>& matrices) {
@@ -65,10 +53,10 @@ std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(con
     for (std::uint32_t layer = 0; layer < layers; ++layer) {
       const CouplingsView& couplings = view.level[level].couplings[layer];
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
-        for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-          const Ends own{row_at(couplings, b), view.level[level].domain_begin + j};
+        for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
+          const Ends own{stored_row(couplings, b), view.level[level].domain_begin + j};
           const auto element = [&](std::uint32_t k) {
-            return value_at(couplings.value, layout::layer[layer].value_bits, b, k);
+            return stored_value(couplings, layout::layer[layer].value_bits, b, k);
           };
           float value[9];
           if (layers == layout::field_layers) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <span>
 
+#include "formats/stored_blocks.hpp"
 #include "offline/report/axis.hpp"
 
 namespace greenloop::offline {
@@ -56,23 +57,11 @@ std::string wavelet_name(const ModelView& model) {
   return model.info->wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
 }
 
-/// Couplings of layers `first` up to `last`, excluded.
-std::uint64_t coupling_count(const ModelView& model, std::uint32_t first, std::uint32_t last) {
-  std::uint64_t count = 0;
-  for (std::uint32_t q = 0; q < model.levels; ++q) {
-    for (std::uint32_t layer = first; layer < last; ++layer) {
-      const CouplingsView& couplings = model.level[q].couplings[layer];
-      count += couplings.begin[couplings.columns];
-    }
-  }
-  return count;
-}
-
 /// The couplings by the bits of their values, e.g. "32: 9, 16: 12 905, 8: 112 433".
 std::string coupling_bits(const ModelView& model) {
   std::map<std::uint32_t, std::uint64_t, std::greater<>> blocks;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-    const std::uint64_t count = coupling_count(model, layer, layer + 1);
+    const std::uint64_t count = block_count(model, layer, layer + 1);
     if (count > 0) blocks[layout::layer[layer].value_bits] += count;
   }
   std::string text;
@@ -132,8 +121,8 @@ FactGroup compression_facts(const ModelView& model) {
            {"worst column's error", readable_percent(finest.worst_column_error)},
            {"worst patch force's error", readable_percent(finest.patch_force_error)},
            {"couplings that make fields",
-            fmt::format("{} of {}", readable_count(coupling_count(model, 0, layout::field_layers)),
-                        readable_count(coupling_count(model, 0, layout::layers)))},
+            fmt::format("{} of {}", readable_count(block_count(model, 0, layout::field_layers)),
+                        readable_count(block_count(model, 0, layout::layers)))},
            {"field's RMS error", readable_percent(finest.field_rms_error)},
            {"field's worst column", readable_percent(finest.field_column_error)},
            {"positive definite", certificate(model)},

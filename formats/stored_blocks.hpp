@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "formats/view.hpp"
+
+namespace greenloop {
+
+// Reading the blocks of a couplings section in place: see layout::CouplingsHeader. All of constant work but for the sum
+// over a model; none throws or allocates.
+
+/// Blocks of a section.
+inline std::uint32_t block_count(const CouplingsView& view) { return view.begin[view.columns]; }
+
+/// Blocks of layers first .. end-1, over all levels. Work: a read per section.
+inline std::uint64_t block_count(const ModelView& view, std::uint32_t first, std::uint32_t end) {
+  std::uint64_t blocks = 0;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    for (std::uint32_t layer = first; layer < end; ++layer) {
+      blocks += block_count(view.level[q].couplings[layer]);
+    }
+  }
+  return blocks;
+}
+
+/// Row of a block, by its place in the section.
+inline std::uint32_t stored_row(const CouplingsView& view, std::uint32_t block) {
+  return view.index_bytes == 2 ? static_cast<const std::uint16_t*>(view.index)[block]
+                               : static_cast<const std::uint32_t*>(view.index)[block];
+}
+
+/// Element k of a block, in quanta; value_bits: the layer's.
+inline std::int16_t stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t block,
+                                 std::uint32_t k) {
+  if (value_bits == 4) {
+    const int byte = std::to_integer<int>(view.value[5 * std::size_t{block} + k / 2]);
+    const int nibble = k % 2 == 0 ? byte & 15 : byte >> 4;
+    return static_cast<std::int16_t>(nibble < 8 ? nibble : nibble - 16);
+  }
+  const std::size_t at = 9 * std::size_t{block} + k;
+  if (value_bits == 8) {
+    return static_cast<std::int8_t>(view.value[at]);
+  }
+  std::int16_t value;
+  std::memcpy(&value, view.value + 2 * at, sizeof value);
+  return value;
+}
+
+}  // namespace greenloop
