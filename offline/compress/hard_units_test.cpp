@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "offline/compress/compressed_compliance.hpp"
 #include "offline/compress/measured_model.hpp"
 #include "offline/compress/solved_body.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -18,9 +19,10 @@ struct Units {
   double young = 1;   // Pa
 };
 
-// forces and fields of a thin-eared ball of this size and stiffness, in units of young * length^2 and length
+// forces and fields of a thin-eared ball of this size and stiffness, in units of young * length^2 and length, and some
+// columns of the compliance that its model stands for, in units of 1 / (young * length)
 struct Answers {
-  std::vector<double> force, field;
+  std::vector<double> force, field, compliance;
 };
 
 Answers answers(const Units& units) {
@@ -33,7 +35,13 @@ Answers answers(const Units& units) {
   CHECK(measured.patch_force <= test::default_accuracy.patch_force);
   const TestModel model(encode(measured.built.model));
   const auto touchable = model.touchable();
+  const CompressedCompliance whole(model.view(), layout::layers);
   Answers result;
+  for (std::size_t j = 0; j < whole.rows(whole.finest()); j += 20) {
+    for (const double u : whole.column(whole.finest(), j)) {
+      result.compliance.push_back(u * units.young * units.length);
+    }
+  }
   TestBody loop(model, {.max_contacts = 8, .cached_factors = 1});
   for (std::uint32_t first = 0; first + 8 <= touchable.size(); first += 8) {
     std::vector<Contact> contacts;
@@ -68,6 +76,7 @@ TEST_CASE("units that are powers of two, about a micrometre and a kilometre, cha
     const Answers scaled = answers(units);
     CHECK(scaled.force == metres.force);
     CHECK(scaled.field == metres.field);
+    CHECK(scaled.compliance == metres.compliance);
   }
 }
 
@@ -79,6 +88,7 @@ TEST_CASE("micrometres of 1 Pa and kilometres of 100 GPa answer as metres of 100
     const double force = difference(scaled.force, metres.force), field = difference(scaled.field, metres.field);
     MESSAGE("length ", units.length, " m: forces differ by ", force, ", fields by ", field);
     CHECK(force < 1e-4);
+    CHECK(difference(scaled.compliance, metres.compliance) < 4e-4);
     // round-off of the units decides which of two equally good sets of couplings makes the field
     CHECK(field < 2 * test::default_accuracy.worst_column);
   }
