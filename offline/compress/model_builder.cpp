@@ -132,6 +132,7 @@ void store_errors(const CompressionReport& report, ModelData& model) {
 struct Measured {
   Trial trial;
   FieldError field;
+  bool field_meets = false;  // the accuracy asked for
   std::vector<std::size_t> worst_patches;
   double least_eigenvalue = 0;  // m/N, estimated; only of a trial that meets the accuracy
 };
@@ -197,10 +198,12 @@ class Build {
       if (!chosen.meets(aim)) return false;
       chosen.encoding =
           search_field_threshold(bench, field_safety * input_.accuracy.rms, chosen.encoding, part(0.6, 0.7));
-      const Measured measured = measure(compliance, chosen);
-      if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
+      Measured measured = measure(compliance, chosen);
+      if (measured.trial.meets(input_.accuracy) && measured.field_meets && measured.least_eigenvalue > 0) {
+        const EncodedModel encoded(model_);
+        measured.trial.bytes = encoded.bytes.size();
         describe(measured);
-        describe_levels(compliance, measured.trial);
+        describe_levels(compliance, encoded.view, measured.trial);
         return true;
       }
       closest_ = measured.trial;
@@ -230,11 +233,15 @@ class Build {
     return measured;
   }
 
+  [[nodiscard]] bool meets(const ColumnErrors& errors) const {
+    return errors.error.rms() <= input_.accuracy.rms && errors.poor.empty();
+  }
+
   // Where the sample promised too much of the field, more couplings make it, first those of the poor columns, in the
   // end all, with more digits. The forces do not change by that.
   void improve_field(const WaveletCompliance& compliance, ColumnErrors errors, Measured& measured) {
     Encoding& encoding = measured.trial.encoding;
-    for (int round = 0; errors.error.rms() > input_.accuracy.rms || !errors.poor.empty(); ++round) {
+    for (int round = 0; !meets(errors); ++round) {
       if (encoding.field_threshold == 0 && encoding.fine_field) break;
       if (errors.error.rms() > input_.accuracy.rms) encoding.field_threshold *= 0.8;
       if (round == field_rounds / 2 || encoding.field_threshold == 0) encoding.fine_field = true;
@@ -246,14 +253,14 @@ class Build {
       errors = measure_finest(input_, {&field}, part(0.85, 0.9))[0];
     }
     measured.field = errors.error;
-    measured.trial.bytes = EncodedModel(model_).bytes.size();
+    measured.field_meets = meets(errors);
   }
 
   // asks the next search for as much less as this one's choice fell short by; patches it has learned of itself
   void tighten(Accuracy& aim, const Measured& measured) const {
     const Trial& trial = measured.trial;
     const Accuracy& wanted = input_.accuracy;
-    if (trial.meets(wanted)) {  // but it is not positive definite
+    if (trial.meets(wanted)) {  // but it is not positive definite, or its field falls short
       aim.patch_force *= 0.5;
       return;
     }
@@ -270,9 +277,8 @@ class Build {
     report_.patches = sample_.patches().size();
   }
 
-  void describe_levels(const WaveletCompliance& compliance, const Trial& finest) {
-    const EncodedModel encoded(model_);
-    const CompressedCompliance all(encoded.view, layout::layers);
+  void describe_levels(const WaveletCompliance& compliance, const ModelView& view, const Trial& finest) {
+    const CompressedCompliance all(view, layout::layers);
     for (std::size_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
       report_.levels.push_back(measure_coarse(input_, wavelet_, compliance, all, level));
     }
@@ -282,8 +288,8 @@ class Build {
                               .worst_column_error = finest.worst_column,
                               .patch_force_error = finest.patch_force});
     for (auto& level : report_.levels) {
-      level.kept_blocks = encoded.view.level[level.level].counts->kept_blocks;
-      level.dense_blocks = encoded.view.level[level.level].counts->dense_blocks;
+      level.kept_blocks = view.level[level.level].counts->kept_blocks;
+      level.dense_blocks = view.level[level.level].counts->dense_blocks;
     }
   }
 
