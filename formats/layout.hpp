@@ -40,7 +40,7 @@ namespace greenloop::layout {
 
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
-inline constexpr std::uint16_t version_major = 2;
+inline constexpr std::uint16_t version_major = 3;
 inline constexpr std::uint16_t version_minor = 0;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
@@ -59,17 +59,10 @@ enum class SectionKind : std::uint32_t {
   couplings = 11,       ///< (q, layer) CouplingsHeader and its arrays
 };
 
-/// Couplings are stored in layers by what needs them and by size. Fields are made of the first four alone; forces need
-/// all; fields round what they take (field_block). The first layer, of a coarser quantum, is for what is too large for
-/// the second; what is left of it stands in another. A file has every section, even an empty one.
-struct Layer {
-  std::uint32_t value_bits;  ///< of one element of a block
-  bool field;                ///< part of fields
-};
-
-inline constexpr std::uint32_t layers = 6;
-inline constexpr Layer layer[layers] = {{16, true}, {16, true}, {8, true}, {4, true}, {8, false}, {4, false}};
-inline constexpr std::uint32_t field_layers = 4;  ///< the first ones
+/// Couplings are stored in layers by size. The first, of a coarser quantum, is for what is too large for the second;
+/// what is left of it stands in another. A file has every section, even an empty one.
+inline constexpr std::uint32_t layers = 4;
+inline constexpr std::uint32_t value_bits[layers] = {16, 16, 8, 4};  ///< of one element of a block
 
 struct Header {
   char magic[8];
@@ -117,25 +110,35 @@ struct Info {
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
   float quantum[layers];                  ///< of the scaled values of each layer of couplings, in [0, 1]
-  std::uint8_t reserved[128];
+  float field_threshold;                  ///< what is left out of field columns, see below
+  float field_peak_threshold;
+  std::uint32_t field_halves;  ///< 1 or 2: a block of a field column is the sum of as many of 8 significant bits
+  std::uint8_t reserved[124];
 };
 static_assert(sizeof(Info) == 256);
+
+// Fields are sums of *field columns*: what a unit force on a touchable node of constraint level c moves, in
+// coefficients, W U W^T T^-T. They are not stored but made of the couplings when a body is created. Of the block b_i of
+// a coefficient of level l a column keeps, rounded to 8 or, as two blocks, 16 significant bits,
+//   |b_i| >= field_threshold 2^l (sum_k 4^-l(k) |b_k|^2)^1/2   or   |b_i| >= field_peak_threshold |U_jj|
+// with the Frobenius norm and the compliance U_jj of the node itself.
 
 /// The model cut off after this level: the compliance between the averages of level q, which are the forces and the
 /// displacements of constraint level q. Errors against the exact one, all relative.
 struct Level {
-  std::uint32_t node_count;           ///< |M(q)|
-  std::uint32_t domain_count;         ///< domain nodes of M(q): the first ones
-  std::uint32_t base_triangle_count;  ///< q = 0 only, else 0
-  std::uint32_t reserved0;
-  std::uint64_t kept_blocks;   ///< 3x3 blocks stored in levels 0..q: scales and couplings
-  std::uint64_t dense_blocks;  ///< domain nodes of K(q), squared
-  float rms_error;             ///< ||U^ - U||_F / ||U||_F, all couplings
-  float worst_column_error;    ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius, all couplings
-  float patch_force_error;     ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
-  float field_rms_error;       ///< rms_error of fields
-  float field_column_error;    ///< worst_column_error of fields
-  std::uint32_t reserved[3];
+  std::uint32_t node_count;            ///< |M(q)|
+  std::uint32_t domain_count;          ///< domain nodes of M(q): the first ones
+  std::uint32_t base_triangle_count;   ///< q = 0 only, else 0
+  std::uint32_t longest_field_column;  ///< blocks; no field column has more
+  std::uint64_t kept_blocks;           ///< 3x3 blocks stored in levels 0..q: scales and couplings
+  std::uint64_t dense_blocks;          ///< domain nodes of K(q), squared
+  std::uint64_t field_blocks;          ///< in the field columns of all constraint levels, halves counted singly
+  float rms_error;                     ///< ||U^ - U||_F / ||U||_F, all couplings
+  float worst_column_error;            ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius, all couplings
+  float patch_force_error;   ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
+  float field_rms_error;     ///< rms_error of fields
+  float field_column_error;  ///< worst_column_error of fields
+  std::uint32_t reserved;
 };
 static_assert(sizeof(Level) == 64);
 

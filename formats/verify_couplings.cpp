@@ -39,7 +39,7 @@ struct Expected {
   Expected(const Section& section, const ModelView& view)
       : columns(view.level[section.a].counts->domain_count),
         rows(domain_of_mesh(view, section.a)),
-        value_bits(layout::layer[section.b].value_bits) {}
+        value_bits(layout::value_bits[section.b]) {}
 
   // the blocks there can be
   [[nodiscard]] std::uint64_t all_blocks() const {

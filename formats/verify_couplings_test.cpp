@@ -19,7 +19,7 @@ struct Place {
   std::uint32_t q = 2;
   std::uint32_t layer = 2;
 };
-constexpr Place words{2, 1}, bytes{2, 2}, nibbles{2, 3}, force_bytes{2, 4}, force_nibbles{2, 5};
+constexpr Place words{2, 1}, bytes{2, 2}, nibbles{2, 3};
 
 ModelMutant valid() {
   static const std::vector<std::byte> file = encode(synthetic_model({.levels = 3}));
@@ -182,7 +182,7 @@ TEST_CASE("verify refuses: more blocks than there can be, also where the product
 }
 
 TEST_CASE("verify accepts: a layer that holds every block there can be") {
-  ModelMutant mutant(SyntheticOptions{.levels = 2, .field = 0, .epsilon = 0, .quantum = 0.5});
+  ModelMutant mutant(SyntheticOptions{.levels = 2, .epsilon = 0, .quantum = 0.5});
   CHECK(mutant.verdict().ok());
   CHECK(header_of(mutant, {0, nibbles.layer}).block_count == 5 * 4 / 2);
   CHECK(header_of(mutant, {1, nibbles.layer}).block_count == 8 * 5 + 8 * 7 / 2);
@@ -199,7 +199,7 @@ TEST_CASE("verify refuses: arrays anywhere but where they belong") {
 }
 
 TEST_CASE("verify refuses: a section that ends before its arrays, or less than 16 bytes after them") {
-  for (const Place place : {words, bytes, nibbles, force_bytes, force_nibbles}) {
+  for (const Place place : {words, bytes, nibbles}) {
     const std::uint64_t size = valid().entry(SectionKind::couplings, place.q, place.layer).bytes;
     for (const std::uint64_t cut : {std::uint64_t{0}, std::uint64_t{63}, std::uint64_t{64}, size - 1}) {
       ModelMutant mutant = valid();
@@ -259,7 +259,7 @@ TEST_CASE("verify refuses: reserved bytes of a couplings header in use") {
 }
 
 TEST_CASE("verify refuses: columns that do not begin at zero, or begin before the one ahead, or hold too many rows") {
-  for (const Place place : {words, bytes, nibbles, force_bytes, force_nibbles}) {
+  for (const Place place : {words, bytes, nibbles}) {
     ModelMutant first = valid();
     begin_of(first, place)[0] = 1;
     check_couplings(first, VerifyRule::inconsistent, "begin", 0, place);
@@ -313,12 +313,12 @@ TEST_CASE_TEMPLATE("verify refuses: rows that do not increase within a column", 
 }
 
 TEST_CASE("verify refuses: the most negative value, in 8 and in 16 bits, from the first to the last") {
-  for (const Place place : {words, bytes, force_bytes}) {
+  for (const Place place : {words, bytes}) {
     ModelMutant whole = valid();
     const std::uint64_t last = 9 * header_of(whole, place).block_count - 1;
     for (const std::uint64_t i : {std::uint64_t{0}, std::uint64_t{20}, last}) {
       ModelMutant mutant = valid();
-      if (layout::layer[place.layer].value_bits == 16) {
+      if (layout::value_bits[place.layer] == 16) {
         values_of<std::int16_t>(mutant, place)[i] = -32768;
       } else {
         values_of<std::int8_t>(mutant, place)[i] = -128;
@@ -329,18 +329,16 @@ TEST_CASE("verify refuses: the most negative value, in 8 and in 16 bits, from th
 }
 
 TEST_CASE("verify refuses: the most negative nibble, low or high, and a tenth one that is not zero") {
-  for (const Place place : {nibbles, force_nibbles}) {
-    ModelMutant whole = valid();
-    const std::uint64_t blocks = header_of(whole, place).block_count;
-    REQUIRE(blocks > 2);
-    for (const std::uint64_t b : {std::uint64_t{0}, std::uint64_t{2}, blocks - 1}) {
-      for (std::uint64_t k = 0; k < 10; ++k) {
-        ModelMutant mutant = valid();
-        auto& byte = values_of<std::uint8_t>(mutant, place)[5 * b + k / 2];
-        byte = static_cast<std::uint8_t>(k % 2 == 0 ? (byte & 0xF0) | 8 : (byte & 0x0F) | 0x80);
-        const VerifyRule rule = k < 9 ? VerifyRule::out_of_range : VerifyRule::padding_not_zero;
-        check_couplings(mutant, rule, "value", 9 * b + std::min<std::uint64_t>(k, 8), place);
-      }
+  ModelMutant whole = valid();
+  const std::uint64_t blocks = header_of(whole, nibbles).block_count;
+  REQUIRE(blocks > 2);
+  for (const std::uint64_t b : {std::uint64_t{0}, std::uint64_t{2}, blocks - 1}) {
+    for (std::uint64_t k = 0; k < 10; ++k) {
+      ModelMutant mutant = valid();
+      auto& byte = values_of<std::uint8_t>(mutant, nibbles)[5 * b + k / 2];
+      byte = static_cast<std::uint8_t>(k % 2 == 0 ? (byte & 0xF0) | 8 : (byte & 0x0F) | 0x80);
+      const VerifyRule rule = k < 9 ? VerifyRule::out_of_range : VerifyRule::padding_not_zero;
+      check_couplings(mutant, rule, "value", 9 * b + std::min<std::uint64_t>(k, 8), nibbles);
     }
   }
 }

@@ -56,6 +56,7 @@ TEST_CASE("verify accepts: one triangle with one free node") {
   LevelData& level = data.levels[0];
   level.nodes[1].flags = layout::node_fixed;
   level.scales.pop_back();
+  level.counts.field_blocks = level.counts.longest_field_column = 1;
   for (CouplingsData& couplings : level.couplings) couplings = {.begin = {0, 0}, .index = {}, .value = {}};
   ModelMutant mutant(encode(data));
   check_accepted(mutant);
@@ -123,9 +124,7 @@ TEST_CASE("verify accepts: couplings that all stand in one layer, or in none") {
   const struct {
     std::uint32_t layer;
     SyntheticOptions options;
-  } cases[] = {{3, {.levels = 3, .field = 0, .quantum = 0.5}},
-               {5, {.levels = 3, .field = 1e9, .quantum = 0.5}},
-               {layout::layers, {.levels = 3, .epsilon = 1e9}}};
+  } cases[] = {{3, {.levels = 3, .quantum = 0.5}}, {layout::layers, {.levels = 3, .epsilon = 1e9}}};
   for (const auto& [full, options] : cases) {
     ModelMutant mutant(options);
     check_accepted(mutant);
@@ -402,10 +401,6 @@ TEST_CASE("verify refuses: reserved bytes in use, in the header and in the table
   ModelMutant table = valid();
   table.table()[2].reserved = 1;
   check_refused(table, VerifyRule::reserved_not_zero, SectionKind::level, 0, 0, "section.reserved", 2);
-}
-
-TEST_CASE("layout: the layers of fields come first") {
-  for (std::uint32_t i = 0; i < layout::layers; ++i) CHECK(layout::layer[i].field == (i < layout::field_layers));
 }
 
 TEST_CASE("verify: the view is plain data") { CHECK(std::is_trivially_copyable_v<ModelView>); }

@@ -148,7 +148,7 @@ class SectionList {
     const CouplingsData& data = model_.levels[q].couplings[layer];
     const std::string name = section_name(SectionKind::couplings, q, layer);
     add(SectionKind::couplings, q, layer,
-        encode_couplings(data, domain_count(q), domain_of_mesh(q), layout::layer[layer].value_bits, name));
+        encode_couplings(data, domain_count(q), domain_of_mesh(q), layout::value_bits[layer], name));
     kept_blocks_ += data.begin.back();
   }
 

@@ -83,7 +83,7 @@ TEST_CASE("writer: what the view shows is what was given") {
         if (q > 0) CHECK(same_bytes(view.representatives[q][r], level.representatives[r]));
       }
       for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-        check_couplings(view.level[q].couplings[layer], layout::layer[layer].value_bits, level.couplings[layer]);
+        check_couplings(view.level[q].couplings[layer], layout::value_bits[layer], level.couplings[layer]);
       }
     }
   }
@@ -186,7 +186,7 @@ TEST_CASE("writer: refuses values and rows that do not fit their bits") {
     return encode_refusal([&](ModelData& data) { change(data.levels[2].couplings[layer]); });
   };
   for (std::size_t layer = 0; layer < layout::layers; ++layer) {
-    const std::uint32_t bits = layout::layer[layer].value_bits;
+    const std::uint32_t bits = layout::value_bits[layer];
     if (bits == 16) continue;
     const int half = 1 << (bits - 1);
     for (const int bad : {half, -half - 1}) {

@@ -62,11 +62,11 @@ double largest_scale(const ModelView& view, Part part) {
   return largest;
 }
 
-// largest sum of the field's values, and the diagonal's, between two coefficients
+// largest sum of the couplings' values, and the diagonal's, between two coefficients
 double largest_value(const ModelView& view) {
   double sum = largest_scale(view, &layout::Scale::diagonal);
-  for (std::uint32_t layer = 0; layer < layout::field_layers; ++layer) {
-    sum += double{view.info->quantum[layer]} * (1U << (layout::layer[layer].value_bits - 1));
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    sum += double{view.info->quantum[layer]} * (1U << (layout::value_bits[layer] - 1));
   }
   return sum;
 }
@@ -80,28 +80,21 @@ float largest_force_sum(const ModelView& view, const Lifting& lifting) {
 
 // what is written once, at the start
 struct Tables {
-  std::uint32_t* begin[layout::max_levels] = {};
-  OddNeighbours* neighbours[layout::max_levels] = {};
+  RefinementTables refinement;
   ColumnCost* cost[layout::max_levels] = {};
-  DomainParents* parents = nullptr;
-  std::uint8_t* mesh_level = nullptr;
+  ParentOffsets* parent_offsets = nullptr;
+  FieldColumnMaker field_columns;
+  ColumnBlock* field_block = nullptr;
 };
 
-void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    if (q > 0) {
-      tables.begin[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
-      tables.neighbours[q] = arena.take<OddNeighbours>(sizes.lifting_records[q]);
-    }
-    if (q >= view.info->coarsest_constraint_level) {
-      tables.cost[q] = arena.take<ColumnCost>(domain_up_to(view, q));
-    }
+void carve_tables(Arena& arena, const ModelView& view, Tables& tables) {
+  tables.refinement.carve(arena, view);
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    tables.cost[c] = arena.take<ColumnCost>(domain_up_to(view, c));
   }
-  tables.parents = arena.take<DomainParents>(view.domain_count);
-  tables.mesh_level = arena.take<std::uint8_t>(view.domain_count);
-  if (tables.parents != nullptr) {
-    list_parents(view, tables.parents, tables.mesh_level);
-  }
+  tables.parent_offsets = arena.take<ParentOffsets>(view.domain_count);
+  tables.field_columns.carve(arena, view);
+  tables.field_block = arena.take<ColumnBlock>(view.level[view.levels - 1].counts->field_blocks);
 }
 
 void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, ContactSet& set) {
@@ -132,8 +125,8 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
 }
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
-  carve_tables(arena, view, sizes, tables);
-  body.couplings = place_field_couplings(arena, view, tables.mesh_level);
+  carve_tables(arena, view, tables);
+  body.sums.carve(arena, view);
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
   carve_set(arena, view, sizes.counts.max_contacts, body.set);
@@ -167,10 +160,9 @@ void fill_costs(const ModelView& view, const Tables& tables, std::uint32_t* degr
   }
 }
 
-void fill_tables(const ModelView& view, const Tables& tables, Body& body) {
-  for (std::uint32_t q = 1; q < view.levels; ++q) {
-    list_odd_neighbours(view, q, tables.begin[q], tables.neighbours[q]);
-  }
+void fill_tables(const ModelView& view, Tables& tables, Body& body) {
+  tables.refinement.fill(view);
+  list_parent_offsets(view, tables.parent_offsets);
   list_node_facts(view, body.facts);
   count_stored(view, body.stored);
   fill_costs(view, tables, body.set.place_of_column, body);
@@ -178,6 +170,15 @@ void fill_tables(const ModelView& view, const Tables& tables, Body& body) {
     body.set.place_of_column[j] = layout::none;
     body.capacitance.slot[j] = layout::none;
   }
+}
+
+// false if they are not within what the model says
+bool make_field_columns(const ModelView& view, Tables& tables, Body& body) {
+  const layout::Level& counts = *view.level[view.levels - 1].counts;
+  const FieldColumnMaker::Room room{tables.field_block, counts.field_blocks, counts.longest_field_column};
+  const auto made = tables.field_columns.make(body.refinement, body.touched, body.force, room);
+  body.columns = tables.field_columns.columns();
+  return made.within(room);
 }
 
 }  // namespace
@@ -195,12 +196,14 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   body.view = &view;
   body.counts = sizes.counts;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
-    body.lifting.begin[q] = tables.begin[q];
-    body.lifting.neighbours[q] = tables.neighbours[q];
     body.cost[q] = tables.cost[q];
   }
-  body.refinement = {&view, &body.lifting, tables.parents, tables.mesh_level};
+  body.refinement = tables.refinement.refinement(view, body.lifting);
+  body.parents = tables.parent_offsets;
   fill_tables(view, tables, body);
+  if (!make_field_columns(view, tables, body)) {
+    return nullptr;
+  }
   body.force_limit = largest_force_sum(view, body.lifting);
   body.last_red_zone = arena.last_red_zone();
   return &body;

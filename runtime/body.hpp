@@ -8,7 +8,7 @@
 #include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/factor_cache.hpp"
-#include "runtime/field_couplings.hpp"
+#include "runtime/field_columns.hpp"
 #include "runtime/plan.hpp"
 #include "runtime/requirement.hpp"
 #include "runtime/sparse_forces.hpp"
@@ -24,7 +24,9 @@ struct Body {
   float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
   Lifting lifting;
   Refinement refinement;
-  FieldCouplings couplings;
+  FieldColumns columns;
+  SparseCoefficients sums;                          ///< of the field
+  const ParentOffsets* parents = nullptr;           ///< [domain]
   std::uint32_t* stored = nullptr;                  ///< [domain] blocks of all layers in a coefficient's column
   const ColumnCost* cost[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]
   NodeFacts* facts = nullptr;                       ///< [node_count]
@@ -37,8 +39,9 @@ struct Body {
   const std::byte* last_red_zone = nullptr;
 };
 
-/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. `view` must outlive
-/// the body. Start-up; linear in the model's nodes and, for every level, its blocks.
+/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts, and if the model's
+/// field columns are not within what its Level says. `view` must outlive the body. Start-up; linear in the model's
+/// nodes and, for every level, its blocks, and FieldColumnMaker::make.
 Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept;
 
 }  // namespace greenloop

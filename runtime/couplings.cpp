@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "formats/field_block.hpp"
 #include "formats/stored_blocks.hpp"
 #include "runtime/domain.hpp"
 
@@ -39,19 +38,13 @@ struct Window {
   std::uint32_t level;
   std::uint32_t first;
   std::uint32_t end;
-  std::uint32_t field[most];
   std::uint32_t stored[most];
 };
 
 void count_with_level(const ModelView& view, std::uint32_t other, Window& window) {
-  std::fill(window.field, window.field + Window::most, 0U);
   std::fill(window.stored, window.stored + Window::most, 0U);
-  const std::uint32_t halves = field_halves(*view.info);
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-    const auto count = [&](std::uint32_t place) {
-      ++window.stored[place - window.first];
-      window.field[place - window.first] += layout::layer[layer].field ? halves : 0;
-    };
+    const auto count = [&](std::uint32_t place) { ++window.stored[place - window.first]; };
     if (other <= window.level) {
       const LevelView& own = view.level[window.level];
       for (std::uint32_t j = window.first; j < window.end; ++j) {
@@ -77,7 +70,7 @@ void add_counts(const std::uint32_t* counts, std::uint32_t size, LevelPair& pair
 
 float block_factor(const layout::Info& info, std::uint32_t layer) noexcept {
   float widening = 0;
-  with_stored(layout::layer[layer].value_bits, [&](auto stored) { widening = decltype(stored)::widening; });
+  with_stored(layout::value_bits[layer], [&](auto stored) { widening = decltype(stored)::widening; });
   return info.quantum[layer] * widening;
 }
 
@@ -91,7 +84,7 @@ std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::
   const std::uint32_t count = view.index_bytes == 2
                                   ? choose(static_cast<const std::uint16_t*>(view.index), begin, end, slot, places)
                                   : choose(static_cast<const std::uint32_t*>(view.index), begin, end, slot, places);
-  with_stored(layout::layer[layer].value_bits, [&](auto stored) {
+  with_stored(layout::value_bits[layer], [&](auto stored) {
     using Stored = decltype(stored);
     for (std::uint32_t n = 0; n < count; ++n) {
       blocks[n] = Stored::load(view.value + Stored::bytes * std::size_t{places[n].position});
@@ -119,7 +112,6 @@ CouplingCounts count_couplings(const ModelView& view) noexcept {
       window.end = std::min(first + Window::most, end);
       for (std::uint32_t other = 0; other < view.levels; ++other) {
         count_with_level(view, other, window);
-        add_counts(window.field, window.end - first, counts.field[q][other]);
         add_counts(window.stored, window.end - first, counts.stored[q][other]);
       }
     }

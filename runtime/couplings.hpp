@@ -60,7 +60,6 @@ struct LevelPair {
 /// How many blocks there are, by pairs of levels.
 struct CouplingCounts {
   bool countable = false;                                    ///< fewer than 2^30 blocks; else nothing is counted
-  LevelPair field[layout::max_levels][layout::max_levels];   ///< in the lists of fields: see field_halves
   LevelPair stored[layout::max_levels][layout::max_levels];  ///< in all layers
   std::uint32_t longest_column = 0;                          ///< in one layer
 };

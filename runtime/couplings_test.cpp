@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "formats/field_block.hpp"
 #include "formats/stored_blocks.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -13,7 +12,7 @@
 namespace greenloop {
 namespace {
 
-constexpr SyntheticOptions every_layer{.levels = 4, .field = 0.0105, .epsilon = 0.002, .quantum = 0.0015};
+constexpr SyntheticOptions every_layer{.levels = 4, .epsilon = 0.002, .quantum = 0.0015};
 
 TEST_CASE("the blocks of a column in rows with a slot are read as they were written, in every layer") {
   const ModelData data = synthetic_model(every_layer);
@@ -42,7 +41,7 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
           CHECK(places[n].target == written.index[b] / 3);
           for (std::uint32_t k = 0; k < 9; ++k) {
             const int value = written.value[9 * std::size_t{b} + k];
-            CHECK(stored_value(couplings, layout::layer[layer].value_bits, b, k) == value);
+            CHECK(stored_value(couplings, layout::value_bits[layer], b, k) == value);
             const float scaled = block_factor(data.info, layer) * blocks[n].column[k / 3][k % 3];
             CHECK(scaled == data.info.quantum[layer] * static_cast<float>(value));
           }
@@ -67,9 +66,8 @@ TEST_CASE("blocks are counted by pairs of levels, from both sides") {
     }
     return q;
   };
-  // [coefficient][level], of the field layers and of all
-  std::vector<std::vector<std::uint32_t>> field(view.domain_count, std::vector<std::uint32_t>(view.levels));
-  auto stored = field;
+  // [coefficient][level]
+  std::vector<std::vector<std::uint32_t>> stored(view.domain_count, std::vector<std::uint32_t>(view.levels));
   std::uint32_t longest_column = 0;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
@@ -79,10 +77,6 @@ TEST_CASE("blocks are counted by pairs of levels, from both sides") {
         for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
           const std::uint32_t column = view.level[q].domain_begin + j;
           const std::uint32_t row = couplings.index[b];
-          // of 16 bits: two halves
-          const std::uint32_t in_field = layout::layer[layer].field ? field_halves(data.info) : 0;
-          field[column][level_of_place(row)] += in_field;
-          field[row][q] += in_field;
           ++stored[column][level_of_place(row)];
           ++stored[row][q];
         }
@@ -94,16 +88,11 @@ TEST_CASE("blocks are counted by pairs of levels, from both sides") {
   CHECK(counts.longest_column == longest_column);
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     for (std::uint32_t other = 0; other < view.levels; ++other) {
-      LevelPair in_field;
       LevelPair in_all;
       for (std::uint32_t i = view.level[q].domain_begin; i < domain_up_to(view, q); ++i) {
-        in_field.all += field[i][other];
-        in_field.most = std::max(in_field.most, field[i][other]);
         in_all.all += stored[i][other];
         in_all.most = std::max(in_all.most, stored[i][other]);
       }
-      CHECK(counts.field[q][other].all == in_field.all);
-      CHECK(counts.field[q][other].most == in_field.most);
       CHECK(counts.stored[q][other].all == in_all.all);
       CHECK(counts.stored[q][other].most == in_all.most);
     }

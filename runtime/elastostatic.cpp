@@ -38,11 +38,21 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
 // as much of the field as a plan asks for
 std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
   return field_work(body.counts, plan.counts, plan.field_level,
-                    count_field_blocks(body.couplings, body.touched, plan.field_level));
+                    count_field_blocks(body.columns, body.set, plan.field_level));
+}
+
+// touches the coefficients of the set; returns the work of its factor
+std::uint64_t plan_factor(Body& body, Plan& plan) {
+  const std::uint32_t c = body.set.level;
+  clear(body.touched);
+  touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
+  count_factor(body.set, body.touched, body.cost[c], body.stored, plan.counts);
+  plan.work += touch_work(plan.counts);
+  return factor_work(body.counts, plan.counts);
 }
 
 // resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
-// many details as fit; leaves the coefficients of that level touched
+// many details as fit; leaves the coefficients of that level touched unless its factor is cached
 Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field) {
   const ModelView& view = *body.view;
   Plan plan;
@@ -51,12 +61,12 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
   std::uint64_t forces = 0;
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     resolve_contacts(contacts, view, body.facts, c, body.set);
-    clear(body.touched);
-    touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
-    plan.counts = count_set(body.set, body.touched, contacts.size(), body.cost[c], body.stored);
+    plan.counts = {};
+    plan.counts.contacts = contacts.size();
+    plan.counts.columns = body.set.columns;
     plan.cached = body.cache.find(body.set);
-    plan.work += plan_work(body.counts, plan.counts);
-    forces = force_work(plan.counts) + (plan.cached != nullptr ? 0 : factor_work(body.counts, plan.counts));
+    plan.work += resolve_work(body.counts, plan.counts);
+    forces = force_work(plan.counts) + (plan.cached != nullptr ? 0 : plan_factor(body, plan));
     plan.field = wants_field ? planned_field_work(body, plan) : 0;
     plan.fits = plan.work + forces + plan.field <= budget;
     if (plan.fits) {
@@ -98,14 +108,11 @@ bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& f
 void answer_field(Body& body, std::span<const Contact> contacts, std::uint32_t field_level,
                   std::span<float> displacement) {
   const ModelView& view = *body.view;
-  const auto* force = reinterpret_cast<const float*>(body.column_force);
-  for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-    const float* at = force + std::size_t{3} * k;
-    body.force[body.set.column[k]] = Float4{at[0], at[1], at[2], 0.0F};
-  }
-  const FieldModel model{body.refinement, body.couplings};
+  const FieldModel model{view, body.columns, body.parents};
+  const NodeForces forces{body.set.level, body.set.columns, body.set.column,
+                          reinterpret_cast<const float*>(body.column_force)};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(model, body.touched, field_level, body.force, x);
+  compute_field(model, forces, field_level, body.sums, x);
   if (body.set.level + 1 == view.levels) {
     // held nodes stand where they are held: only the others need the approximation
     for (const Contact& contact : contacts) {
@@ -208,6 +215,10 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Limits& lim
   }
   Arena arena(memory.data());
   created.body.body_ = place_body(arena, view, sizes);
+  if (created.body.body_ == nullptr) {
+    created.error = CreateError::inconsistent_model;
+    return created;
+  }
   created.body.body_->least_work = requirement.least_work;
   return created;
 }

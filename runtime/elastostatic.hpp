@@ -70,6 +70,7 @@ enum class CreateError : std::uint8_t {
   arena_misaligned,
   bad_limits,
   unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks
+  inconsistent_model,  ///< its field columns hold more blocks than it says, or numbers that are not finite
 };
 
 /// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions
@@ -83,6 +84,8 @@ class Elastostatic {
   [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
 
   /// Carves `memory` with the routine that `required` counts with. `model` and `memory` must outlive the body.
+  /// Start-up; makes the columns that fields are sums of: for each touchable node of each level, about 30 units for
+  /// every block that couples one of the coefficients that a force on it reaches.
   [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
 
   /// One cycle of the loop: finds the forces that hold `contacts` where they are and the displacement of every node,

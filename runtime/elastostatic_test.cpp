@@ -43,15 +43,16 @@ double relative_error(std::span<const float> computed, std::size_t stride, const
 double tolerance_of(const DenseAnswer& dense) { return 60 * dense.condition * 0x1p-24; }
 
 TEST_CASE("every constraint level agrees with a dense double-precision solution of what the file stands for") {
-  for (const auto& options : {SyntheticOptions{.levels = 4, .epsilon = 0}, SyntheticOptions{.levels = 4},
-                              SyntheticOptions{.levels = 4, .field = 0.05},
-                              SyntheticOptions{.levels = 5, .field = 0.02, .touchable_above = 0.5},
-                              SyntheticOptions{.levels = 4, .lifted = false}, SyntheticOptions{.levels = 3, .field = 1},
-                              SyntheticOptions{.levels = 2, .quantum = 0}, SyntheticOptions{.levels = 1}}) {
+  for (const auto& options :
+       {SyntheticOptions{.levels = 4, .epsilon = 0}, SyntheticOptions{.levels = 4},
+        SyntheticOptions{.levels = 4, .field_threshold = 0.01, .field_peak_threshold = 0.2},
+        SyntheticOptions{.levels = 5, .field_threshold = 0.004, .touchable_above = 0.5},
+        SyntheticOptions{.levels = 4, .lifted = false}, SyntheticOptions{.levels = 3, .field_threshold = 0},
+        SyntheticOptions{.levels = 2, .quantum = 0}, SyntheticOptions{.levels = 1}}) {
     const ModelData data = synthetic_model(options);
     const TestModel model(encode(data));
     CAPTURE(options.levels);
-    CAPTURE(options.field);
+    CAPTURE(options.field_threshold);
     const DenseReference reference(data);
     std::mt19937_64 random(7);
     std::uint32_t levels_seen = 0;
@@ -126,7 +127,7 @@ TEST_CASE("nothing dropped and 16 bits reproduce the exact compliance to quantis
 }
 
 TEST_CASE("held nodes stand exactly where they are held, whatever the field leaves out") {
-  const TestModel model({.levels = 4, .field = 0.05});
+  const TestModel model({.levels = 4, .field_threshold = 0.01});
   TestBody body(model, {.max_contacts = 12, .cached_factors = 2});
   std::mt19937_64 random(15);
   for (int trial = 0; trial < 10; ++trial) {
@@ -141,7 +142,7 @@ TEST_CASE("held nodes stand exactly where they are held, whatever the field leav
 }
 
 TEST_CASE("no step leaves anything behind for the next") {
-  const TestModel model({.levels = 4, .field = 0.05});
+  const TestModel model({.levels = 4, .field_threshold = 0.01});
   TestBody used(model, {.max_contacts = 12, .cached_factors = 2});
   std::mt19937_64 random(16);
   int compared = 0;
@@ -323,6 +324,7 @@ TEST_CASE("a capacitance matrix that is not positive definite is refused, not an
     couplings.begin.push_back(static_cast<std::uint32_t>(couplings.index.size()));
   }
   couplings.value.resize(9 * couplings.index.size(), 30000);
+  allow_all_field_blocks(data);
   const TestModel model(encode(data));
   TestBody body(model, {.max_contacts = 4, .cached_factors = 2});
   const auto nodes = model.touchable();
@@ -354,6 +356,30 @@ TEST_CASE("create: what is short or wrong is said in numbers") {
     CHECK(Elastostatic::required(model.model(), bad).bytes == 0);
   }
   CHECK(Elastostatic::required(model.model(), {.max_contacts = 4096, .cached_factors = 1024}).bytes > need.bytes);
+}
+
+TEST_CASE("create refuses a model whose field columns hold more than it says") {
+  const ModelData right = synthetic_model({.levels = 3});
+  const auto error_of = [](const ModelData& data) {
+    const TestModel model(encode(data));
+    AlignedBytes memory(Elastostatic::required(model.model(), {}).bytes);
+    return Elastostatic::create(model.model(), {}, {memory.data(), memory.size()}).error;
+  };
+  CHECK(error_of(right) == CreateError::none);
+  ModelData few = right;
+  --few.levels.back().counts.field_blocks;
+  CHECK(error_of(few) == CreateError::inconsistent_model);
+  ModelData long_column = right;
+  --long_column.levels.back().counts.longest_field_column;
+  CHECK(error_of(long_column) == CreateError::inconsistent_model);
+  ModelData huge = right;
+  for (float& root : huge.levels[1].scales[0].root) {
+    root *= 1e25F;
+  }
+  CHECK(error_of(huge) == CreateError::inconsistent_model);
+  ModelData many = right;
+  many.levels.back().counts.field_blocks = std::uint64_t{1} << 40;
+  CHECK(error_of(many) == CreateError::unsupported_model);
 }
 
 TEST_CASE("create refuses a refinement whose points hang on more than three coarse nodes") {

@@ -2,22 +2,30 @@
 
 #include <cstdint>
 
-#include "runtime/field_couplings.hpp"
-#include "runtime/sparse_forces.hpp"
+#include "formats/view.hpp"
+#include "runtime/field_columns.hpp"
+#include "runtime/wavelet.hpp"
 
 namespace greenloop {
 
 /// What compute_field reads.
 struct FieldModel {
-  const Refinement& refinement;
-  const FieldCouplings& couplings;
+  const ModelView& view;
+  const FieldColumns& columns;
+  const ParentOffsets* parents;  ///< [domain]
 };
 
-/// Fast summation (James & Pai 2003, section 5.4) of the two-sided form: the displacement of every node by the forces
-/// on the touched nodes, with details up to `field_level`, interpolated beyond.
-/// force: [domain], nodal forces on the touched places of K(c), 0 elsewhere before and everywhere after. x:
-/// [node_count]. For the loop; work: field_work.
-void compute_field(const FieldModel& model, const Touched& touched, std::uint32_t field_level, Float4* force,
-                   Float4* x) noexcept;
+/// Forces on nodes of a constraint level.
+struct NodeForces {
+  std::uint32_t constraint_level;
+  std::uint32_t count;
+  const std::uint32_t* place;  ///< [count] of the nodes in the domain, with columns
+  const float* force;          ///< [3 * count] N
+};
+
+/// Fast summation (James & Pai 2003, section 5.4): the displacement of every node by some forces, with details up to
+/// `field_level`, interpolated beyond. sums: zero before and after; x: [node_count]. For the loop; work: field_work.
+void compute_field(const FieldModel& model, const NodeForces& forces, std::uint32_t field_level,
+                   SparseCoefficients& sums, Float4* x) noexcept;
 
 }  // namespace greenloop

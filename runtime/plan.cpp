@@ -21,10 +21,12 @@ std::uint64_t most_blocks(const LevelPair& pair, std::uint64_t coefficients) {
 
 }  // namespace
 
-std::uint64_t plan_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return resolve_contacts_work(set.contacts) + 4 * set.columns + 2 * set.visits + 4 * set.coefficients +
-         count_field_work(set) + FactorCache::find_work(model.cached_factors, set.columns);
+std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept {
+  return resolve_contacts_work(set.contacts) + 4 * set.columns + count_field_work(set) +
+         FactorCache::find_work(model.cached_factors, set.columns);
 }
+
+std::uint64_t touch_work(const SetCounts& set) noexcept { return 2 * set.visits + 8 * set.coefficients; }
 
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
@@ -38,19 +40,17 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
   return merge_work(set.contacts, set.columns) + cholesky_solve_work(static_cast<std::uint32_t>(3 * set.columns));
 }
 
-std::uint64_t count_field_work(const SetCounts& set) noexcept { return 8 * set.coefficients; }
+std::uint64_t count_field_work(const SetCounts& set) noexcept { return 2 * set.columns; }
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level,
                          std::uint64_t blocks) noexcept {
-  return 3 * set.visits + 24 * set.coefficients + 9 * blocks + model.nodes + model.transform_work[field_level] +
+  const std::uint64_t touched = smaller(model.rows[field_level], blocks);
+  return 4 * set.columns + 10 * blocks + inverse_transform_work(model.nodes, model.odd_nodes, touched) +
          4 * set.contacts;
 }
 
-SetCounts count_set(const ContactSet& set, const Touched& touched, std::uint64_t contacts, const ColumnCost* cost,
-                    const std::uint32_t* stored) noexcept {
-  SetCounts counts;
-  counts.contacts = contacts;
-  counts.columns = set.columns;
+void count_factor(const ContactSet& set, const Touched& touched, const ColumnCost* cost, const std::uint32_t* stored,
+                  SetCounts& counts) noexcept {
   counts.coefficients = touched.coefficients();
   counts.visits = touched.visits;
   for (std::uint32_t k = 0; k < set.columns; ++k) {
@@ -63,16 +63,13 @@ SetCounts count_set(const ContactSet& set, const Touched& touched, std::uint64_t
       counts.stored += stored[touched.list[q][k]];
     }
   }
-  return counts;
 }
 
-std::uint64_t count_field_blocks(const FieldCouplings& couplings, const Touched& touched,
+std::uint64_t count_field_blocks(const FieldColumns& columns, const ContactSet& set,
                                  std::uint32_t field_level) noexcept {
   std::uint64_t blocks = 0;
-  for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      blocks += field_blocks(couplings, touched.list[q][k], field_level);
-    }
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    blocks += column_blocks(columns, set.level, set.column[k], field_level);
   }
   return blocks;
 }
@@ -97,15 +94,9 @@ SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, st
   return counts;
 }
 
-std::uint64_t most_field_blocks(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
-                                std::uint64_t columns, const ReachBound& reach, std::uint32_t field_level) noexcept {
-  std::uint64_t blocks = 0;
-  for (std::uint32_t q = 0; q <= c; ++q) {
-    for (std::uint32_t other = 0; other <= field_level; ++other) {
-      blocks += most_blocks(couplings.field[q][other], most_touched(view, reach, q, columns));
-    }
-  }
-  return blocks;
+std::uint64_t most_field_blocks(const ModelView& view, std::uint64_t columns, std::uint32_t field_level) noexcept {
+  const std::uint64_t longest = view.level[view.levels - 1].counts->longest_field_column;
+  return columns * smaller(longest, std::uint64_t{view.info->field_halves} * domain_up_to(view, field_level));
 }
 
 }  // namespace greenloop

@@ -6,7 +6,7 @@
 #include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/couplings.hpp"
-#include "runtime/field_couplings.hpp"
+#include "runtime/field_columns.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/support.hpp"
 
@@ -18,14 +18,15 @@ struct ModelCounts {
   std::uint32_t levels = 0;
   std::uint32_t max_contacts = 0;
   std::uint32_t cached_factors = 0;
-  std::uint64_t rows[layout::max_levels] = {};            ///< coefficients of levels 0..F
-  std::uint64_t transform_work[layout::max_levels] = {};  ///< of an inverse transform with details up to a level
+  std::uint64_t odd_nodes = 0;                  ///< of the domain, above level 0
+  std::uint64_t rows[layout::max_levels] = {};  ///< coefficients of levels 0..F
 };
 
 /// What a set of columns of one constraint level holds.
 struct SetCounts {
   std::uint64_t contacts = 0;
   std::uint64_t columns = 0;
+  // what follows only if a factor is to be made
   std::uint64_t coefficients = 0;         ///< that the columns touch, none counted twice
   std::uint64_t visits = 0;               ///< of touching them
   std::uint64_t stored = 0;               ///< blocks of all layers in those columns
@@ -34,9 +35,11 @@ struct SetCounts {
   std::uint64_t column_visits = 0;
 };
 
-/// Work units of deciding whether to resolve `contacts` at a level: merging, sorting, touching, counting, asking the
-/// cache.
-[[nodiscard]] std::uint64_t plan_work(const ModelCounts& model, const SetCounts& set) noexcept;
+/// Work units of resolving contacts at a level, counting the blocks of their field and asking the cache.
+[[nodiscard]] std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept;
+
+/// Work units of finding the coefficients that a set touches and counting what its factor takes.
+[[nodiscard]] std::uint64_t touch_work(const SetCounts& set) noexcept;
 
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;
@@ -47,26 +50,25 @@ struct SetCounts {
 /// Work units of counting the blocks of a field.
 [[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
 
-/// Work units of the field with details up to `field_level`, which its touched coefficients make of `blocks` blocks.
+/// Work units of the field with details up to `field_level`, whose columns have `blocks` blocks.
 [[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level,
                                        std::uint64_t blocks) noexcept;
 
-/// Counts of a resolved set whose coefficients are touched. cost: [domain] of each node as a column of set.level;
-/// stored: [domain] blocks of all layers in each coefficient's column.
-[[nodiscard]] SetCounts count_set(const ContactSet& set, const Touched& touched, std::uint64_t contacts,
-                                  const ColumnCost* cost, const std::uint32_t* stored) noexcept;
+/// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. cost: [domain] of each
+/// node as a column of set.level; stored: [domain] blocks of all layers in each coefficient's column.
+void count_factor(const ContactSet& set, const Touched& touched, const ColumnCost* cost, const std::uint32_t* stored,
+                  SetCounts& counts) noexcept;
 
-/// Blocks of the field with details up to `field_level` by the touched coefficients.
-[[nodiscard]] std::uint64_t count_field_blocks(const FieldCouplings& couplings, const Touched& touched,
+/// Blocks of a resolved set's columns with details up to `field_level`.
+[[nodiscard]] std::uint64_t count_field_blocks(const FieldColumns& columns, const ContactSet& set,
                                                std::uint32_t field_level) noexcept;
 
 /// Bounds of the counts of any set of at most `max_contacts` contacts at constraint level c. Start-up.
 [[nodiscard]] SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
                                     std::uint32_t max_contacts, const ReachBound& reach) noexcept;
 
-/// Bound of count_field_blocks for those sets. Start-up.
-[[nodiscard]] std::uint64_t most_field_blocks(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
-                                              std::uint64_t columns, const ReachBound& reach,
+/// Bound of count_field_blocks for sets of that many columns.
+[[nodiscard]] std::uint64_t most_field_blocks(const ModelView& view, std::uint64_t columns,
                                               std::uint32_t field_level) noexcept;
 
 }  // namespace greenloop

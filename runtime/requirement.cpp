@@ -8,6 +8,7 @@ namespace {
 
 // byte offsets of nodes are kept in 32 bits
 constexpr std::uint32_t most_nodes = 0xffffffff / sizeof(Float4);
+constexpr std::uint64_t most_field_blocks_of_a_model = std::uint64_t{1} << 30;
 
 void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) {
   ModelCounts& counts = sizes.counts;
@@ -15,17 +16,12 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   counts.levels = view.levels;
   counts.max_contacts = limits.max_contacts;
   counts.cached_factors = limits.cached_factors;
-  std::uint64_t records = 0;
-  const std::uint64_t odd = view.domain_count - view.level[0].counts->domain_count;
+  counts.odd_nodes = view.domain_count - view.level[0].counts->domain_count;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
-      const LiftingCounts lifting = count_lifting(view, q);
-      sizes.most_neighbours[q] = lifting.most_neighbours;
-      sizes.lifting_records[q] = lifting.records;
+      sizes.most_neighbours[q] = count_lifting(view, q).most_neighbours;
     }
-    records += sizes.lifting_records[q];
     counts.rows[q] = domain_up_to(view, q);
-    counts.transform_work[q] = inverse_transform_work(records, odd);
   }
 }
 
@@ -37,7 +33,8 @@ bool in_range(const Limits& limits) noexcept {
 }
 
 void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes, Requirement& requirement) noexcept {
-  if (!in_range(limits) || view.node_count > most_nodes) {
+  const std::uint64_t field_blocks = view.level[view.levels - 1].counts->field_blocks;
+  if (!in_range(limits) || view.node_count > most_nodes || field_blocks > most_field_blocks_of_a_model) {
     return;
   }
   const CouplingCounts couplings = count_couplings(view);
@@ -56,12 +53,11 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     }
     const SetCounts most = most_counts(view, couplings, c, limits.max_contacts, reach);
     const auto field = [&](std::uint32_t field_level) {
-      return field_work(sizes.counts, most, field_level,
-                        most_field_blocks(view, couplings, c, most.columns, reach, field_level));
+      return field_work(sizes.counts, most, field_level, most_field_blocks(view, most.columns, field_level));
     };
     const std::uint64_t functional = most.columns > 0 ? most.column_coefficients / most.columns : 0;
     sizes.functional = functional > sizes.functional ? functional : sizes.functional;
-    plans += plan_work(sizes.counts, most);
+    plans += resolve_work(sizes.counts, most) + touch_work(most);
     const std::uint64_t forces = factor_work(sizes.counts, most) + force_work(most);
     requirement.worst_work[c] = plans + forces + field(finest);
     // the coarsest level comes last: there the field is cut as well

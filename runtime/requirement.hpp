@@ -15,7 +15,6 @@ struct BodySizes {
   std::uint32_t set_columns = 0;     ///< most columns of a contact set
   std::uint32_t longest_column = 0;  ///< most blocks in a column of a layer
   std::uint32_t most_neighbours[layout::max_levels] = {};
-  std::uint64_t lifting_records[layout::max_levels] = {};
   std::uint64_t functional = 0;  ///< most coefficients of a point functional
 };
 

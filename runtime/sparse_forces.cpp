@@ -32,18 +32,38 @@ std::uint64_t neighbour_visits(const Refinement& refinement, std::uint32_t level
 
 }  // namespace
 
-void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* level) noexcept {
+void RefinementTables::carve(Arena& arena, const ModelView& view) noexcept {
+  for (std::uint32_t q = 1; q < view.levels; ++q) {
+    begin_[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
+    neighbours_[q] = arena.take<OddNeighbours>(count_lifting(view, q).records);
+  }
+  parents_ = arena.take<DomainParents>(view.domain_count);
+  level_ = arena.take<std::uint8_t>(view.domain_count);
+}
+
+void RefinementTables::fill(const ModelView& view) noexcept {
+  for (std::uint32_t q = 1; q < view.levels; ++q) {
+    list_odd_neighbours(view, q, begin_[q], neighbours_[q]);
+  }
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& at = view.level[q];
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
       const std::uint32_t place = at.domain_begin + i;
-      level[place] = static_cast<std::uint8_t>(q);
+      level_[place] = static_cast<std::uint8_t>(q);
       for (std::uint32_t side = 0; side < 2; ++side) {
         const std::uint32_t parent = q == 0 ? layout::none : at.refinement[i].parent[side];
-        parents[place].place[side] = q > 0 && in_domain(view, parent) ? domain_place(view, parent) : layout::none;
+        parents_[place].place[side] = q > 0 && in_domain(view, parent) ? domain_place(view, parent) : layout::none;
       }
     }
   }
+}
+
+Refinement RefinementTables::refinement(const ModelView& view, Lifting& lifting) const noexcept {
+  for (std::uint32_t q = 1; q < view.levels; ++q) {
+    lifting.begin[q] = begin_[q];
+    lifting.neighbours[q] = neighbours_[q];
+  }
+  return {&view, &lifting, parents_, level_};
 }
 
 void Touched::carve(Arena& arena, const ModelView& view) noexcept {

@@ -27,8 +27,24 @@ struct Refinement {
   const std::uint8_t* level = nullptr;     ///< [domain] mesh level
 };
 
-/// Start-up; linear in the domain. parents, level: [domain].
-void list_parents(const ModelView& view, DomainParents* parents, std::uint8_t* level) noexcept;
+/// The arrays of a Refinement.
+class RefinementTables {
+ public:
+  /// Out of `arena`; null while it counts. Start-up; work: that of count_lifting.
+  void carve(Arena& arena, const ModelView& view) noexcept;
+
+  /// Fills them in. Start-up; linear in the domain.
+  void fill(const ModelView& view) noexcept;
+
+  /// What they hold; `lifting` is filled in and referred to.
+  [[nodiscard]] Refinement refinement(const ModelView& view, Lifting& lifting) const noexcept;
+
+ private:
+  std::uint32_t* begin_[layout::max_levels] = {};
+  OddNeighbours* neighbours_[layout::max_levels] = {};
+  DomainParents* parents_ = nullptr;
+  std::uint8_t* level_ = nullptr;
+};
 
 /// Which coefficients the forces on some nodes of K(c) reach.
 struct Touched {

@@ -1,6 +1,8 @@
 #include "runtime/wavelet.hpp"
 
+#include <bit>
 #include <cstddef>
+#include <cstring>
 
 namespace greenloop {
 namespace {
@@ -9,23 +11,62 @@ Float4& at_offset(Float4* x, std::uint32_t byte_offset) {
   return *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + byte_offset);
 }
 
-void undo_lifting(const OddNeighbours* begin, const OddNeighbours* end, Float4* x) {
-  for (const OddNeighbours* at = begin; at != end; ++at) {
-    Float4 value = x[at->even];
-    for (std::uint32_t k = 0; k < OddNeighbours::most; ++k) {
-      value -= splat(at->lift[k]) * at_offset(x, at->byte_offset[k]);
+// calls visit(i) for every i < count whose byte is not 0, in order
+template <class Visit>
+void visit_touched(const std::uint8_t* touched, std::uint32_t count, Visit visit) {
+  std::uint32_t i = 0;
+  while (i < count) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, touched + i, count - i < 8 ? count - i : 8);
+    while (eight != 0) {
+      visit(i + static_cast<std::uint32_t>(std::countr_zero(eight)) / 8);
+      eight &= eight - 1;
     }
-    x[at->even] = value;
+    i += 8;
   }
 }
 
-void predict(const LevelView& level, Float4* x) {
+// x = the averages of level 0
+void copy_averages(const ModelView& view, SparseCoefficients& averages, Float4* x) {
+  const std::uint32_t count = view.level[0].counts->domain_count;
+  std::memcpy(x, averages.value, sizeof(Float4) * count);
+  std::memset(averages.value, 0, sizeof(Float4) * count);
+  std::memset(averages.touched, 0, count);
+}
+
+void undo_lifting(const LevelView& level, const ParentOffsets* parents, const SparseCoefficients& details, Float4* x) {
+  const std::uint32_t begin = level.domain_begin;
+  visit_touched(details.touched + begin, level.counts->domain_count, [&](std::uint32_t i) {
+    const Float4 detail = details.value[begin + i];
+    const float* lift = level.refinement[i].lift;
+    at_offset(x, parents[begin + i].byte_offset[0]) -= splat(lift[0]) * detail;
+    at_offset(x, parents[begin + i].byte_offset[1]) -= splat(lift[1]) * detail;
+  });
+}
+
+void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   Float4* odd = x + level.node_begin;
+  const ParentOffsets* of_level = parents + level.domain_begin;
   const std::uint32_t count = level.counts->domain_count;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const std::uint32_t* parent = level.refinement[i].parent;
-    odd[i] += splat(0.5F) * (x[parent[0]] + x[parent[1]]);
+    odd[i] = splat(0.5F) * (at_offset(x, of_level[i].byte_offset[0]) + at_offset(x, of_level[i].byte_offset[1]));
   }
+}
+
+void add_details(const LevelView& level, SparseCoefficients& details, Float4* x) {
+  Float4* odd = x + level.node_begin;
+  Float4* value = details.value + level.domain_begin;
+  visit_touched(details.touched + level.domain_begin, level.counts->domain_count, [&](std::uint32_t i) {
+    odd[i] += value[i];
+    value[i] = Float4{};
+  });
+  std::memset(details.touched + level.domain_begin, 0, level.counts->domain_count);
+}
+
+void clear_others(const LevelView& level, Float4* x) {
+  const layout::Level& counts = *level.counts;
+  std::memset(x + level.node_begin + counts.domain_count, 0,
+              sizeof(Float4) * (counts.node_count - counts.domain_count));
 }
 
 // calls visit(odd node, parent, lift) for each domain parent of each domain node of M(level), in file order
@@ -93,13 +134,37 @@ void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32
   });
 }
 
-void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level, Float4* x) noexcept {
-  for (std::uint32_t level = 1; level < view.levels; ++level) {
-    if (level <= field_level) {
-      const OddNeighbours* neighbours = lifting.neighbours[level];
-      undo_lifting(neighbours, neighbours + lifting.begin[level][domain_up_to(view, level - 1)], x);
+void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept {
+  for (std::uint32_t q = 1; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      for (std::uint32_t side = 0; side < 2; ++side) {
+        parents[level.domain_begin + i].byte_offset[side] =
+            level.refinement[i].parent[side] * static_cast<std::uint32_t>(sizeof(Float4));
+      }
     }
-    predict(view.level[level], x);
+  }
+}
+
+void SparseCoefficients::carve(Arena& arena, const ModelView& view) noexcept {
+  value = arena.take_zeroed<Float4>(view.domain_count);
+  touched = arena.take_zeroed<std::uint8_t>(view.domain_count);
+}
+
+void inverse_transform(const ModelView& view, const ParentOffsets* parents, std::uint32_t field_level,
+                       SparseCoefficients& coefficients, Float4* x) noexcept {
+  copy_averages(view, coefficients, x);
+  clear_others(view.level[0], x);
+  for (std::uint32_t q = 1; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    if (q <= field_level) {
+      undo_lifting(level, parents, coefficients, x);
+    }
+    predict(level, parents, x);
+    if (q <= field_level) {
+      add_details(level, coefficients, x);
+    }
+    clear_others(level, x);
   }
 }
 

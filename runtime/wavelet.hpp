@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
+#include "runtime/arena.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/float4.hpp"
 
@@ -12,7 +13,7 @@ namespace greenloop {
 // Level l of the mesh adds the odd nodes M(l), midpoints m of edges (a, b) of K(l-1). The inverse, for l = 1..L:
 //   undo lifting   x_a -= lift[0] d_m,  x_b -= lift[1] d_m    for all m
 //   predict        x_m  = d_m + (x_a + x_b) / 2               for all m
-// in place on an array with one entry per node of the file; nodes outside the domain are 0 and stay so.
+// Nodes outside the domain are 0.
 
 /// Up to six odd neighbours in M(l) of one domain node of K(l-1), in file order: lifting as a gather in fixed steps.
 /// Nodes with more (irregular ones) have several in a row. Unused places weigh nothing.
@@ -46,13 +47,32 @@ struct LiftingCounts {
 void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32_t* begin,
                          OddNeighbours* neighbours) noexcept;
 
-/// The inverse transform in place. Details of levels above `field_level` must be 0; there it only interpolates.
-/// x: [node_count]. For the loop; work: inverse_transform_work.
-void inverse_transform(const ModelView& view, const Lifting& lifting, std::uint32_t field_level, Float4* x) noexcept;
+/// Where the parents of a node stand in an array of Float4 per node.
+struct ParentOffsets {
+  std::uint32_t byte_offset[2];
+};
 
-/// Work units of inverse_transform: records of the levels up to field_level, domain nodes above level 0.
-constexpr std::uint64_t inverse_transform_work(std::uint64_t lifting_records, std::uint64_t odd_nodes) {
-  return 3 * std::uint64_t{OddNeighbours::most} * lifting_records + 6 * odd_nodes;
+/// Of every domain node above level 0, by its place; parents: [domain]. Start-up; linear.
+void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept;
+
+/// Wavelet coefficients few of which are not zero. All are zero between uses.
+struct SparseCoefficients {
+  Float4* value = nullptr;          ///< [domain]
+  std::uint8_t* touched = nullptr;  ///< [domain] 1 where the value may not be 0
+
+  /// Arrays out of `arena`; null while it counts.
+  void carve(Arena& arena, const ModelView& view) noexcept;
+};
+
+/// The inverse transform: x is written, `coefficients` are zero again. Levels above `field_level`, which must be 0
+/// there, are interpolated. parents: [domain]; x: [node_count], by file index. Only the nodes around a coefficient that
+/// was touched are lifted. For the loop; work: inverse_transform_work.
+void inverse_transform(const ModelView& view, const ParentOffsets* parents, std::uint32_t field_level,
+                       SparseCoefficients& coefficients, Float4* x) noexcept;
+
+/// Work units of inverse_transform. odd_nodes: of the domain above level 0; touched: coefficients, at most.
+constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t touched) {
+  return nodes + 6 * odd_nodes + 12 * touched;
 }
 
 }  // namespace greenloop

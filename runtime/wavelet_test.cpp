@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "runtime/domain.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
 
@@ -22,6 +23,16 @@ std::vector<std::uint32_t> domain_nodes(const ModelView& view) {
     }
   }
   return nodes;
+}
+
+bool all_zero(const SparseCoefficients& sums, std::uint32_t count) {
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Float4 v = sums.value[i];
+    if (sums.touched[i] != 0 || v[0] != 0 || v[1] != 0 || v[2] != 0 || v[3] != 0) {
+      return false;
+    }
+  }
+  return true;
 }
 
 TEST_CASE("the inverse transform undoes the definition's forward transform") {
@@ -50,13 +61,17 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
       }
     }
   }
-  std::vector<Float4> field(view.node_count);
-  for (std::uint32_t node = 0; node < view.node_count; ++node) {
+  SparseCoefficients& sums = placed.body->sums;
+  for (const std::uint32_t node : domain_nodes(view)) {
+    const std::uint32_t place = domain_place(view, node);
     for (std::size_t r = 0; r < 3; ++r) {
-      field[node][r] = static_cast<float>(d[node][r]);
+      sums.value[place][r] = static_cast<float>(d[node][r]);
     }
+    sums.touched[place] = 1;
   }
-  inverse_transform(view, placed.body->lifting, view.levels - 1, field.data());
+  std::vector<Float4> field(view.node_count, splat(1e30F));
+  inverse_transform(view, placed.body->parents, view.levels - 1, sums, field.data());
+  CHECK(all_zero(sums, view.domain_count));
   for (std::uint32_t node = 0; node < view.node_count; ++node) {
     for (std::size_t r = 0; r < 3; ++r) {
       CHECK(std::abs(double{field[node][r]} - x[node][r]) <= 8 * view.levels * 0x1p-24);
@@ -65,15 +80,49 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
   }
 }
 
+TEST_CASE("a few details give what all of them give that are zero but those") {
+  const TestModel model({.levels = 5, .touchable_above = 0.95});
+  const ModelView& view = model.view();
+  const PlacedBody placed(view);
+  SparseCoefficients& sums = placed.body->sums;
+  std::mt19937_64 random(3);
+  std::vector<Float4> x[2];
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<std::uint32_t> few(1 + random() % 40);
+    for (std::uint32_t& place : few) {
+      place = static_cast<std::uint32_t>(random() % view.domain_count);
+    }
+    for (std::vector<Float4>& field : x) {
+      for (std::uint32_t i = 0; i < view.domain_count && &field == x; ++i) {
+        sums.touched[i] = 1;
+      }
+      for (const std::uint32_t place : few) {
+        sums.value[place] = splat3(0.25F + static_cast<float>(place));
+        sums.touched[place] = 1;
+      }
+      field.assign(view.node_count, splat(1e30F));
+      inverse_transform(view, placed.body->parents, view.levels - 1, sums, field.data());
+      REQUIRE(all_zero(sums, view.domain_count));
+    }
+    for (std::uint32_t node = 0; node < view.node_count; ++node) {
+      for (int r = 0; r < 4; ++r) {
+        CHECK(float{x[0][node][r]} == float{x[1][node][r]});
+      }
+    }
+  }
+}
+
 TEST_CASE("details above the field level are interpolated") {
   const TestModel model({.levels = 4, .touchable_above = 0.95});
   const ModelView& view = model.view();
   const PlacedBody placed(view);
-  std::vector<Float4> field(view.node_count);
-  for (const std::uint32_t node : domain_nodes(view)) {
-    field[node] = node < view.level[1].node_begin ? splat3(1.0F) : Float4{};
+  SparseCoefficients& sums = placed.body->sums;
+  for (std::uint32_t i = 0; i < domain_up_to(view, 0); ++i) {
+    sums.value[i] = splat3(1.0F + static_cast<float>(i));
+    sums.touched[i] = 1;
   }
-  inverse_transform(view, placed.body->lifting, 0, field.data());
+  std::vector<Float4> field(view.node_count, splat(1e30F));
+  inverse_transform(view, placed.body->parents, 0, sums, field.data());
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {

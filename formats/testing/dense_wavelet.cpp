@@ -1,8 +1,7 @@
 #include "formats/testing/dense_wavelet.hpp"
 
-#include <algorithm>
-
-#include "formats/field_block.hpp"
+#include <cmath>
+#include <vector>
 
 namespace greenloop {
 namespace {
@@ -12,9 +11,8 @@ using Eigen::Matrix3d;
 using Eigen::MatrixXd;
 
 // both halves of the wavelet form
-MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::uint32_t layers) {
+MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet) {
   std::vector<Matrix3d> root;
-  std::vector<layout::Scale> scale;
   const Index rows = 3 * wavelet.end(wavelet.levels() - 1);
   MatrixXd form = MatrixXd::Zero(rows, rows);
   for (const LevelData& level : model.levels) {
@@ -22,31 +20,49 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet, std::u
     for (const layout::Scale& own : level.scales) {
       const auto i = static_cast<Index>(root.size());
       root.push_back(symmetric_matrix(own.root));
-      scale.push_back(own);
       form.block<3, 3>(3 * i, 3 * i) = root.back() * symmetric_matrix(own.diagonal) * root.back();
     }
-    for (std::uint32_t layer = 0; layer < layers; ++layer) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       const CouplingsData& data = level.couplings[layer];
       for (Index j = 0; j + 1 < static_cast<Index>(data.begin.size()); ++j) {
         for (std::size_t b = data.begin[j]; b < data.begin[j + 1]; ++b) {
           const Index i = data.index[b], column = first + j;
-          const auto element = [&](std::uint32_t k) { return data.value[9 * b + k]; };
-          if (layers == layout::field_layers) {
-            float block[9];
-            field_block(scale[i], scale[column], model.info.quantum[layer], element, block);
-            for (float& number : block) number = rounded_for_fields(number, field_halves(model.info));
-            form.block<3, 3>(3 * i, 3 * column) += Eigen::Map<const Eigen::Matrix3f>(block).cast<double>();
-          } else {
-            Matrix3d block;
-            for (std::uint32_t k = 0; k < 9; ++k) block(k % 3, k / 3) = double{model.info.quantum[layer]} * element(k);
-            form.block<3, 3>(3 * i, 3 * column) += root[i] * block * root[column];
+          Matrix3d block;
+          for (Index k = 0; k < 9; ++k) {
+            block(k % 3, k / 3) = double{model.info.quantum[layer]} * data.value[9 * b + static_cast<std::size_t>(k)];
           }
+          form.block<3, 3>(3 * i, 3 * column) += root[i] * block * root[column];
           form.block<3, 3>(3 * column, 3 * i) = form.block<3, 3>(3 * i, 3 * column).transpose();
         }
       }
     }
   }
   return form;
+}
+
+// to 8 significant bits a half, of two the even one
+double rounded(double value, std::uint32_t halves) {
+  const int bits = static_cast<int>(8 * halves);
+  int exponent = 0;
+  const double mantissa = std::frexp(value, &exponent);
+  return std::ldexp(std::nearbyint(std::ldexp(mantissa, bits)), exponent - bits);
+}
+
+// drops what the thresholds let go of one column; norm: of the node's own compliance
+void threshold(const layout::Info& info, const DenseWavelet& wavelet, double own, Eigen::Ref<MatrixXd> column) {
+  std::vector<double> spread;  // 4^-level of every coefficient
+  for (std::uint32_t q = 0; q < wavelet.levels(); ++q) spread.resize(wavelet.end(q), std::ldexp(1.0, -2 * int(q)));
+  double energy = 0;
+  for (std::size_t i = 0; i < spread.size(); ++i) {
+    energy += spread[i] * column.middleRows<3>(3 * Index(i)).squaredNorm();
+  }
+  for (std::size_t i = 0; i < spread.size(); ++i) {
+    auto block = column.middleRows<3>(3 * Index(i));
+    const bool kept = std::sqrt(spread[i]) * block.norm() >= double{info.field_threshold} * std::sqrt(energy) ||
+                      block.norm() >= double{info.field_peak_threshold} * own;
+    block = kept ? MatrixXd(block.unaryExpr([&](double x) { return rounded(x, info.field_halves); }))
+                 : MatrixXd::Zero(3, 3);
+  }
 }
 
 }  // namespace
@@ -139,12 +155,30 @@ void from_wavelet_form(const DenseWavelet& wavelet, std::uint32_t c, Eigen::Ref<
   }
 }
 
-MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c, std::uint32_t layers) {
+MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c) {
   const DenseWavelet wavelet(model);
-  MatrixXd form = stored_form(model, wavelet, layers);
+  MatrixXd form = stored_form(model, wavelet);
   form.conservativeResize(3 * wavelet.end(c), 3 * wavelet.end(c));
   from_wavelet_form(wavelet, c, form);
   return form;
+}
+
+MatrixXd field_columns(const ModelData& model, std::uint32_t c) {
+  const DenseWavelet wavelet(model);
+  MatrixXd columns = stored_form(model, wavelet).leftCols(3 * wavelet.end(c));
+  for (std::uint32_t q = 1; q <= c; ++q) wavelet.inverse_columns(q, columns.leftCols(3 * wavelet.end(q)));
+  const MatrixXd own = decoded_compliance(model, c);
+  for (Index j = 0; j < wavelet.end(c); ++j) {
+    threshold(model.info, wavelet, own.block<3, 3>(3 * j, 3 * j).norm(), columns.middleCols<3>(3 * j));
+  }
+  return columns;
+}
+
+MatrixXd field_displacements(const ModelData& model, std::uint32_t c) {
+  const DenseWavelet wavelet(model);
+  MatrixXd x = field_columns(model, c);
+  for (std::uint32_t q = 1; q < wavelet.levels(); ++q) wavelet.inverse(q, x.topRows(3 * wavelet.end(q)));
+  return x;
 }
 
 }  // namespace greenloop

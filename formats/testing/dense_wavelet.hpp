@@ -58,10 +58,15 @@ void to_wavelet_form(const DenseWavelet& wavelet, Eigen::Ref<Eigen::MatrixXd> co
 /// Its inverse on the coefficients of levels 0..c, [3 end(c) x 3 end(c)]: the compliance between averages of level c.
 void from_wavelet_form(const DenseWavelet& wavelet, std::uint32_t c, Eigen::Ref<Eigen::MatrixXd> form);
 
-/// The compliance (m/N) between the averages of level `c` that a model stands for, with its first `layers` layers of
-/// couplings (the layers of fields: with their values rounded as fields round them): 3x3 blocks over the domain nodes
-/// of K(c). Work: as above.
-[[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c,
-                                                 std::uint32_t layers = layout::layers);
+/// The compliance (m/N) between the averages of level `c` that a model stands for: 3x3 blocks over the domain nodes of
+/// K(c). Work: as above.
+[[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c);
+
+/// What a unit force on each domain node of K(c) moves, in coefficients of the whole domain, by a model's field
+/// columns: thresholded and rounded as layout.hpp says. [3 domain x 3 end(c)] m/N. Work: as above.
+[[nodiscard]] Eigen::MatrixXd field_columns(const ModelData& model, std::uint32_t c);
+
+/// The displacement of the domain by those: the inverse transform of each column.
+[[nodiscard]] Eigen::MatrixXd field_displacements(const ModelData& model, std::uint32_t c);
 
 }  // namespace greenloop

@@ -22,7 +22,7 @@ constexpr double twist = 0.5;
 
 // The quantum of each layer over SyntheticOptions::quantum; of 16 bits over what holds the largest value. All differ,
 // so that a reader that takes another layer's is found out.
-constexpr double quantum_factor[layout::layers] = {1, 0.75, 1, 1.25, 0.4, 0.6};
+constexpr double quantum_factor[layout::layers] = {1, 0.6, 0.28, 1.25};
 
 // I + twist [x / radius]_x
 Matrix3d frame_at(const Eigen::Vector3d& x) {
@@ -115,19 +115,17 @@ class Compression {
       for (Index i = 0; i < j; ++i) largest = std::max(largest, scaled(form, i, j).cwiseAbs().maxCoeff());
     }
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-      const bool wide = layout::layer[layer].value_bits == 16;
+      const bool wide = layout::value_bits[layer] == 16;
       const double quantum = quantum_factor[layer] * (wide ? largest / 32767 : options_.quantum);
       model_.info.quantum[layer] = static_cast<float>(quantum);
     }
   }
 
-  // the layer of fewest bits, 16 where no other holds the block
+  // the layer of fewest bits that holds the block
   [[nodiscard]] std::uint32_t layer_of(const Matrix3d& block) const {
-    const bool field = block.norm() / std::sqrt(3.0) >= options_.field;
     for (std::uint32_t layer = layout::layers; layer-- > 1;) {
-      const double most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
-      const bool fits = block.cwiseAbs().maxCoeff() < most * double{model_.info.quantum[layer]};
-      if (layout::layer[layer].field == field && fits) return layer;
+      const double most = (1 << (layout::value_bits[layer] - 1)) - 1;
+      if (block.cwiseAbs().maxCoeff() < most * double{model_.info.quantum[layer]}) return layer;
     }
     return 0;
   }
@@ -158,12 +156,36 @@ class Compression {
       MatrixXd exact = form.topLeftCorner(end, end);
       from_wavelet_form(wavelet_, q, exact);
       const MatrixXd all = decoded_compliance(model_, q);
-      const MatrixXd field = decoded_compliance(model_, q, layout::field_layers);
+      ModelData cut = model_;
+      cut.levels.resize(q + std::size_t{1});
+      const MatrixXd field = field_displacements(cut, q);
       layout::Level& counts = model_.levels[q].counts;
       counts.rms_error = static_cast<float>((all - exact).norm() / exact.norm());
       counts.worst_column_error = static_cast<float>(worst_column(all, exact));
       counts.field_rms_error = static_cast<float>((field - exact).norm() / exact.norm());
       counts.field_column_error = static_cast<float>(worst_column(field, exact));
+      count_field_columns(cut, counts);
+    }
+  }
+
+  // blocks that are not zero in the columns of touchable nodes; a node of K(c) stands for itself
+  void count_field_columns(const ModelData& cut, layout::Level& counts) const {
+    std::vector<std::uint32_t> flags;
+    for (const LevelData& level : cut.levels) {
+      for (const layout::NodeRecord& node : level.nodes) {
+        if ((node.flags & layout::node_domain) != 0) flags.push_back(node.flags);
+      }
+    }
+    for (std::uint32_t c = options_.coarsest_constraint_level; c < cut.levels.size(); ++c) {
+      const MatrixXd columns = field_columns(cut, c);
+      for (Index j = 0; j < wavelet_.end(c); ++j) {
+        if ((flags[static_cast<std::size_t>(j)] & layout::node_touchable) == 0) continue;
+        std::uint32_t blocks = 0;
+        for (Index i = 0; i < columns.rows(); i += 3)
+          blocks += columns.block<3, 3>(i, 3 * j).isZero(0) ? 0 : options_.field_halves;
+        counts.field_blocks += blocks;
+        counts.longest_field_column = std::max(counts.longest_field_column, blocks);
+      }
     }
   }
 
@@ -225,6 +247,9 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   model.info.young = 1e5;
   model.info.poisson = 0.4;
   model.info.threshold = options.epsilon;
+  model.info.field_threshold = static_cast<float>(options.field_threshold);
+  model.info.field_halves = options.field_halves;
+  model.info.field_peak_threshold = static_cast<float>(options.field_peak_threshold);
   model.info.rate = 1000;
   model.info.max_contacts = 16;
   model.info.step_work = 1'000'000;
@@ -238,6 +263,16 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   Compression compression(model, options);
   compression.run(exact_compliance(sphere));
   return model;
+}
+
+void allow_all_field_blocks(ModelData& model) {
+  std::uint64_t rows = 0, columns = 0;
+  for (LevelData& level : model.levels) {
+    rows += level.scales.size();
+    columns += rows;
+    level.counts.field_blocks = model.info.field_halves * rows * columns;
+    level.counts.longest_field_column = static_cast<std::uint32_t>(model.info.field_halves * rows);
+  }
 }
 
 }  // namespace greenloop

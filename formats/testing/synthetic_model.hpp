@@ -12,9 +12,11 @@ struct SyntheticOptions {
   std::uint32_t levels = 3;                     ///< 1..6 mesh levels: 6, 18, 66, 258, 1026, 4098 nodes
   std::uint32_t coarsest_constraint_level = 0;  ///< < levels
   bool lifted = true;                           ///< else the plain Linear wavelet
-  double field = 0.01;                          ///< scaled blocks of this norm over root 3 make fields
-  double epsilon = 0.005;                       ///< below this they are dropped; 0 keeps all
-  double quantum = 0.002;                       ///< of the field's 8-bit layer; those of 4 bits and of forces differ
+  double field_threshold = 0.002;               ///< Info::field_threshold
+  double field_peak_threshold = 0.05;           ///< Info::field_peak_threshold
+  std::uint32_t field_halves = 1;               ///< Info::field_halves
+  double epsilon = 0.005;                       ///< scaled blocks of smaller norm over root 3 are dropped; 0 keeps all
+  double quantum = 0.002;                       ///< of the 8-bit layer; that of 4 bits differs
   double touchable_above = 0;                   ///< nodes with z >= this times the radius may be contacts; at most 1
 };
 
@@ -28,5 +30,8 @@ struct SyntheticOptions {
 /// the free nodes below z = -0.02 m are outside the domain. A node is represented by the nearest touchable node.
 /// Work and memory: quadratic in the nodes. Offline only, for tests and fuzzing.
 [[nodiscard]] ModelData synthetic_model(const SyntheticOptions& options);
+
+/// Makes room for any field columns: for models whose numbers were changed.
+void allow_all_field_blocks(ModelData& model);
 
 }  // namespace greenloop

@@ -29,7 +29,7 @@ struct CouplingBlocks {
 
 /// The largest magnitude a layer holds.
 [[nodiscard]] constexpr std::int32_t largest_value(std::uint32_t layer) {
-  return (1 << (layout::layer[layer].value_bits - 1)) - 1;
+  return (1 << (layout::value_bits[layer] - 1)) - 1;
 }
 
 /// Joins the layers of a level with so many columns and rows; nothing if two of them hold the same block. Work: linear

@@ -45,9 +45,7 @@ std::uint32_t size_step(std::uint32_t error) { return std::min(half_octave(error
 
 constexpr std::array<std::uint32_t, 6> presence_contexts{triples * steps, triples* steps, distances* classes* steps,
                                                          some_rows,       pairs* pairs,   64 * steps};
-constexpr std::uint32_t ratios = 512;
-constexpr std::uint32_t layer_pairs = 49;
-constexpr std::array<std::uint32_t, 3> layer_contexts{ratios * 3, 3 * layer_pairs* layer_pairs, 3 * some_rows};
+constexpr std::array<std::uint32_t, 1> layer_contexts{layout::layers};
 constexpr std::array<std::uint32_t, 5> value_contexts{places * 64, places* size_steps* size_steps,
                                                       places* signed_classes* size_steps, places * 64 * 4,
                                                       places * 32 * size_steps};
@@ -58,7 +56,7 @@ CouplingsModel::CouplingsModel()
     : lonely_presence_(std::size_t{distances} * steps),
       presence_(presence_contexts, classes * steps),
       coarse_(std::array<std::uint32_t, 2>{3, 64}, 1),
-      layers_(layer_contexts, 3, layout::layers),
+      layers_(layer_contexts, layout::layers, layout::layers),
       values_(value_contexts, places) {
   typical_error_.fill(4 * 256);
 }
@@ -232,22 +230,16 @@ std::int32_t CouplingsModel::code_value(BitCoder& coder, const CouplingBlock& bl
   return static_cast<std::int32_t>(coded);
 }
 
-// The layers that hold the values are tried in order, first those of as many bits as they need.
+// The layers that hold the values, from that of fewest bits on.
 void CouplingsModel::code_layer(BitCoder& coder, CouplingBlock& block) {
   std::int32_t largest = 0;
   for (const std::int16_t element : block.value) largest = std::max<std::int32_t>(largest, std::abs(element));
-  const std::uint32_t need = largest <= largest_value(3) ? 0 : largest <= largest_value(2) ? 1 : 2;
-  constexpr std::array<std::array<std::uint32_t, 5>, 3> order{{{5, 3, 4, 2, 1}, {4, 2, 1, 0, 0}, {1, 0, 0, 0, 0}}};
-  constexpr std::array<std::uint32_t, 3> count{5, 3, 1};
-  const std::int64_t ratio =
-      std::int64_t{binary_log(squares_so_far_)} - coefficients_[block.row].size - coefficients_[column_].size;
-  const auto ratio_class = static_cast<std::uint32_t>(std::clamp<std::int64_t>(ratio / 16 + ratios / 2, 0, ratios - 1));
-  const auto pair = [&](const Seen& seen) { return layer(seen[0]) * 7 + layer(seen[1]); };
-  const std::array contexts{ratio_class * 3 + need, (pair(here_.left) * layer_pairs + pair(here_.up)) * 3 + need,
-                            std::min(block.row, some_rows - 1) * 3 + need};
-  std::uint32_t k = 0;
-  while (k + 1 < count[need] && layers_.code(coder, block.layer != order[need][k], contexts, need, k)) ++k;
-  block.layer = order[need][k];
+  std::uint32_t layer = layout::layers - 1;
+  while (layer > 1 && largest > largest_value(layer)) --layer;
+  const std::uint32_t narrowest = layer;
+  const std::array contexts{narrowest};
+  while (layer > 1 && layers_.code(coder, block.layer != layer, contexts, narrowest, narrowest - layer)) --layer;
+  block.layer = layer;
 }
 
 void CouplingsModel::remember(const CouplingBlock& block) {

@@ -38,7 +38,7 @@ int rank(const PacketSection& section) {
 }
 
 std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t layer) {
-  return encode_couplings(take_layer(joined, layer), joined.columns, joined.rows, layout::layer[layer].value_bits,
+  return encode_couplings(take_layer(joined, layer), joined.columns, joined.rows, layout::value_bits[layer],
                           "couplings");
 }
 

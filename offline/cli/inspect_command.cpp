@@ -48,7 +48,10 @@ Json levels_of(const ModelView& view) {
                       {"dense_blocks", level.dense_blocks},
                       {"rms_error", level.rms_error},
                       {"worst_column_error", level.worst_column_error},
-                      {"worst_patch_force_error", level.patch_force_error}});
+                      {"worst_patch_force_error", level.patch_force_error},
+                      {"field_rms_error", level.field_rms_error},
+                      {"field_column_error", level.field_column_error},
+                      {"field_blocks", level.field_blocks}});
   }
   return levels;
 }
@@ -68,7 +71,7 @@ Json bits_of(const ModelView& view) {
   std::map<std::uint32_t, std::uint64_t> blocks;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const std::uint64_t count = block_count(view, layer, layer + 1);
-    if (count > 0) blocks[layout::layer[layer].value_bits] += count;
+    if (count > 0) blocks[layout::value_bits[layer]] += count;
   }
   Json bits = Json::object();
   for (const auto& [width, count] : blocks) bits[std::to_string(width)] = count;
@@ -99,7 +102,8 @@ Json inspection_of(const ModelFile& model) {
       {"rms_error", finest.rms_error},
       {"worst_column_error", finest.worst_column_error},
       {"worst_patch_force_error", finest.patch_force_error},
-      {"field_couplings", block_count(view, 0, layout::field_layers)},
+      {"field_blocks", finest.field_blocks},
+      {"longest_field_column", finest.longest_field_column},
       {"field_rms_error", finest.field_rms_error},
       {"field_column_error", finest.field_column_error},
       {"lambda_min", info.lambda_min},
@@ -149,9 +153,9 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                            ratio(found["dense_bytes"], found["bytes"]), bytes_text(found["dense_bytes"])));
   row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
-  row("field",
-      fmt::format("{} RMS, {} in the worst column, with {} of the couplings", percent(found["field_rms_error"]),
-                  percent(found["field_column_error"]), found["field_couplings"].dump()));
+  row("field", fmt::format("{} RMS, {} in the worst column; {} blocks in a body's columns, at most {} in one",
+                           percent(found["field_rms_error"]), percent(found["field_column_error"]),
+                           found["field_blocks"].dump(), found["longest_field_column"].dump()));
   row("certificate", found["certificate"].get<bool>()
                          ? fmt::format("every eigenvalue of the compliance is above {:.3g} m/N (verify --certificate)",
                                        found["lambda_min"].get<double>())

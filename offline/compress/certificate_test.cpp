@@ -13,8 +13,8 @@ namespace {
 struct Case {
   explicit Case(const ModelData& model)
       : file(model),
-        compressed(file.view, layout::layers),
-        least(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(test::dense_compliances(file.view, layout::layers).back(),
+        compressed(file.view),
+        least(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(test::dense_compliances(file.view).back(),
                                                              Eigen::EigenvaluesOnly)
                   .eigenvalues()
                   .minCoeff()) {}

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "formats/field_block.hpp"
 #include "formats/stored_blocks.hpp"
 #include "offline/compress/scale.hpp"
 
@@ -29,44 +28,29 @@ void append(const Eigen::Matrix3d& matrix, std::vector<float>& matrices) {
 
 }  // namespace
 
-CompressedCompliance::CompressedCompliance(const ModelView& view, std::uint32_t layers) : wavelet_(view) {
-  const bool field = layers == layout::field_layers;
+CompressedCompliance::CompressedCompliance(const ModelView& view) : wavelet_(view) {
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& at = view.level[level];
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-      scales_.push_back(at.scales[i]);
-      const Eigen::Matrix3d root = symmetric_matrix(at.scales[i].root),
-                            diagonal = symmetric_matrix(at.scales[i].diagonal);
-      const Eigen::Matrix3d own = root * diagonal * root;
-      append(field ? Eigen::Matrix3d::Identity() : root, root_);
-      append(field ? Eigen::Matrix3d(0.5 * (own + own.transpose())) : diagonal, diagonal_);
+      append(symmetric_matrix(at.scales[i].root), root_);
+      append(symmetric_matrix(at.scales[i].diagonal), diagonal_);
     }
   }
-  link(load_couplings(view, layers));
-  scales_ = {};
+  link(load_couplings(view));
 }
 
-std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(const ModelView& view,
-                                                                             std::uint32_t layers) {
+std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(const ModelView& view) {
   std::vector<Ends> ends;
   for (std::uint32_t level = 0; level < view.levels; ++level) {
-    for (std::uint32_t layer = 0; layer < layers; ++layer) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       const CouplingsView& couplings = view.level[level].couplings[layer];
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
         for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-          const Ends own{stored_row(couplings, b), view.level[level].domain_begin + j};
-          const auto element = [&](std::uint32_t k) {
-            return stored_value(couplings, layout::layer[layer].value_bits, b, k);
-          };
-          float value[9];
-          if (layers == layout::field_layers) {
-            field_block(scales_[own.first], scales_[own.second], view.info->quantum[layer], element, value);
-            for (float& number : value) number = rounded_for_fields(number, field_halves(*view.info));
-          } else {
-            for (std::uint32_t k = 0; k < 9; ++k) value[k] = view.info->quantum[layer] * static_cast<float>(element(k));
+          for (std::uint32_t k = 0; k < 9; ++k) {
+            const std::int16_t value = stored_value(couplings, layout::value_bits[layer], b, k);
+            block_.push_back(view.info->quantum[layer] * static_cast<float>(value));
           }
-          block_.insert(block_.end(), value, value + 9);
-          ends.push_back(own);
+          ends.emplace_back(stored_row(couplings, b), view.level[level].domain_begin + j);
         }
       }
     }
@@ -91,6 +75,12 @@ void CompressedCompliance::link(const std::vector<Ends>& ends) {
 }
 
 void CompressedCompliance::apply(std::size_t level, std::size_t columns, const double* f, double* x) const {
+  apply_to_coefficients(level, columns, f, x);
+  for (std::size_t l = 1; l <= level; ++l) wavelet_.merge(l, 3 * columns, x);
+}
+
+void CompressedCompliance::apply_to_coefficients(std::size_t level, std::size_t columns, const double* f,
+                                                 double* y) const {
   const std::size_t width = 3 * columns, count = rows(level);
   std::vector<double> force(f, f + count * width);
   for (std::size_t l = level; l > 0; --l) wavelet_.split_forces(l, width, force.data());
@@ -111,11 +101,10 @@ void CompressedCompliance::apply(std::size_t level, std::size_t columns, const d
     }
   }
 
-  std::fill_n(x, count * width, 0.0);
+  std::fill_n(y, count * width, 0.0);
   for (std::size_t i = 0; i < count; ++i) {
-    multiply(root_.data() + 9 * i, false, columns, sum.data() + i * width, x + i * width);
+    multiply(root_.data() + 9 * i, false, columns, sum.data() + i * width, y + i * width);
   }
-  for (std::size_t l = 1; l <= level; ++l) wavelet_.merge(l, width, x);
 }
 
 std::vector<double> CompressedCompliance::column(std::size_t level, std::size_t j) const {

@@ -14,9 +14,8 @@ namespace greenloop::offline {
 /// certified on. Two-sided wavelet form, see formats/layout.hpp. Offline only.
 class CompressedCompliance {
  public:
-  /// `layers`: how many layers of couplings count, the first ones; with layout::field_layers it is what fields are made
-  /// of, see field_block. The view may go. Memory: about 80 bytes per coupling.
-  CompressedCompliance(const ModelView& view, std::uint32_t layers);
+  /// The view may go. Memory: about 80 bytes per coupling.
+  explicit CompressedCompliance(const ModelView& view);
 
   [[nodiscard]] std::size_t finest() const { return wavelet_.finest(); }
   [[nodiscard]] std::size_t rows(std::size_t level) const { return wavelet_.row_end(level); }  ///< domain nodes of K
@@ -26,6 +25,9 @@ class CompressedCompliance {
   /// the nodes, if it is the finest). f, x: rows(level) * columns * 3 numbers, by row, then by column. Zero forces are
   /// skipped. Work: 9 * columns per coupling of coefficients that feel a force.
   void apply(std::size_t level, std::size_t columns, const double* f, double* x) const;
+
+  /// The same in wavelet coefficients: (W U^ W^T)_level T^-T f, which T_1^-1 .. T_level^-1 turn into displacements.
+  void apply_to_coefficients(std::size_t level, std::size_t columns, const double* f, double* y) const;
 
   /// Block column j of U^_level: rows(level) blocks of 9 numbers, 3 c + r.
   [[nodiscard]] std::vector<double> column(std::size_t level, std::size_t j) const;
@@ -38,11 +40,10 @@ class CompressedCompliance {
   };
   using Ends = std::pair<std::uint32_t, std::uint32_t>;  // row, column
 
-  [[nodiscard]] std::vector<Ends> load_couplings(const ModelView& view, std::uint32_t layers);
+  [[nodiscard]] std::vector<Ends> load_couplings(const ModelView& view);
   void link(const std::vector<Ends>& ends);
 
   LinearWavelet wavelet_;
-  std::vector<layout::Scale> scales_;    // while couplings are loaded
   std::vector<float> root_, diagonal_;   // [coefficient] 9 numbers
   std::vector<float> block_;             // [coupling] 9 numbers
   std::vector<std::size_t> link_begin_;  // [coefficient + 1]

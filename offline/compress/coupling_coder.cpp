@@ -15,9 +15,7 @@ constexpr std::size_t width = 9;
 
 using Values = std::array<double, width>;  // of a scaled block
 
-double largest_value(std::uint32_t layer) {
-  return std::ldexp(1, static_cast<int>(layout::layer[layer].value_bits) - 1) - 1;
-}
+double largest_value(std::uint32_t layer) { return std::ldexp(1, static_cast<int>(layout::value_bits[layer]) - 1) - 1; }
 
 double largest(const Values& values) {
   double most = 0;
@@ -53,33 +51,20 @@ void choose_quanta(const WaveletCompliance& compliance, const Encoding& encoding
                              " can be stored: the body is too thin for its nodes; thicken it or take fewer levels");
   }
   info.quantum[0] = static_cast<float>(std::max(quantum, most / largest_value(0)));
-  if (encoding.fine_field) info.quantum[0] = std::max(info.quantum[0], std::nextafter(info.quantum[1], 1.0F));
 }
 
 // the layer of fewest bits that holds a block; the first holds all
-std::uint32_t layer_of(const Values& values, const layout::Info& info, bool field) {
-  for (std::uint32_t layer = layout::layers; layer-- > 1;) {
-    const bool fits = largest(values) < (largest_value(layer) + 0.5) * static_cast<double>(info.quantum[layer]);
-    const bool serves = layout::layer[layer].field == field || layout::layer[layer].value_bits == 16;
-    if (serves && fits) return layer;
-  }
-  return 0;
-}
-
-// how much larger a coefficient's own diagonal block is than its scale, over its weight
-std::vector<double> field_sizes(const std::vector<CoefficientScale>& scales, const Encoding& encoding) {
-  std::vector<double> sizes;
-  sizes.reserve(scales.size());
-  for (const auto& scale : scales) sizes.push_back(std::sqrt(scale.diagonal().trace() / 3));
-  for (std::size_t i = 0; i < encoding.field_weight.size(); ++i) sizes[i] /= encoding.field_weight[i];
-  return sizes;
+std::uint32_t layer_of(const Values& values, const layout::Info& info) {
+  std::uint32_t layer = layout::layers - 1;
+  while (layer > 0 && largest(values) >= (largest_value(layer) + 0.5) * static_cast<double>(info.quantum[layer]))
+    --layer;
+  return layer;
 }
 
 }  // namespace
 
 void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model) {
   choose_quanta(compliance, encoding, model.info);
-  const std::vector<double> sizes = field_sizes(compliance.scales, encoding);
   std::size_t column = 0;
   for (std::size_t level = 0; level < compliance.couplings.size(); ++level) {
     const CouplingCandidates& from = compliance.couplings[level];
@@ -89,15 +74,13 @@ void encode_couplings(const WaveletCompliance& compliance, const Encoding& encod
     for (std::size_t j = 0; j + 1 < from.begin.size(); ++j, ++column) {
       to.scales.push_back(compliance.scales[column].stored());
       for (std::size_t b = from.begin[j]; b < from.begin[j + 1]; ++b) {
-        const auto norm = static_cast<double>(from.norm[b]);
-        if (norm < encoding.threshold) continue;
+        if (static_cast<double>(from.norm[b]) < encoding.threshold) continue;
         Values values;
         std::copy_n(from.value.begin() + static_cast<std::ptrdiff_t>(width * b), width, values.begin());
-        const bool field = norm >= encoding.field_threshold * sizes[from.row[b]] * sizes[column];
-        std::uint32_t layer = layer_of(values, model.info, field);
+        std::uint32_t layer = layer_of(values, model.info);
         if (layer == 0) {  // too coarse alone: what is left of the block stands in a finer layer
           values = add_block(values, model.info.quantum[0], from.row[b], to.couplings[0]);
-          layer = layer_of(values, model.info, field);
+          layer = layer_of(values, model.info);
         }
         (void)add_block(values, model.info.quantum[layer], from.row[b], to.couplings[layer]);
       }

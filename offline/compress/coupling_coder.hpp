@@ -12,11 +12,6 @@ namespace greenloop::offline {
 struct Encoding {
   double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
   double quantum = 0;    ///< of scaled values
-  /// Blocks make fields if their norm relative to their coefficients' own diagonal blocks, times both coefficients'
-  /// weights, reaches this; 0: all do.
-  double field_threshold = 0;
-  std::vector<double> field_weight{};  ///< [coefficient] or empty: all 1
-  bool fine_field = false;             ///< fields of 16 significant bits: see field_halves
 };
 
 /// Fills in quanta, scales and couplings of every level. `model.levels` must have one entry per level of the

@@ -15,9 +15,7 @@ namespace {
 constexpr std::size_t columns = 30, levels = 3;
 constexpr double own_size = 2;  // root of the scaled diagonal
 
-double largest_value(std::uint32_t layer) {
-  return std::ldexp(1, static_cast<int>(layout::layer[layer].value_bits) - 1) - 1;
-}
+double largest_value(std::uint32_t layer) { return std::ldexp(1, static_cast<int>(layout::value_bits[layer]) - 1) - 1; }
 
 // blocks of sizes from far below a quantum to far above the 16 bits' range
 CouplingCandidates candidates(std::size_t first) {
@@ -98,9 +96,7 @@ std::size_t check_block(const CouplingCandidates& source, std::size_t b, const L
     if (found == 0) continue;  // this is what is left of a large one
     CHECK(found == absent);
     found = layer;
-    const bool makes_field = norm >= encoding.field_threshold * own_size * own_size;
-    CHECK(layout::layer[layer].field == (makes_field || layout::layer[layer].value_bits > 8));
-    const std::uint32_t bits = layout::layer[layer].value_bits;
+    const std::uint32_t bits = layout::value_bits[layer];
     const double too_few = layer == 0 ? 32767 : bits == 16 ? 127 : bits == 8 ? 7 : 0;
     CHECK(largest(value) >= (too_few + 0.4999) * encoding.quantum);
   }
@@ -116,23 +112,21 @@ TEST_CASE(
   const auto from = compliance();
   std::array<std::size_t, layout::layers> found{};
   std::size_t dropped = 0;
-  for (const double field_threshold : {0.005, 0.001}) {
-    const Encoding encoding{.threshold = 0.002, .quantum = 0.001, .field_threshold = field_threshold};
-    const auto model = encoded(from, encoding);
-    for (std::uint32_t layer = 1; layer < layout::layers; ++layer) {
-      CHECK(model.info.quantum[layer] == static_cast<float>(encoding.quantum));
-    }
-    CHECK(model.info.quantum[0] > model.info.quantum[1]);  // the largest block is nearly 100
-    for (std::size_t level = 0; level < levels; ++level) {
-      for (std::size_t j = 0; j < columns; ++j) {
-        const auto& source = from.couplings[level];
-        for (std::size_t b = source.begin[j]; b < source.begin[j + 1]; ++b) {
-          const std::size_t layer = check_block(source, b, model.levels[level], j, model.info, encoding);
-          if (layer == absent) {
-            ++dropped;
-          } else {
-            ++found[layer];
-          }
+  const Encoding encoding{.threshold = 0.002, .quantum = 0.001};
+  const auto model = encoded(from, encoding);
+  for (std::uint32_t layer = 1; layer < layout::layers; ++layer) {
+    CHECK(model.info.quantum[layer] == static_cast<float>(encoding.quantum));
+  }
+  CHECK(model.info.quantum[0] > model.info.quantum[1]);  // the largest block is nearly 100
+  for (std::size_t level = 0; level < levels; ++level) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      const auto& source = from.couplings[level];
+      for (std::size_t b = source.begin[j]; b < source.begin[j + 1]; ++b) {
+        const std::size_t layer = check_block(source, b, model.levels[level], j, model.info, encoding);
+        if (layer == absent) {
+          ++dropped;
+        } else {
+          ++found[layer];
         }
       }
     }
@@ -142,7 +136,7 @@ TEST_CASE(
 }
 
 TEST_CASE("rows increase within a column, in every layer") {
-  const auto model = encoded(compliance(), {.threshold = 0.001, .quantum = 0.0005, .field_threshold = 0.01});
+  const auto model = encoded(compliance(), {.threshold = 0.001, .quantum = 0.0005});
   for (const auto& level : model.levels) {
     for (const auto& data : level.couplings) {
       REQUIRE(data.begin.size() == columns + 1);
@@ -153,18 +147,6 @@ TEST_CASE("rows increase within a column, in every layer") {
       }
     }
   }
-}
-
-TEST_CASE("without a field threshold every block makes fields") {
-  const auto model = encoded(compliance(), {.threshold = 0.001, .quantum = 0.0005});
-  std::size_t field = 0;
-  for (const auto& level : model.levels) {
-    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-      if (!layout::layer[layer].field) CHECK(level.couplings[layer].index.empty());
-      field += level.couplings[layer].index.size();
-    }
-  }
-  CHECK(field > 1000);
 }
 
 TEST_CASE("values at the edge of a layer's range never leave it") {

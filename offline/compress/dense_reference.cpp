@@ -3,7 +3,6 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "formats/field_block.hpp"
 #include "formats/verify.hpp"
 #include "offline/compress/model_tables.hpp"
 #include "offline/compress/wavelet_compliance.hpp"
@@ -62,40 +61,25 @@ std::size_t row_at(const CouplingsView& couplings, std::size_t block) {
   return static_cast<const std::uint32_t*>(couplings.index)[block];
 }
 
-// the block that a stored one stands for, m/N; `halves` 0: not rounded for fields
-Eigen::Matrix3d unscaled(const layout::Scale& row, const layout::Scale& column, float quantum, const double* element,
-                         std::uint32_t halves) {
-  if (halves == 0) {
-    return static_cast<double>(quantum) * symmetric(row.root) * Eigen::Map<const Eigen::Matrix3d>(element) *
-           symmetric(column.root);
-  }
-  float block[9];
-  field_block(
-      row, column, quantum, [&](std::uint32_t k) { return element[k]; }, block);
-  for (float& number : block) number = rounded_for_fields(number, halves);
-  return Eigen::Map<const Eigen::Matrix3f>(block).cast<double>();
-}
-
 // W U^ W^T
-Eigen::MatrixXd stored_form(const ModelView& view, std::uint32_t layers) {
+Eigen::MatrixXd stored_form(const ModelView& view) {
   const Eigen::Index size = at(view.domain_count);
   Eigen::MatrixXd form = Eigen::MatrixXd::Zero(size, size);
   std::vector<layout::Scale> scales;
-  const std::uint32_t halves = layers == layout::field_layers ? field_halves(*view.info) : 0;
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& from = view.level[level];
     scales.insert(scales.end(), from.scales, from.scales + from.counts->domain_count);
-    for (std::uint32_t layer = 0; layer < layers; ++layer) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       const CouplingsView& couplings = from.couplings[layer];
       for (std::size_t j = 0; j < couplings.columns; ++j) {
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
           double element[9];
           for (std::size_t k = 0; k < 9; ++k) {
-            element[k] = value_at(couplings.value, layout::layer[layer].value_bits, b, k);
+            element[k] = value_at(couplings.value, layout::value_bits[layer], b, k);
           }
           const std::size_t row = row_at(couplings, b), column = from.domain_begin + j;
-          const Eigen::Matrix3d block =
-              unscaled(scales[row], scales[column], view.info->quantum[layer], element, halves);
+          const Eigen::Matrix3d block = static_cast<double>(view.info->quantum[layer]) * symmetric(scales[row].root) *
+                                        Eigen::Map<const Eigen::Matrix3d>(element) * symmetric(scales[column].root);
           form.block<3, 3>(at(row), at(column)) += block;
           form.block<3, 3>(at(column), at(row)) += block.transpose();
         }
@@ -148,9 +132,9 @@ std::vector<Eigen::MatrixXd> level_compliances(const LinearWavelet& wavelet, con
   return levels;
 }
 
-std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view, std::uint32_t layers) {
+std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view) {
   const LinearWavelet wavelet(view);
-  const Eigen::MatrixXd form = stored_form(view, layers);
+  const Eigen::MatrixXd form = stored_form(view);
   std::vector<Eigen::MatrixXd> result;
   for (std::size_t level = 0; level < view.levels; ++level) {
     const Eigen::Index size = at(wavelet.row_end(level));
@@ -192,6 +176,7 @@ layout::Info facts() {
   info.rate = 1000;
   info.max_contacts = 64;
   info.step_work = 1'000'000;
+  info.field_halves = 1;
   return info;
 }
 

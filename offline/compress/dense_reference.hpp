@@ -31,9 +31,8 @@ using Sparse = Eigen::SparseMatrix<double>;
 [[nodiscard]] std::vector<Eigen::MatrixXd> level_compliances(const LinearWavelet& wavelet,
                                                              const Eigen::MatrixXd& compliance);
 
-/// [level] what a model file stands for when cut off after that level, by dense products, with the first `layers`
-/// layers of couplings.
-[[nodiscard]] std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view, std::uint32_t layers);
+/// [level] what a model file stands for when cut off after that level, by dense products.
+[[nodiscard]] std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view);
 
 /// Hands out columns of a dense compliance, which must outlive it.
 [[nodiscard]] ColumnSource columns_of(const Eigen::MatrixXd& compliance);

@@ -11,6 +11,7 @@
 #include "offline/compress/column_source.hpp"
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/coupling_coder.hpp"
+#include "offline/compress/field_thresholds.hpp"
 
 namespace greenloop::offline {
 
@@ -21,16 +22,10 @@ struct Accuracy {
   double patch_force = 0;   ///< ContactPatches::worst_force_error
 };
 
-/// An exact column to compare with.
-struct SampleColumn {
-  std::size_t row = 0;
-  double area = 0;            ///< m^2
-  std::vector<double> exact;  ///< rows blocks of 9
-};
-
 /// One way to encode a model, and what came of it on a sample of patches and columns.
 struct Trial {
   Encoding encoding;
+  FieldThresholds field;
   std::size_t bytes = 0, blocks = 0;
   double rms = 0, worst_column = 0, patch_force = 0;
   std::uint64_t step_work = 0;  ///< units
@@ -45,10 +40,12 @@ struct TrialBench {
   const WaveletCompliance& compliance;
   const ModelData& tables;  ///< the model without scales and couplings
   const std::vector<SampleColumn>& columns;
+  Accuracy accuracy;  ///< asked for: fields are made as coarse as it lets them
   std::function<std::uint64_t(std::span<const std::byte>)> step_work;  ///< of an encoded model; may be empty
 };
 
-/// Encodes and measures one trial. Work: an encoding, 64 columns a patch and the sample's columns.
+/// Encodes and measures one trial, and chooses its fields' thresholds. Work: two encodings, 64 columns a patch, the
+/// sample's columns and some inverse transforms of them.
 [[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
 
 /// A model's bytes and what they stand for. Not copied or moved: the view points into the bytes.
@@ -65,23 +62,6 @@ struct EncodedModel {
 /// patch.
 [[nodiscard]] std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPatches& patches,
                                                      std::size_t count, double threshold);
-
-/// `encoding` with the largest field threshold whose field couplings alone have an RMS error of at most `rms` on the
-/// sample's columns; 0, so that all couplings make fields, if not even a threshold of 1/1000 does. Work: some encodings
-/// and the sample's columns for each.
-[[nodiscard]] Encoding search_field_threshold(const TrialBench& bench, double rms, Encoding encoding,
-                                              const Progress& progress);
-
-/// A column whose field is not accurate enough.
-struct PoorColumn {
-  std::size_t row = 0;
-  double excess = 1;  ///< its error over the one allowed
-};
-
-/// Gives more weight to the coefficients that the forces on those columns' nodes reach, most to those that move most:
-/// more of their couplings make fields. Work: a transform per column.
-void weigh_columns(const LinearWavelet& wavelet, const WaveletCompliance& compliance,
-                   const std::vector<PoorColumn>& columns, Encoding& encoding);
 
 /// The trial of fewest bytes that meets `accuracy`: the largest threshold by bisection between `floor` and 1/2. If none
 /// does, the most accurate one. Adds every trial to `trials`.

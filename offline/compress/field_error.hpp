@@ -1,10 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <cstddef>
-#include <vector>
-
-#include "offline/compress/compressed_compliance.hpp"
+#include <span>
 
 namespace greenloop::offline {
 
@@ -12,10 +8,9 @@ namespace greenloop::offline {
 /// section 9.
 class FieldError {
  public:
-  /// Adds column `j` of `level`; `exact`: rows(level) blocks of 9, 3 c + r, m/N; `area` [m^2] of the column's node.
-  /// Returns its share of worst_column. Work: one column.
-  double add(const CompressedCompliance& compressed, std::size_t level, std::size_t j, const double* exact,
-             double area);
+  /// Adds a column; `found`, `exact`: blocks of 9, 3 c + r, m/N; `area` [m^2] of the column's node. Returns its share
+  /// of worst_column.
+  double add(std::span<const double> found, const double* exact, double area);
 
   [[nodiscard]] double rms() const;            ///< ||Xi^ - Xi||_F / ||Xi||_F over the columns added
   [[nodiscard]] double worst_column() const {  ///< max_j ||Xi^_j - Xi_j||_inf / ||Xi_j||_inf, block-wise Frobenius

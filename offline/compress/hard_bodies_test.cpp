@@ -18,14 +18,14 @@ void check_model(const test::Body& body) {
   const auto model = test::measure_model(body);
   const auto& report = model.built.report;
   CHECK(model.patch_force <= test::default_accuracy.patch_force);
-  CHECK(report.field_rms_error <= test::default_accuracy.rms);
-  CHECK(report.field_column_error <= test::default_accuracy.worst_column);
+  CHECK(report.levels.back().field_rms_error <= test::default_accuracy.rms);
+  CHECK(report.levels.back().field_column_error <= test::default_accuracy.worst_column);
   CHECK(report.lambda_min > 0);
   CHECK(model.certified);
   CHECK(model.definite);
   const double dense = static_cast<double>(report.dense_bytes), bytes = static_cast<double>(report.trials.back().bytes);
   MESSAGE(body.column_nodes.size(), " free nodes, worst patch force ", 100 * model.patch_force, " %, field ",
-          100 * report.field_rms_error, " % RMS, lambda_min ", report.lambda_min, " m/N, ", dense / bytes,
+          100 * report.levels.back().field_rms_error, " % RMS, lambda_min ", report.lambda_min, " m/N, ", dense / bytes,
           " times fewer bytes");
 }
 

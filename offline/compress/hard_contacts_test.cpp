@@ -12,6 +12,7 @@
 #include "offline/compress/compressed_compliance.hpp"
 #include "offline/compress/dense_reference.hpp"
 #include "offline/compress/measured_model.hpp"
+#include "offline/compress/model_field.hpp"
 #include "offline/compress/solved_body.hpp"
 #include "runtime/testing/test_body.hpp"
 
@@ -28,7 +29,7 @@ struct Case {
       : body(std::move(from)),
         bytes(encode(test::measure_model(body).built.model)),
         model(bytes),
-        compliance(test::dense_compliances(model.view(), layout::layers)) {}
+        compliance(test::dense_compliances(model.view())) {}
   test::Body body;
   std::vector<std::byte> bytes;
   TestModel model;
@@ -166,7 +167,8 @@ struct Rounding {
 Rounding rounding(const Case& one, const std::vector<Contact>& contacts) {
   TestBody body(one.model, {.max_contacts = static_cast<std::uint32_t>(contacts.size()), .cached_factors = 1});
   REQUIRE(body.step(contacts, any_budget).status == Status::ok);
-  const CompressedCompliance all(one.model.view(), layout::layers), field(one.model.view(), layout::field_layers);
+  const CompressedCompliance all(one.model.view());
+  const ModelField fields(one.model.view());
   const auto at = unknowns(one.body, contacts);
   const auto size = static_cast<Index>(at.size()), rows = static_cast<Index>(3 * all.rows(all.finest()));
   MatrixXd capacitance(size, size);
@@ -178,9 +180,14 @@ Rounding rounding(const Case& one, const std::vector<Contact>& contacts) {
     }
   }
   const VectorXd exact = capacitance.llt().solve(displacement(contacts));
-  VectorXd pressed = VectorXd::Zero(rows), displaced(rows);
-  pressed(at) = exact;
-  field.apply(field.finest(), 1, pressed.data(), displaced.data());
+  VectorXd displaced = VectorXd::Zero(rows);
+  for (Index j = 0; j < size; j += 3) {
+    const auto column =
+        fields.column(all.wavelet(), all.finest(), static_cast<std::size_t>(at[static_cast<std::size_t>(j)] / 3));
+    for (Index i = 0; i < rows; i += 3) {
+      displaced.segment<3>(i) += Eigen::Map<const Eigen::Matrix3d>(column.data() + 3 * i) * exact.segment<3>(j);
+    }
+  }
   displaced(at) = displacement(contacts);  // the loop puts held nodes exactly where they are held
   double error = 0;
   for (Index i = 0; i < rows; ++i) {

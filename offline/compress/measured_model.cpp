@@ -23,13 +23,13 @@ MeasuredModel measure_model(const Body& body) {
                               {}},
                              {});
   const File file(result.built.model);
-  const CompressedCompliance compressed(file.view, layout::layers);
+  const CompressedCompliance compressed(file.view);
   ContactPatches patches(row_positions(body.mesh, compressed.wavelet(), compressed.finest()),
                          ExactSample::most_patches);
   patches.add(body.compliance, 0);
   result.patch_force = patches.worst_force_error(compressed, compressed.finest());
   result.certified = check_certificate(compressed, file.view.info->lambda_min, {}).holds;
-  result.definite = dense_compliances(file.view, layout::layers).back().llt().info() == Eigen::Success;
+  result.definite = dense_compliances(file.view).back().llt().info() == Eigen::Success;
   return result;
 }
 

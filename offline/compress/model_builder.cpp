@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "formats/verify.hpp"
 #include "offline/compress/certificate.hpp"
 #include "offline/compress/exact_sample.hpp"
 #include "offline/compress/field_error.hpp"
+#include "offline/compress/model_field.hpp"
 #include "offline/compress/model_tables.hpp"
 
 namespace greenloop::offline {
@@ -20,8 +21,9 @@ constexpr std::size_t search_patches = 16;  // the worst ones, which encodings a
 constexpr double ranking_threshold = 0.005;
 constexpr std::size_t stream_columns = 64;  // read at a time
 constexpr double first_floor = 0.0005, least_floor = 1e-5;
-constexpr double field_safety = 0.95;      // of the field's RMS error, searched on a sample
-constexpr int field_rounds = 40;           // of weighing columns and measurement
+constexpr int field_rounds = 12;  // of choosing what fields leave out
+// rounding to 8 significant bits alone errs by a thousandth of a column, and up to four of a block
+constexpr double least_rms_of_one_half = 0.004, least_column_of_one_half = 0.01;
 constexpr int rounds = 6;                  // of search and measurement per transform
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
@@ -44,12 +46,13 @@ void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
   }
 }
 
-// errors of one level against its exact compliance
+// errors of one level, cut off after it, against its exact compliance
 ConstraintLevelReport measure_coarse(const CompressionInput& input, const LinearWavelet& wavelet,
-                                     const WaveletCompliance& exact, const CompressedCompliance& compressed,
-                                     std::size_t level) {
+                                     const WaveletCompliance& exact, const ModelView& cut, std::size_t level) {
+  const CompressedCompliance compressed(cut);
+  const ModelField fields(cut);
   ContactPatches patches(row_positions(input.mesh, wavelet, level), ExactSample::most_patches);
-  FieldError error;
+  FieldError error, field_error;
   const std::size_t rows = wavelet.row_end(level);
   Eigen::MatrixXd blocks(3 * rows, 3);
   for (std::size_t j = 0; j < rows; ++j) {
@@ -58,44 +61,35 @@ ConstraintLevelReport measure_coarse(const CompressionInput& input, const Linear
       blocks.middleRows<3>(static_cast<Eigen::Index>(3 * i)) = Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * i);
     }
     patches.add(blocks, j);
-    error.add(compressed, level, j, column.data(), wavelet.integrals(level)[j]);
+    const double area = wavelet.integrals(level)[j];
+    error.add(compressed.column(level, j), column.data(), area);
+    if (fields.has_column(level, j)) {
+      field_error.add(fields.column(compressed.wavelet(), level, j), column.data(), area);
+    }
   }
   return {.level = static_cast<std::uint32_t>(level),
           .nodes = rows,
           .rms_error = error.rms(),
           .worst_column_error = error.worst_column(),
-          .patch_force_error = patches.worst_force_error(compressed, level)};
+          .patch_force_error = patches.worst_force_error(compressed, level),
+          .field_rms_error = field_error.rms(),
+          .field_column_error = field_error.worst_column(),
+          .field_blocks = static_cast<std::size_t>(fields.counts().blocks),
+          .longest_field_column = fields.counts().longest};
 }
 
-// errors over all exact columns
-struct ColumnErrors {
-  FieldError error;
-  std::vector<PoorColumn> poor;  // beyond the accuracy asked for
-};
-
-// of the finest level, for each of several compressed compliances
-std::vector<ColumnErrors> measure_finest(const CompressionInput& input,
-                                         std::initializer_list<const CompressedCompliance*> compressed,
-                                         const Progress& progress) {
-  std::vector<ColumnErrors> errors(compressed.size());
+// calls visit(row, its exact column as blocks, the area of its node) for every column, in order
+template <class Visit>
+void visit_exact_columns(const CompressionInput& input, const Progress& progress, Visit visit) {
   const std::size_t rows = input.column_nodes.size();
   for (std::size_t first = 0; first < rows; first += stream_columns) {
     const std::size_t count = std::min(stream_columns, rows - first);
     const Eigen::MatrixXd block = input.columns(first, count);
     for (std::size_t j = 0; j < count; ++j) {
-      const auto exact = blocks_of(block, j);
-      const double area = input.area[input.column_nodes[first + j]];
-      auto one = errors.begin();
-      for (const auto* compliance : compressed) {
-        const double error = one->error.add(*compliance, compliance->finest(), first + j, exact.data(), area);
-        const double excess = error / input.accuracy.worst_column;
-        if (excess > 1) one->poor.push_back({.row = first + j, .excess = excess});
-        ++one;
-      }
+      visit(first + j, blocks_of(block, j), input.area[input.column_nodes[first + j]]);
     }
     progress(static_cast<double>(first + count) / static_cast<double>(rows), "measure all columns");
   }
-  return errors;
 }
 
 void add_patches(const std::vector<std::size_t>& more, std::vector<std::size_t>& patches) {
@@ -109,13 +103,14 @@ float stored(double error) { return static_cast<float>(std::min(error, double{st
 void store_errors(const CompressionReport& report, ModelData& model) {
   for (const auto& level : report.levels) {
     auto& counts = model.levels[level.level].counts;
-    counts.rms_error = counts.field_rms_error = stored(level.rms_error);
-    counts.worst_column_error = counts.field_column_error = stored(level.worst_column_error);
+    counts.rms_error = stored(level.rms_error);
+    counts.worst_column_error = stored(level.worst_column_error);
     counts.patch_force_error = stored(level.patch_force_error);
+    counts.field_rms_error = stored(level.field_rms_error);
+    counts.field_column_error = stored(level.field_column_error);
+    counts.field_blocks = level.field_blocks;
+    counts.longest_field_column = level.longest_field_column;
   }
-  auto& finest = model.levels.back().counts;
-  finest.field_rms_error = stored(report.field_rms_error);
-  finest.field_column_error = stored(report.field_column_error);
   model.info.threshold = report.encoding.threshold;
   model.info.lambda_min = report.lambda_min;
 }
@@ -132,7 +127,7 @@ void store_errors(const CompressionReport& report, ModelData& model) {
 struct Measured {
   Trial trial;
   FieldError field;
-  bool field_meets = false;  // the accuracy asked for
+  FieldColumnMaker::Counts field_counts;
   std::vector<std::size_t> worst_patches;
   double least_eigenvalue = 0;  // m/N, estimated; only of a trial that meets the accuracy
 };
@@ -148,6 +143,9 @@ class Build {
     model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
     model_.provenance = input.provenance;
     add_representatives(input.mesh, input.flags, model_);
+    const bool fine =
+        input.accuracy.rms < least_rms_of_one_half || input.accuracy.worst_column < least_column_of_one_half;
+    model_.info.field_halves = fine ? 2 : 1;
     report_.dense_bytes = 36 * wavelet_.rows() * wavelet_.rows();
   }
 
@@ -187,23 +185,19 @@ class Build {
   // searches and measures until an encoding meets the accuracy on everything; false: none does with this floor
   [[nodiscard]] bool meets_with(double floor) {
     const WaveletCompliance compliance = transform(floor);
-    const TrialBench bench{compliance, model_, sample_.columns(), input_.step_work};
+    const TrialBench bench{compliance, model_, sample_.columns(), input_.accuracy, input_.step_work};
     std::vector<std::size_t> searched = worst_patches(bench, sample_.patches(), search_patches, ranking_threshold);
     Accuracy aim = input_.accuracy;
     aim.patch_force *= safety;
     for (int round = 0; round < rounds; ++round) {
-      Trial chosen =
-          search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.6));
+      const Trial chosen =
+          search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.65));
       closest_ = chosen;
       if (!chosen.meets(aim)) return false;
-      chosen.encoding =
-          search_field_threshold(bench, field_safety * input_.accuracy.rms, chosen.encoding, part(0.6, 0.7));
-      Measured measured = measure(compliance, chosen);
-      if (measured.trial.meets(input_.accuracy) && measured.field_meets && measured.least_eigenvalue > 0) {
-        const EncodedModel encoded(model_);
-        measured.trial.bytes = encoded.bytes.size();
+      const Measured measured = measure(compliance, chosen);
+      if (measured.trial.meets(input_.accuracy) && meets(measured.field) && measured.least_eigenvalue > 0) {
         describe(measured);
-        describe_levels(compliance, encoded.view, measured.trial);
+        describe_levels(compliance, measured);
         return true;
       }
       closest_ = measured.trial;
@@ -214,13 +208,16 @@ class Build {
   }
 
   [[nodiscard]] Measured measure(const WaveletCompliance& compliance, const Trial& chosen) {
-    Measured measured{.trial = chosen, .field = {}, .worst_patches = {}};
+    Measured measured{.trial = chosen, .field = {}, .field_counts = {}, .worst_patches = {}};
     encode_couplings(compliance, chosen.encoding, model_);
     const EncodedModel encoded(model_);
-    const CompressedCompliance all(encoded.view, layout::layers), field(encoded.view, layout::field_layers);
-    const auto errors = measure_finest(input_, {&all, &field}, part(0.7, 0.75));
-    measured.trial.rms = errors[0].error.rms();
-    measured.trial.worst_column = errors[0].error.worst_column();
+    const CompressedCompliance all(encoded.view);
+    FieldError error;
+    visit_exact_columns(input_, part(0.65, 0.75), [&](std::size_t row, const auto& exact, double area) {
+      error.add(all.column(all.finest(), row), exact.data(), area);
+    });
+    measured.trial.rms = error.rms();
+    measured.trial.worst_column = error.worst_column();
     const auto patches = sample_.patches().force_errors(all, wavelet_.finest());
     measured.trial.patch_force = patches.front().force;
     for (std::size_t p = 0; p < std::min(search_patches, patches.size()); ++p) {
@@ -228,32 +225,35 @@ class Build {
     }
     if (measured.trial.meets(input_.accuracy)) {
       measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.75, 0.85));
-      improve_field(compliance, errors[1], measured);
+      choose_field(measured);
     }
     return measured;
   }
 
-  [[nodiscard]] bool meets(const ColumnErrors& errors) const {
-    return errors.error.rms() <= input_.accuracy.rms && errors.poor.empty();
+  [[nodiscard]] bool meets(const FieldError& error) const {
+    return error.rms() <= input_.accuracy.rms && error.worst_column() <= input_.accuracy.worst_column;
   }
 
-  // Where the sample promised too much of the field, more couplings make it, first those of the poor columns, in the
-  // end all, with more digits. The forces do not change by that.
-  void improve_field(const WaveletCompliance& compliance, ColumnErrors errors, Measured& measured) {
-    Encoding& encoding = measured.trial.encoding;
-    for (int round = 0; !meets(errors); ++round) {
-      if (encoding.field_threshold == 0 && encoding.fine_field) break;
-      if (errors.error.rms() > input_.accuracy.rms) encoding.field_threshold *= 0.8;
-      if (round == field_rounds / 2 || encoding.field_threshold == 0) encoding.fine_field = true;
-      if (round == field_rounds) encoding.field_threshold = 0;
-      weigh_columns(wavelet_, compliance, errors.poor, encoding);
-      encode_couplings(compliance, encoding, model_);
+  // Where the sample promised too much of the fields they leave out less. The file does not change by that.
+  void choose_field(Measured& measured) {
+    FieldThresholds& thresholds = measured.trial.field;
+    for (int round = 0; round < field_rounds; ++round) {
+      model_.info.field_threshold = static_cast<float>(thresholds.spread);
+      model_.info.field_peak_threshold = static_cast<float>(thresholds.peak);
       const EncodedModel encoded(model_);
-      const CompressedCompliance field(encoded.view, layout::field_layers);
-      errors = measure_finest(input_, {&field}, part(0.85, 0.9))[0];
+      const ModelField fields(encoded.view);
+      measured.field = {};
+      measured.field_counts = fields.counts();
+      visit_exact_columns(input_, part(0.85, 0.9), [&](std::size_t row, const auto& exact, double area) {
+        if (!fields.has_column(wavelet_.finest(), row)) return;
+        measured.field.add(fields.column(wavelet_, wavelet_.finest(), row), exact.data(), area);
+      });
+      if (meets(measured.field)) return;
+      const double excess = std::max(measured.field.rms() / input_.accuracy.rms,
+                                     measured.field.worst_column() / input_.accuracy.worst_column);
+      thresholds.spread *= std::min(0.9, 1 / excess);
+      thresholds.peak *= std::min(0.9, 1 / excess);
     }
-    measured.field = errors.error;
-    measured.field_meets = meets(errors);
   }
 
   // asks the next search for as much less as this one's choice fell short by; patches it has learned of itself
@@ -270,27 +270,34 @@ class Build {
 
   void describe(const Measured& measured) {
     report_.encoding = measured.trial.encoding;
+    report_.field = measured.trial.field;
     report_.trials.push_back(measured.trial);
     report_.lambda_min = certificate_share * measured.least_eigenvalue;
-    report_.field_rms_error = measured.field.rms();
-    report_.field_column_error = measured.field.worst_column();
     report_.patches = sample_.patches().size();
   }
 
-  void describe_levels(const WaveletCompliance& compliance, const ModelView& view, const Trial& finest) {
-    const CompressedCompliance all(view, layout::layers);
-    for (std::size_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
-      report_.levels.push_back(measure_coarse(input_, wavelet_, compliance, all, level));
+  void describe_levels(const WaveletCompliance& compliance, const Measured& finest) {
+    const EncodedModel encoded(model_);
+    for (std::uint32_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
+      const AlignedBytes bytes(truncate_to_level({encoded.bytes.span().begin(), encoded.bytes.span().end()}, level));
+      ModelView cut;
+      if (!verify(bytes.span(), cut).ok()) throw std::logic_error("compression: a cut model does not verify");
+      report_.levels.push_back(measure_coarse(input_, wavelet_, compliance, cut, level));
     }
     report_.levels.push_back({.level = static_cast<std::uint32_t>(wavelet_.finest()),
                               .nodes = wavelet_.rows(),
-                              .rms_error = finest.rms,
-                              .worst_column_error = finest.worst_column,
-                              .patch_force_error = finest.patch_force});
+                              .rms_error = finest.trial.rms,
+                              .worst_column_error = finest.trial.worst_column,
+                              .patch_force_error = finest.trial.patch_force,
+                              .field_rms_error = finest.field.rms(),
+                              .field_column_error = finest.field.worst_column(),
+                              .field_blocks = static_cast<std::size_t>(finest.field_counts.blocks),
+                              .longest_field_column = finest.field_counts.longest});
     for (auto& level : report_.levels) {
-      level.kept_blocks = view.level[level.level].counts->kept_blocks;
-      level.dense_blocks = view.level[level.level].counts->dense_blocks;
+      level.kept_blocks = encoded.view.level[level.level].counts->kept_blocks;
+      level.dense_blocks = encoded.view.level[level.level].counts->dense_blocks;
     }
+    report_.trials.back().bytes = encoded.bytes.size();
   }
 
   const CompressionInput& input_;

@@ -32,16 +32,19 @@ struct ConstraintLevelReport {
   std::uint32_t level = 0;
   std::size_t nodes = 0, kept_blocks = 0, dense_blocks = 0;
   double rms_error = 0, worst_column_error = 0, patch_force_error = 0;
+  double field_rms_error = 0, field_column_error = 0;  ///< of fields, over the columns that touchable nodes use
+  std::size_t field_blocks = 0;                        ///< in the field columns of a body
+  std::uint32_t longest_field_column = 0;              ///< blocks
 };
 
 struct CompressionReport {
   Encoding encoding;
-  double field_rms_error = 0, field_column_error = 0;  ///< of fields
-  double lambda_min = 0;                               ///< m/N, certified
-  std::size_t patches = 0;                             ///< patches that patch_force_error was measured on
-  std::vector<ConstraintLevelReport> levels;           ///< coarse to fine
-  std::vector<Trial> trials;                           ///< every encoding that was tried, coarse first
-  std::size_t dense_bytes = 0;                         ///< float32, 36 bytes per pair of domain nodes
+  FieldThresholds field;
+  double lambda_min = 0;                      ///< m/N, certified
+  std::size_t patches = 0;                    ///< patches that patch_force_error was measured on
+  std::vector<ConstraintLevelReport> levels;  ///< coarse to fine
+  std::vector<Trial> trials;                  ///< every encoding that was tried, coarse first
+  std::size_t dense_bytes = 0;                ///< float32, 36 bytes per pair of domain nodes
 };
 
 struct BuiltModel {

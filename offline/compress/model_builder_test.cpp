@@ -13,6 +13,7 @@
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/dense_reference.hpp"
 #include "offline/compress/exact_sample.hpp"
+#include "offline/compress/model_field.hpp"
 #include "offline/compress/node_order.hpp"
 
 namespace greenloop::offline {
@@ -71,8 +72,7 @@ Errors dense_errors(const Eigen::MatrixXd& found, const Eigen::MatrixXd& exact, 
 TEST_CASE("the model meets the accuracies, measured on a dense evaluation of its bytes") {
   const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
   const auto exact = test::level_compliances(wavelet, body().compliance);
-  const auto found = test::dense_compliances(file().view, layout::layers);
-  const auto field = test::dense_compliances(file().view, layout::field_layers);
+  const auto found = test::dense_compliances(file().view);
   REQUIRE(built().report.levels.size() == 4);
   for (const auto& level : built().report.levels) {
     CAPTURE(level.level);
@@ -87,18 +87,45 @@ TEST_CASE("the model meets the accuracies, measured on a dense evaluation of its
   const auto finest = dense_errors(found[3], exact[3], wavelet.integrals(3));
   CHECK(finest.rms <= accuracy.rms);
   CHECK(finest.worst_column <= accuracy.worst_column);
-  const auto drawn = dense_errors(field[3], exact[3], wavelet.integrals(3));
-  CHECK(drawn.rms <= accuracy.rms);
-  CHECK(drawn.worst_column <= accuracy.worst_column);
-  CHECK(built().report.field_rms_error == doctest::Approx(drawn.rms).epsilon(1e-3));
-  CHECK(built().report.field_column_error == doctest::Approx(drawn.worst_column).epsilon(1e-3));
+}
+
+TEST_CASE("fields of every level meet the accuracy, measured on a body's columns, and the file says their number") {
+  const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
+  const auto exact = test::level_compliances(wavelet, body().compliance);
+  for (const auto& level : built().report.levels) {
+    CAPTURE(level.level);
+    const AlignedBytes bytes(truncate_to_level(encode(built().model), level.level));
+    ModelView view;
+    REQUIRE(verify(bytes.span(), view).ok());
+    const ModelField fields(view);
+    const LinearWavelet cut(view);
+    Eigen::MatrixXd found = exact[level.level];
+    for (std::size_t j = 0; j < level.nodes; ++j) {
+      REQUIRE(fields.has_column(level.level, j));
+      const auto column = fields.column(cut, level.level, j);
+      for (std::size_t i = 0; i < level.nodes; ++i) {
+        found.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) =
+            Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * i);
+      }
+    }
+    const auto errors = dense_errors(found, exact[level.level], wavelet.integrals(level.level));
+    CHECK(level.field_rms_error == doctest::Approx(errors.rms).epsilon(1e-3));
+    CHECK(level.field_column_error == doctest::Approx(errors.worst_column).epsilon(1e-3));
+    CHECK(errors.rms <= (level.level == 3 ? 1 : 2) * accuracy.rms);
+    CHECK(errors.worst_column <= (level.level == 3 ? 1 : 2) * accuracy.worst_column);
+    const auto& counts = *view.level[level.level].counts;
+    CHECK(static_cast<double>(counts.field_rms_error) == doctest::Approx(level.field_rms_error));
+    CHECK(static_cast<double>(counts.field_column_error) == doctest::Approx(level.field_column_error));
+    CHECK(counts.field_blocks == fields.counts().blocks);
+    CHECK(counts.longest_field_column == fields.counts().longest);
+  }
 }
 
 TEST_CASE("forces of all patches meet their accuracy, and it is used up") {
   const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
   ContactPatches patches(row_positions(body().mesh, wavelet, 3), ExactSample::most_patches);
   patches.add(body().compliance, 0);
-  const double error = patches.worst_force_error(CompressedCompliance(file().view, layout::layers), 3);
+  const double error = patches.worst_force_error(CompressedCompliance(file().view), 3);
   CHECK(error <= accuracy.patch_force);
   CHECK(error > 0.3 * accuracy.patch_force);
   CHECK(built().report.levels.back().patch_force_error == doctest::Approx(error).epsilon(1e-6));
@@ -106,7 +133,7 @@ TEST_CASE("forces of all patches meet their accuracy, and it is used up") {
 }
 
 TEST_CASE("the certified bound lies below the least eigenvalue") {
-  const auto found = test::dense_compliances(file().view, layout::layers).back();
+  const auto found = test::dense_compliances(file().view).back();
   const double least =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(found, Eigen::EigenvaluesOnly).eigenvalues().minCoeff();
   CHECK(built().report.lambda_min > 0.3 * least);
@@ -124,8 +151,7 @@ TEST_CASE("cut off after any level it is a valid model, as accurate as reported"
     ModelView view;
     const auto verdict = verify(part.span(), view);
     REQUIRE_MESSAGE(verdict.ok(), describe(verdict));
-    const auto errors =
-        dense_errors(test::dense_compliances(view, layout::layers).back(), exact[q], wavelet.integrals(q));
+    const auto errors = dense_errors(test::dense_compliances(view).back(), exact[q], wavelet.integrals(q));
     CHECK(static_cast<double>(view.level[q].counts->rms_error) == doctest::Approx(errors.rms).epsilon(1e-3));
     CHECK(errors.rms < 2 * accuracy.rms);
   }
@@ -134,7 +160,7 @@ TEST_CASE("cut off after any level it is a valid model, as accurate as reported"
 TEST_CASE("the report counts what is in the file") {
   const auto& report = built().report;
   for (const auto& level : report.levels) {
-    CHECK(level.nodes == CompressedCompliance(file().view, layout::layers).rows(level.level));
+    CHECK(level.nodes == CompressedCompliance(file().view).rows(level.level));
     CHECK(level.dense_blocks == level.nodes * level.nodes);
     CHECK(level.kept_blocks == file().view.level[level.level].counts->kept_blocks);
   }
@@ -197,7 +223,7 @@ TEST_CASE("only needed nodes are stored") {
   CHECK(model.report.trials.back().meets(accuracy));
   const test::File stored(model.model);
   CHECK(stored.view.domain_count == part.column_nodes.size());
-  const auto found = test::dense_compliances(stored.view, layout::layers).back();
+  const auto found = test::dense_compliances(stored.view).back();
   CHECK((found - part.compliance).norm() < 2 * accuracy.rms * part.compliance.norm());
 }
 

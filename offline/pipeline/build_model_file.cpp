@@ -163,13 +163,16 @@ json compression_record(const CompressionReport& report) {
                       {"dense_blocks", level.dense_blocks},
                       {"rms_error", level.rms_error},
                       {"worst_column_error", level.worst_column_error},
-                      {"worst_patch_force_error", std::min(level.patch_force_error, 1e9)}});
+                      {"worst_patch_force_error", std::min(level.patch_force_error, 1e9)},
+                      {"field_rms_error", level.field_rms_error},
+                      {"field_column_error", level.field_column_error},
+                      {"field_blocks", level.field_blocks},
+                      {"longest_field_column", level.longest_field_column}});
   }
   return {{"threshold", report.encoding.threshold},
           {"quantum", report.encoding.quantum},
-          {"field_threshold", report.encoding.field_threshold},
-          {"field_rms_error", report.field_rms_error},
-          {"field_column_error", report.field_column_error},
+          {"field_threshold", report.field.spread},
+          {"field_peak_threshold", report.field.peak},
           {"lambda_min", report.lambda_min},
           {"patches", report.patches},
           {"dense_bytes", report.dense_bytes},
@@ -227,7 +230,7 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, const json& sol
   const auto& finest = built.report.levels.back();
   progress.end(fmt::format("{:.1f} times fewer blocks, field {:.2f} % RMS, worst patch force {:.1f} %",
                            static_cast<double>(finest.dense_blocks) / static_cast<double>(finest.kept_blocks),
-                           100 * built.report.field_rms_error, 100 * finest.patch_force_error));
+                           100 * finest.field_rms_error, 100 * finest.patch_force_error));
   return built;
 }
 

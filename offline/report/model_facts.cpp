@@ -33,8 +33,7 @@ std::span<const layout::SectionEntry> section_entries(const ModelView& model) {
 
 std::string kind_name(const layout::SectionEntry& entry) {
   if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings)) {
-    const layout::Layer& layer = layout::layer[entry.b];
-    return fmt::format("{} couplings, {} bits", layer.field ? "field" : "force", layer.value_bits);
+    return fmt::format("couplings, {} bits", layout::value_bits[entry.b]);
   }
   for (const auto& [known, name] : kind_names) {
     if (static_cast<std::uint32_t>(known) == entry.kind) return name;
@@ -62,7 +61,7 @@ std::string coupling_bits(const ModelView& model) {
   std::map<std::uint32_t, std::uint64_t, std::greater<>> blocks;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const std::uint64_t count = block_count(model, layer, layer + 1);
-    if (count > 0) blocks[layout::layer[layer].value_bits] += count;
+    if (count > 0) blocks[layout::value_bits[layer]] += count;
   }
   std::string text;
   for (const auto& [width, count] : blocks) {
@@ -108,26 +107,26 @@ FactGroup compression_facts(const ModelView& model) {
   const layout::Level& finest = finest_level(model);
   const auto dense = static_cast<double>(dense_bytes(model)), file = static_cast<double>(model.header->file_bytes);
   const double kept = static_cast<double>(std::max<std::uint64_t>(finest.kept_blocks, 1));
-  return {"Compression",
-          {{"model file", readable_bytes(file)},
-           {"dense compliance, float32", readable_bytes(dense)},
-           {"smaller by", times(dense / file)},
-           {"blocks kept",
-            fmt::format("{} of {}", readable_count(finest.kept_blocks), readable_count(finest.dense_blocks))},
-           {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
-           {"wavelet", wavelet_name(model)},
-           {"couplings by bits per value", coupling_bits(model)},
-           {"RMS error", readable_percent(finest.rms_error)},
-           {"worst column's error", readable_percent(finest.worst_column_error)},
-           {"worst patch force's error", readable_percent(finest.patch_force_error)},
-           {"couplings that make fields",
-            fmt::format("{} of {}", readable_count(block_count(model, 0, layout::field_layers)),
-                        readable_count(block_count(model, 0, layout::layers)))},
-           {"field's RMS error", readable_percent(finest.field_rms_error)},
-           {"field's worst column", readable_percent(finest.field_column_error)},
-           {"positive definite", certificate(model)},
-           {"threshold", readable(model.info->threshold)},
-           {"asymmetry of the exact columns", readable(model.info->store_asymmetry, 2)}}};
+  return {
+      "Compression",
+      {{"model file", readable_bytes(file)},
+       {"dense compliance, float32", readable_bytes(dense)},
+       {"smaller by", times(dense / file)},
+       {"blocks kept",
+        fmt::format("{} of {}", readable_count(finest.kept_blocks), readable_count(finest.dense_blocks))},
+       {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
+       {"wavelet", wavelet_name(model)},
+       {"couplings by bits per value", coupling_bits(model)},
+       {"RMS error", readable_percent(finest.rms_error)},
+       {"worst column's error", readable_percent(finest.worst_column_error)},
+       {"worst patch force's error", readable_percent(finest.patch_force_error)},
+       {"blocks of a body's field columns", fmt::format("{}, at most {} in one", readable_count(finest.field_blocks),
+                                                        readable_count(finest.longest_field_column))},
+       {"field's RMS error", readable_percent(finest.field_rms_error)},
+       {"field's worst column", readable_percent(finest.field_column_error)},
+       {"positive definite", certificate(model)},
+       {"threshold", readable(model.info->threshold)},
+       {"asymmetry of the exact columns", readable(model.info->store_asymmetry, 2)}}};
 }
 
 FactGroup loop_facts(const ModelView& model) {

@@ -225,7 +225,7 @@ TEST_CASE("the finest constraint level's bytes are all scales and couplings") {
     names.push_back(kind.name);
     if (kind.name == "scales" || has(kind.name, "couplings")) sum += kind.bytes;
   }
-  for (const char* name : {"scales", "field couplings, 8 bits", "force couplings, 4 bits", "representatives"}) {
+  for (const char* name : {"scales", "couplings, 8 bits", "couplings, 4 bits", "representatives"}) {
     CAPTURE(name);
     CHECK(std::count(names.begin(), names.end(), name) == 1);
   }
@@ -246,17 +246,16 @@ TEST_CASE("facts say wavelet, bits, layers and certificate") {
   };
   ModelData data = synthetic_model({.lifted = false});
   CHECK(fact(data, "wavelet") == "linear");
-  std::size_t field = 0, all = 0, nibbles = 0;
+  std::size_t nibbles = 0;
   for (const LevelData& level : data.levels) {
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       const std::size_t count = level.couplings[layer].index.size();
-      all += count;
-      field += layout::layer[layer].field ? count : 0;
-      nibbles += layout::layer[layer].value_bits == 4 ? count : 0;
+      nibbles += layout::value_bits[layer] == 4 ? count : 0;
     }
   }
-  CHECK(field < all);
-  CHECK(fact(data, "couplings that make fields") == readable_count(field) + " of " + readable_count(all));
+  const layout::Level& finest = data.levels.back().counts;
+  CHECK(fact(data, "blocks of a body's field columns") ==
+        readable_count(finest.field_blocks) + ", at most " + readable_count(finest.longest_field_column) + " in one");
   CHECK(has(fact(data, "couplings by bits per value"), "4: " + readable_count(nibbles)));
   CHECK(fact(data, "positive definite") == "none");
   data.info.lambda_min = 2.5e-5;

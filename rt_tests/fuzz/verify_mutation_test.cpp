@@ -108,15 +108,15 @@ TEST_CASE("walk_view sees what verify must prevent") {
   CHECK_FALSE(walk_view(mutant.bytes(), view));
   parents[0].parent[1] -= 6;
   auto& info = *mutant.records<layout::Info>(layout::SectionKind::info);
-  const float quantum = std::exchange(info.quantum[4], 2.0F);
+  const float quantum = std::exchange(info.quantum[3], 2.0F);
   CHECK_FALSE(walk_view(mutant.bytes(), view));
-  info.quantum[4] = quantum;
+  info.quantum[3] = quantum;
   const auto& couplings = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, 2);
   auto* index = mutant.records<std::uint16_t>(layout::SectionKind::couplings, 1, 2, couplings.index_offset);
   const std::uint16_t row = std::exchange(index[0], static_cast<std::uint16_t>(couplings.rows));
   CHECK_FALSE(walk_view(mutant.bytes(), view));
   index[0] = row;
-  for (const std::uint32_t layer : {2u, 5u}) {
+  for (const std::uint32_t layer : {2u, 3u}) {
     const auto& header = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 1, layer);
     REQUIRE(header.block_count > 0);
     auto* value = mutant.records<std::uint8_t>(layout::SectionKind::couplings, 1, layer, header.value_offset);

@@ -88,7 +88,7 @@ class Walk {
       const float quantum = view_.info->quantum[layer];
       const bool empty = couplings.columns == 0 && couplings.begin[0] == 0;
       if ((!empty && couplings.columns != domain(q)) || couplings.rows != domain_of_mesh(q) ||
-          !(quantum >= 0 && quantum <= 1) || !sound(couplings, layout::layer[layer].value_bits)) {
+          !(quantum >= 0 && quantum <= 1) || !sound(couplings, layout::value_bits[layer])) {
         return false;
       }
     }

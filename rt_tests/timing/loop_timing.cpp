@@ -91,19 +91,20 @@ void time_kernels(const TestModel& model) {
     clear(body.touched);
     touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
   });
-  const SetCounts counts = count_set(body.set, body.touched, contacts.size(), body.cost[c], body.stored);
-  const auto blocks = static_cast<double>(count_field_blocks(body.couplings, body.touched, c));
+  SetCounts counts;
+  count_factor(body.set, body.touched, body.cost[c], body.stored, counts);
+  const auto blocks = static_cast<double>(count_field_blocks(body.columns, body.set, c));
+  const std::vector<float> force(3 * contacts.size(), 1e-3F);
+  const NodeForces forces{c, body.set.columns, body.set.column, force.data()};
   const double field = median_nanoseconds(20, [&](int) {
-    for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-      body.force[body.set.column[k]] = splat3(1e-3F);
-    }
-    compute_field({body.refinement, body.couplings}, body.touched, c, body.force, x.data());
+    compute_field({view, body.columns, body.parents}, forces, c, body.sums, x.data());
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
     assemble_capacitance(body.refinement, body.set, body.touched, body.capacitance, body.force, matrix.data());
   });
-  const double transform = median_nanoseconds(20, [&](int) { inverse_transform(view, body.lifting, c, x.data()); });
+  const double transform =
+      median_nanoseconds(20, [&](int) { inverse_transform(view, body.parents, c, body.sums, x.data()); });
   std::printf("%u nodes, %u in the domain; 16 contacts touch %llu coefficients, %.0f blocks of the field\n",
               view.node_count, view.domain_count, static_cast<unsigned long long>(counts.coefficients), blocks);
   std::printf("touch               %8.0f ns\n", touching);

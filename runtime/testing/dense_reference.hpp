@@ -7,6 +7,7 @@
 
 #include "formats/testing/dense_wavelet.hpp"
 #include "formats/view.hpp"
+#include "runtime/body.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop {
@@ -15,15 +16,18 @@ namespace greenloop {
 /// three rows and columns a domain node.
 [[nodiscard]] Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q);
 
+/// A body's field columns of constraint level c as a matrix: 3 domain by 3 |K(c)|, m/N.
+[[nodiscard]] Eigen::MatrixXd dense_field_columns(const Body& body, std::uint32_t c);
+
 /// The compliances that a model stands for, as dense matrices in double precision: 3 rows and columns per domain node,
 /// by place in the domain. For tests: plain and slow.
 class DenseReference {
  public:
   explicit DenseReference(const ModelData& model);
 
-  /// Between the averages of level c, all layers of couplings; m/N.
+  /// Between the averages of level c; m/N.
   [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c) const { return compliance_[c]; }
-  /// Displacement of the domain per force of level c, field layers of couplings: 3 domain by 3 |K(c)|.
+  /// Displacement of the domain per force of level c, by the field columns of a body: 3 domain by 3 |K(c)|.
   [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
   /// The averages of level q of displacements of the domain.
   [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "formats/aligned_bytes.hpp"
+#include "formats/view.hpp"
+#include "offline/compress/linear_wavelet.hpp"
+#include "runtime/field_columns.hpp"
+
+namespace greenloop::offline {
+
+/// The field columns that a body of the loop makes of a model, bit by bit.
+class ModelField {
+ public:
+  /// Whatever the model says of their number. The view must outlive this. Throws std::runtime_error if a number is not
+  /// finite. Work: that of FieldColumnMaker::make, twice.
+  explicit ModelField(const ModelView& view);
+
+  [[nodiscard]] const FieldColumnMaker::Counts& counts() const { return counts_; }
+
+  /// Whether row j of K(level) stands for a touchable node, and a force on it moves anything.
+  [[nodiscard]] bool has_column(std::size_t level, std::size_t j) const {
+    return column_blocks(columns_, static_cast<std::uint32_t>(level), static_cast<std::uint32_t>(j),
+                         columns_.levels - 1) > 0;
+  }
+
+  /// Displacements by a unit force on its node: domain rows blocks of 9, 3 c + r, m/N. `wavelet`: the model's.
+  [[nodiscard]] std::vector<double> column(const LinearWavelet& wavelet, std::size_t level, std::size_t j) const;
+
+ private:
+  struct Tables {
+    RefinementTables refinement;
+    FieldColumnMaker maker;
+    Touched touched;
+    Float4* force = nullptr;
+    void carve(Arena& arena, const ModelView& view);
+  };
+
+  const ModelView& view_;
+  FieldColumnMaker::Counts counts_;
+  AlignedBytes tables_memory_, blocks_memory_;
+  FieldColumns columns_;
+};
+
+}  // namespace greenloop::offline

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/view.hpp"
+#include "runtime/arena.hpp"
+#include "runtime/float4.hpp"
+#include "runtime/sparse_forces.hpp"
+
+namespace greenloop {
+
+// What a unit force on a touchable node of a constraint level moves, in wavelet coefficients: the columns that fields
+// are sums of (James & Pai 2003, section 5.4). Made of all couplings at start-up and thresholded as layout.hpp says, so
+// that a step reads a tenth of what the two-sided form would make it read. Values are upper halves of floats, which
+// load without conversion.
+
+/// A block of a column, m/N.
+struct alignas(8) ColumnBlock {
+  std::uint32_t byte_offset;  ///< of the moved coefficient, by its place in the domain, in an array of Float4
+  std::uint16_t value[9];     ///< by columns, upper halves of floats
+  std::uint16_t zero;
+};
+
+/// The field columns of all constraint levels; nodes that stand for no touchable node have empty ones.
+struct FieldColumns {
+  std::uint32_t levels = 0;
+  /// [c][domain nodes of K(c) * levels + 1] into block: of every node, by the level that is moved
+  const std::uint32_t* begin[layout::max_levels] = {};
+  const ColumnBlock* block = nullptr;
+};
+
+/// Blocks in the column of the node at `place` of K(c) that move coefficients of levels 0..field_level. For the loop;
+/// work: one unit.
+inline std::uint32_t column_blocks(const FieldColumns& columns, std::uint32_t c, std::uint32_t place,
+                                   std::uint32_t field_level) {
+  const std::uint32_t* begin = columns.begin[c] + std::size_t{place} * columns.levels;
+  return begin[field_level + 1] - begin[0];
+}
+
+/// Asks the processor for a column.
+void prefetch_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place) noexcept;
+
+/// sums += the column of the node at `place` of K(c), levels 0..field_level, times a force. For the loop; work: 10
+/// units per block.
+void add_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place, std::uint32_t field_level,
+                Float4 force, SparseCoefficients& sums) noexcept;
+
+/// A stored block by its row's coefficient.
+struct MirroredBlock {
+  std::uint32_t column;
+  std::uint32_t place;  ///< layer, from bit 30 on, and position in its section
+
+  [[nodiscard]] std::uint32_t layer() const { return place >> 30; }
+  [[nodiscard]] std::uint32_t position() const { return place & 0x3fffffff; }
+};
+static_assert(layout::layers <= 4);
+
+/// Where field columns are made.
+class FieldColumnMaker {
+ public:
+  /// Arrays out of `arena`, without the blocks; null while it counts. Start-up; linear in the blocks.
+  void carve(Arena& arena, const ModelView& view) noexcept;
+
+  /// Where columns are written, and how much of them at most.
+  struct Room {
+    ColumnBlock* block = nullptr;  ///< [blocks], or null: they are only counted
+    std::uint64_t blocks = 0xffffffff;
+    std::uint32_t longest = 0xffffffff;  ///< blocks of one column
+  };
+
+  /// How many blocks the columns have.
+  struct Counts {
+    std::uint64_t blocks = 0;
+    std::uint32_t longest = 0;  ///< of one column
+    bool finite = true;
+    [[nodiscard]] bool within(const Room& room) const {
+      return finite && blocks <= room.blocks && longest <= room.longest;
+    }
+  };
+
+  /// Makes all columns, or stops once they are not within the room. touched: clear; force: [domain], 0; both are so
+  /// again afterwards. Start-up; work: about 30 units per block that couples one of a column's coefficients.
+  Counts make(const Refinement& refinement, Touched& touched, Float4* force, const Room& room) noexcept;
+
+  [[nodiscard]] const FieldColumns& columns() const { return columns_; }
+
+ private:
+  // least square norms of blocks that are kept
+  struct Limits {
+    double spread_norm = 0;  // of level 0; each level's is four times the one before
+    double norm = 0;         // of any level
+  };
+
+  void list_mirrored() noexcept;
+  void mark_representatives(std::uint32_t c) noexcept;
+  double sum_column(const Refinement& refinement, std::uint32_t c, std::uint32_t place, Touched& touched,
+                    Float4* force) noexcept;
+  [[nodiscard]] Limits limits(const Refinement& refinement, double own) const noexcept;
+  void keep_level(std::uint32_t q, const Limits& limits, const Room& room, Counts& counts) noexcept;
+  void add_couplings(std::uint32_t coefficient, std::uint32_t level, const Block& force) noexcept;
+
+  const ModelView* view_ = nullptr;
+  FieldColumns columns_;
+  std::uint32_t* begin_[layout::max_levels] = {};
+  std::uint32_t* mirrored_begin_ = nullptr;  // [domain + 1]
+  MirroredBlock* mirrored_ = nullptr;
+  Block* sum_ = nullptr;            // [domain], 0 between columns
+  std::uint8_t* wanted_ = nullptr;  // [domain] the node at this place stands for a touchable node
+};
+
+}  // namespace greenloop
