@@ -132,7 +132,9 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   carve_set(arena, view, sizes.counts.max_contacts, body.set);
   body.touched.carve(arena, view);
   carve_capacitance(arena, view, sizes, body.capacitance);
+  body.update.carve(arena, sizes.set_columns);
   body.column_force = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
+  body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
   body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
 }

@@ -8,6 +8,7 @@
 #include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/factor_cache.hpp"
+#include "runtime/factor_update.hpp"
 #include "runtime/field_columns.hpp"
 #include "runtime/plan.hpp"
 #include "runtime/requirement.hpp"
@@ -33,7 +34,9 @@ struct Body {
   ContactSet set;
   Touched touched;  ///< by the set
   CapacitanceScratch capacitance;
+  FactorUpdateScratch update;
   Float4* column_force = nullptr;  ///< displacements, then forces of the set's columns
+  Float4* solution = nullptr;      ///< the same in the order of a factor
   Float4* force = nullptr;         ///< [domain], zero between steps
   FactorCache cache;
   const std::byte* last_red_zone = nullptr;

@@ -200,18 +200,18 @@ ColumnCost column_cost(const Refinement& refinement, std::uint32_t c, std::uint3
   return cost;
 }
 
-void assemble_capacitance(const Refinement& refinement, const ContactSet& set, const Touched& touched,
-                          CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept {
+void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, std::uint32_t computed,
+                          const Touched& touched, CapacitanceScratch& scratch, Float4* force, std::uint32_t stride,
+                          Float4* a) noexcept {
   const ModelView& view = *refinement.view;
-  const std::size_t stride = padded_order(3 * set.columns);
   const std::uint32_t slots = assign_slots(view, touched, scratch);
   scratch.begin[0] = 0;
-  for (std::uint32_t i = 0; i < set.columns; ++i) {
-    scratch.begin[i + 1] = write_functional(refinement, set.level, set.column[i], scratch.begin[i], scratch, force);
+  for (std::uint32_t i = 0; i < set.count; ++i) {
+    scratch.begin[i + 1] = write_functional(refinement, set.level, set.place[i], scratch.begin[i], scratch, force);
   }
-  list_slot_columns(set.columns, slots, scratch);
-  for (Batch batch{0, 0}; batch.first < set.columns; batch.first += batch.count) {
-    const std::uint32_t left = set.columns - batch.first;
+  list_slot_columns(set.count, slots, scratch);
+  for (Batch batch{0, 0}; batch.first < computed; batch.first += batch.count) {
+    const std::uint32_t left = computed - batch.first;
     batch.count = left < CapacitanceScratch::batch ? left : CapacitanceScratch::batch;
     begin_batch(batch, slots, scratch);
     for (std::uint32_t q = 0; q <= set.level; ++q) {
@@ -223,7 +223,7 @@ void assemble_capacitance(const Refinement& refinement, const ContactSet& set, c
     }
     for (std::uint32_t j = batch.first; j < batch.first + batch.count; ++j) {
       float* column = reinterpret_cast<float*>(a) + std::size_t{3} * j * stride;
-      for (std::uint32_t i = j; i < set.columns; ++i) {
+      for (std::uint32_t i = j; i < set.count; ++i) {
         store(apply(scratch, batch, i, j), stride, column + std::size_t{3} * i);
       }
     }

@@ -56,23 +56,38 @@ void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) 
 [[nodiscard]] ColumnCost column_cost(const Refinement& refinement, std::uint32_t c, std::uint32_t place,
                                      const std::uint32_t* degree, Touched& touched) noexcept;
 
-/// Work units of assemble_capacitance. visits, coefficients, blocks: ColumnCost summed over the columns of the set;
-/// slots: coefficients that the set touches, and stored: blocks in the columns of those in all layers, none counted
-/// twice.
-constexpr std::uint64_t assemble_capacitance_work(std::uint64_t columns, std::uint64_t slots, std::uint64_t stored,
-                                                  std::uint64_t visits, std::uint64_t coefficients,
-                                                  std::uint64_t blocks) {
-  const std::uint64_t batches = (columns + CapacitanceScratch::batch - 1) / CapacitanceScratch::batch;
-  return 5 * visits + 16 * coefficients + 16 * slots + batches * (68 * slots + 74 * stored) + 9 * blocks +
-         columns * (3 * slots + 9 * coefficients);
+/// What the work of assemble_capacitance follows from.
+struct CapacitanceCounts {
+  std::uint64_t columns = 0;       ///< that are computed
+  std::uint64_t slots = 0;         ///< coefficients that the set touches
+  std::uint64_t stored = 0;        ///< blocks in the columns of those in all layers
+  std::uint64_t visits = 0;        ///< ColumnCost summed over the columns of the set
+  std::uint64_t coefficients = 0;  ///< the same
+  std::uint64_t blocks = 0;        ///< ColumnCost summed over the columns that are computed
+};
+
+/// Work units of assemble_capacitance.
+constexpr std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) {
+  const std::uint64_t batches = (counts.columns + CapacitanceScratch::batch - 1) / CapacitanceScratch::batch;
+  return 5 * counts.visits + 16 * counts.coefficients + 16 * counts.slots +
+         batches * (68 * counts.slots + 74 * counts.stored) + 9 * counts.blocks +
+         counts.columns * (3 * counts.slots + 9 * counts.coefficients);
 }
 
-/// The capacitance matrix of a contact set in force form: block (i, j) is the displacement of the average of column i
-/// per force at column j (James & Pai 2003, sections 3.2 and 5.4), by all layers. Every block between two touched
-/// coefficients is read once per batch of columns. Symmetric; only the lower triangle is written. touched: by the set;
-/// a: [n * n / 4] by columns, n = padded_order(3 * columns); force: [domain], 0 before and after. For the loop; work:
+/// Columns of a constraint level as rows and columns of a capacitance matrix.
+struct CapacitanceColumns {
+  std::uint32_t level;
+  std::uint32_t count;
+  const std::uint32_t* place;  ///< [count] of their nodes in the domain, in any order
+};
+
+/// The first `computed` columns, from the diagonal down, of the capacitance matrix in force form: block (i, j) is the
+/// displacement of the average of column i per force at column j (James & Pai 2003, sections 3.2 and 5.4), by all
+/// layers; it is symmetric. Every block between two touched coefficients is read once per batch of columns. touched: by
+/// the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after. For the loop; work:
 /// assemble_capacitance_work.
-void assemble_capacitance(const Refinement& refinement, const ContactSet& set, const Touched& touched,
-                          CapacitanceScratch& scratch, Float4* force, Float4* a) noexcept;
+void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, std::uint32_t computed,
+                          const Touched& touched, CapacitanceScratch& scratch, Float4* force, std::uint32_t stride,
+                          Float4* a) noexcept;
 
 }  // namespace greenloop

@@ -2,16 +2,20 @@
 
 #include <cfloat>
 #include <cstddef>
+#include <cstring>
 
 namespace greenloop {
 namespace {
 
+constexpr float rounding = 8 * FLT_EPSILON;
+
 // a matrix by columns of whole vectors
 struct Columns {
   Float4* data;
-  std::uint32_t vectors;  ///< per column
+  std::uint32_t stride;   ///< vectors from column to column
+  std::uint32_t vectors;  ///< of them in use
 
-  [[nodiscard]] Float4* vector(std::uint32_t column) const { return data + std::size_t{column} * vectors; }
+  [[nodiscard]] Float4* vector(std::uint32_t column) const { return data + std::size_t{column} * stride; }
   float& operator()(std::uint32_t row, std::uint32_t column) const {
     return reinterpret_cast<float*>(vector(column))[row];
   }
@@ -91,6 +95,15 @@ Float4 solve_upper(const Columns& a, std::uint32_t first, Float4 b) {
   return b;
 }
 
+// b = L^-1 b
+void solve_forward(const Columns& a, Float4* b) {
+  for (std::uint32_t v = 0; v < a.vectors; ++v) {
+    b[v] = solve_lower(a, 4 * v, b[v]);
+    const float x[4] = {b[v][0], b[v][1], b[v][2], b[v][3]};
+    subtract_panel(a, 4 * v, x, v + 1, a.vectors, b);
+  }
+}
+
 // products of the four columns from `first` with b below them
 Float4 dot_panel(const Columns& a, std::uint32_t first, const Float4* b) {
   Float4 sum[4] = {};
@@ -106,13 +119,36 @@ Float4 dot_panel(const Columns& a, std::uint32_t first, const Float4* b) {
   return total;
 }
 
+// factors of A + alpha w w^T, alpha positive, where w is 0 above row `first`; w is overwritten
+void update(const Columns& a, std::uint32_t order, std::uint32_t first, float alpha, Float4* vector) {
+  auto* w = reinterpret_cast<float*>(vector);
+  for (std::uint32_t j = first; j < order; ++j) {
+    const float p = w[j];
+    const float pivot = 1.0F / a(j, j);
+    const float updated = pivot + alpha * p * p;
+    const float inverse = 1.0F / updated;
+    const float gain = p * alpha * inverse;
+    alpha *= pivot * inverse;
+    a(j, j) = inverse;
+    std::uint32_t i = j + 1;
+    for (; i % 4 != 0; ++i) {
+      w[i] -= p * a(i, j);
+      a(i, j) += gain * w[i];
+    }
+    Float4* column = a.vector(j);
+    for (std::uint32_t v = i / 4; v < a.vectors; ++v) {
+      vector[v] -= splat(p) * column[v];
+      column[v] += splat(gain) * vector[v];
+    }
+  }
+}
+
 }  // namespace
 
-bool cholesky_factor(std::uint32_t order, Float4* data) noexcept {
-  const Columns a{data, padded_order(order) / 4};
+bool cholesky_factor(std::uint32_t order, std::uint32_t stride, Float4* data) noexcept {
+  const Columns a{data, stride / 4, padded_order(order) / 4};
   const std::uint32_t n = 4 * a.vectors;
   pad(order, a);
-  constexpr float rounding = 8 * FLT_EPSILON;
   // columns are updated from the left, so the diagonal still is the matrix's own
   for (std::uint32_t first = 0; first < n; first += 4) {
     float least[4];
@@ -136,19 +172,58 @@ bool cholesky_factor(std::uint32_t order, Float4* data) noexcept {
   return true;
 }
 
-void cholesky_solve(std::uint32_t order, const Float4* data, Float4* b) noexcept {
-  const Columns a{const_cast<Float4*>(data), padded_order(order) / 4};
-  for (std::uint32_t v = 0; v < a.vectors; ++v) {
-    b[v] = solve_lower(a, 4 * v, b[v]);
-    const float x[4] = {b[v][0], b[v][1], b[v][2], b[v][3]};
-    subtract_panel(a, 4 * v, x, v + 1, a.vectors, b);
-  }
+void cholesky_solve(std::uint32_t order, std::uint32_t stride, const Float4* data, Float4* b) noexcept {
+  const Columns a{const_cast<Float4*>(data), stride / 4, padded_order(order) / 4};
+  solve_forward(a, b);
   for (std::uint32_t v = a.vectors; v-- > 0;) {
     for (std::uint32_t k = 0; k < 4; ++k) {
       b[v][k] *= a(4 * v + k, 4 * v + k);
     }
     b[v] = solve_upper(a, 4 * v, b[v] - dot_panel(a, 4 * v, b));
   }
+}
+
+bool cholesky_append(std::uint32_t order, std::uint32_t added, std::uint32_t stride, Float4* data,
+                     Float4* border) noexcept {
+  pad(order, {data, stride / 4, padded_order(order + added) / 4});
+  for (std::uint32_t row = order; row < order + added; ++row, border += stride / 4) {
+    const Columns a{data, stride / 4, padded_order(row + 1) / 4};
+    auto* entry = reinterpret_cast<float*>(border);
+    const float diagonal = entry[row];
+    for (std::uint32_t k = row; k < 4 * a.vectors; ++k) {
+      entry[k] = 0;
+    }
+    solve_forward(a, border);
+    float pivot = diagonal;
+    for (std::uint32_t k = 0; k < row; ++k) {
+      const float multiplier = entry[k] * a(k, k);
+      pivot -= entry[k] * multiplier;
+      a(row, k) = multiplier;
+    }
+    if (!(diagonal > 0 && pivot > rounding * diagonal && pivot <= FLT_MAX)) {
+      return false;
+    }
+    a(row, row) = 1.0F / pivot;
+  }
+  return true;
+}
+
+void cholesky_remove(std::uint32_t order, std::uint32_t first, std::uint32_t removed, std::uint32_t stride,
+                     Float4* data, Float4* scratch) noexcept {
+  const Columns a{data, stride / 4, padded_order(order) / 4};
+  for (std::uint32_t c = 0; c < removed; ++c) {
+    Float4* column = scratch + std::size_t{c} * a.stride;
+    std::memcpy(column, a.vector(first + c), sizeof(Float4) * a.vectors);
+    update(a, order, first + removed, 1.0F / a(first + c, first + c), column);
+  }
+  const std::size_t below = sizeof(float) * (order - first - removed);
+  for (std::uint32_t j = 0; j < first; ++j) {
+    std::memmove(&a(first, j), &a(first + removed, j), below);
+  }
+  for (std::uint32_t j = first; j + removed < order; ++j) {
+    std::memcpy(&a(j, j), &a(j + removed, j + removed), sizeof(float) * (order - removed - j));
+  }
+  pad(order - removed, {data, stride / 4, padded_order(order - removed) / 4});
 }
 
 }  // namespace greenloop

@@ -16,6 +16,8 @@ namespace {
 struct Plan {
   SetCounts counts;
   Factor* cached = nullptr;
+  FactorChanges changes;     ///< base: the factor to update, or null: make a fresh one
+  std::uint64_t factor = 0;  ///< work of the factor, unless it is cached
   std::uint32_t field_level = 0;
   std::uint64_t work = 0;   ///< spent on deciding
   std::uint64_t field = 0;  ///< work of the field
@@ -41,14 +43,20 @@ std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
                     count_field_blocks(body.columns, body.set, plan.field_level));
 }
 
-// touches the coefficients of the set; returns the work of its factor
-std::uint64_t plan_factor(Body& body, Plan& plan) {
+// touches the coefficients of the set and chooses how to make its factor
+void plan_factor(Body& body, Plan& plan) {
   const std::uint32_t c = body.set.level;
   clear(body.touched);
   touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
   count_factor(body.set, body.touched, body.cost[c], body.stored, plan.counts);
-  plan.work += touch_work(plan.counts);
-  return factor_work(body.counts, plan.counts);
+  plan.changes = find_changes(body.cache, body.set);
+  plan.work += touch_work(plan.counts) + find_changes_work(body.counts.cached_factors, plan.counts.columns);
+  plan.factor = factor_work(body.counts, plan.counts);
+  if (plan.changes.base != nullptr) {
+    const std::uint64_t update = update_factor_work(plan.counts, plan.changes, body.cost[c]);
+    plan.changes.base = update < plan.factor ? plan.changes.base : nullptr;
+    plan.factor = update < plan.factor ? update : plan.factor;
+  }
 }
 
 // resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
@@ -66,7 +74,12 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
     plan.counts.columns = body.set.columns;
     plan.cached = body.cache.find(body.set);
     plan.work += resolve_work(body.counts, plan.counts);
-    forces = force_work(plan.counts) + (plan.cached != nullptr ? 0 : plan_factor(body, plan));
+    plan.factor = 0;
+    plan.changes = {};
+    if (plan.cached == nullptr) {
+      plan_factor(body, plan);
+    }
+    forces = force_work(plan.counts) + plan.factor;
     plan.field = wants_field ? planned_field_work(body, plan) : 0;
     plan.fits = plan.work + forces + plan.field <= budget;
     if (plan.fits) {
@@ -82,22 +95,52 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
   return plan;
 }
 
-// the factors of body.set; null if its capacitance matrix is not positive definite
+// fresh factors of body.set; null if its capacitance matrix is not positive definite
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
-  assemble_capacitance(body.refinement, body.set, body.touched, body.capacitance, body.force, factor.matrix);
-  return cholesky_factor(3 * body.set.columns, factor.matrix) ? &factor : nullptr;
+  const std::uint32_t columns = body.set.columns;
+  assemble_capacitance(body.refinement, {body.set.level, columns, body.set.column}, columns, body.touched,
+                       body.capacitance, body.force, body.cache.stride(), factor.matrix);
+  factor.changes = 0;
+  for (std::uint32_t k = 0; k < columns; ++k) {
+    factor.node[k] = body.set.column[k];
+    factor.position[k] = k;
+  }
+  return cholesky_factor(3 * columns, body.cache.stride(), factor.matrix) ? &factor : nullptr;
+}
+
+Factor* make_factor(Body& body, const FactorChanges& changes) {
+  if (changes.base == nullptr) {
+    return factorise(body);
+  }
+  const CapacitanceSource source{body.refinement, body.touched, body.capacitance, body.force};
+  return update_factor(body.cache, body.set, changes, source, body.update);
+}
+
+// three numbers of each column, between the order of the set and that of a factor
+void to_factor_order(const Factor& factor, std::uint32_t columns, const float* of_set, float* of_factor) {
+  for (std::uint32_t k = 0; k < columns; ++k) {
+    std::memcpy(of_factor + std::size_t{3} * factor.position[k], of_set + std::size_t{3} * k, 3 * sizeof(float));
+  }
+}
+void to_set_order(const Factor& factor, std::uint32_t columns, const float* of_factor, float* of_set) {
+  for (std::uint32_t k = 0; k < columns; ++k) {
+    std::memcpy(of_set + std::size_t{3} * k, of_factor + std::size_t{3} * factor.position[k], 3 * sizeof(float));
+  }
 }
 
 // forces of the columns in body.column_force; false if they would overflow the answer
 bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& factor) {
   const std::uint32_t order = 3 * body.set.columns;
   auto* force = reinterpret_cast<float*>(body.column_force);
+  auto* solution = reinterpret_cast<float*>(body.solution);
   average_displacements(contacts, body.set, force);
   for (std::uint32_t i = order; i < padded_order(order); ++i) {
-    force[i] = 0;
+    solution[i] = 0;
   }
-  cholesky_solve(order, factor.matrix, body.column_force);
+  to_factor_order(factor, body.set.columns, force, solution);
+  cholesky_solve(order, body.cache.stride(), factor.matrix, body.solution);
+  to_set_order(factor, body.set.columns, solution, force);
   float sum = 0;
   for (std::uint32_t i = 0; i < order; ++i) {
     sum += force[i] < 0 ? -force[i] : force[i];
@@ -146,8 +189,8 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   const ModelView& view = *body.view;
   Factor* factor = plan.cached;
   if (factor == nullptr) {
-    work += factor_work(body.counts, plan.counts);
-    factor = factorise(body);
+    work += plan.factor;
+    factor = make_factor(body, plan.changes);
     if (factor == nullptr) {
       return held(Status::held_singular, work);
     }
@@ -168,6 +211,7 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   report.error = view.level[body.set.level].counts->worst_column_error;
   report.work = work;
   report.cached_factor = plan.cached != nullptr;
+  report.changed_nodes = plan.changes.base != nullptr ? plan.changes.added + plan.changes.removed : 0;
   const bool finest = body.set.level + 1 == view.levels && plan.field_level + 1 == view.levels;
   report.status = finest ? Status::ok : Status::coarser;
   return report;

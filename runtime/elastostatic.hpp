@@ -53,7 +53,8 @@ struct StepReport {
   std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
   float error = 0;                     ///< Level::worst_column_error of that constraint level, as measured offline
   std::uint64_t work = 0;              ///< units spent, never more than the budget
-  bool cached_factor = false;          ///< the capacitance factor came from the cache
+  bool cached_factor = false;          ///< the capacitance factor came from the cache, unchanged
+  std::uint32_t changed_nodes = 0;     ///< nodes put into a cached factor and taken out of it, to make this one
 };
 
 /// What Limits cost, in closed form, before anything is allocated.

@@ -26,13 +26,15 @@ bool belongs_to(const Factor& factor, const ContactSet& set) {
 }  // namespace
 
 void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept {
-  const std::uint64_t order = padded_order(3 * columns);
+  stride_ = padded_order(3 * columns);
   factors_ = factors;
   factor_ = arena.take_zeroed<Factor>(factors);
   for (std::uint32_t i = 0; i < factors; ++i) {
     Factor factor;
     factor.column = arena.take<std::uint32_t>(columns);
-    factor.matrix = arena.take<Float4>(order * order / 4);
+    factor.node = arena.take<std::uint32_t>(columns);
+    factor.position = arena.take<std::uint32_t>(columns);
+    factor.matrix = arena.take<Float4>(std::uint64_t{stride_} * stride_ / 4);
     if (factor_ != nullptr) {
       factor_[i] = factor;
     }

@@ -14,8 +14,11 @@ struct Factor {
   std::uint64_t used = 0;  ///< when it was last used
   std::uint32_t level = 0;
   std::uint32_t columns = 0;
-  std::uint32_t* column = nullptr;  ///< [columns]
-  Float4* matrix = nullptr;         ///< see cholesky_factor
+  std::uint32_t changes = 0;          ///< nodes that came and went since it was made afresh
+  std::uint32_t* column = nullptr;    ///< [columns] increasing
+  std::uint32_t* node = nullptr;      ///< [columns] the same in the order of the matrix
+  std::uint32_t* position = nullptr;  ///< [columns] of each column in the matrix
+  Float4* matrix = nullptr;           ///< see cholesky_factor
 };
 
 /// Factors by contact set; the least recently used one makes room (James & Pai 2003, section 3.2).
@@ -23,6 +26,12 @@ class FactorCache {
  public:
   /// Room for `factors` sets of `columns` each, out of `arena`; null arrays while it counts.
   void carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept;
+
+  /// Floats from column to column of a factor's matrix.
+  [[nodiscard]] std::uint32_t stride() const noexcept { return stride_; }
+
+  [[nodiscard]] std::uint32_t size() const noexcept { return factors_; }
+  [[nodiscard]] Factor& operator[](std::uint32_t i) const noexcept { return factor_[i]; }
 
   /// Work units of find.
   static constexpr std::uint64_t find_work(std::uint64_t factors, std::uint64_t columns) {
@@ -41,6 +50,7 @@ class FactorCache {
  private:
   Factor* factor_ = nullptr;
   std::uint32_t factors_ = 0;
+  std::uint32_t stride_ = 0;
   std::uint64_t uses_ = 0;
 };
 

@@ -28,16 +28,19 @@ std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexc
 
 std::uint64_t touch_work(const SetCounts& set) noexcept { return 2 * set.visits + 8 * set.coefficients; }
 
+CapacitanceCounts capacitance_counts(const SetCounts& set) noexcept {
+  return {set.columns, set.coefficients, set.stored, set.column_visits, set.column_coefficients, set.column_blocks};
+}
+
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
-  return FactorCache::find_work(model.cached_factors, set.columns) +
-         assemble_capacitance_work(set.columns, set.coefficients, set.stored, set.column_visits,
-                                   set.column_coefficients, set.column_blocks) +
-         cholesky_factor_work(order);
+  return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
+         assemble_capacitance_work(capacitance_counts(set)) + cholesky_factor_work(order);
 }
 
 std::uint64_t force_work(const SetCounts& set) noexcept {
-  return merge_work(set.contacts, set.columns) + cholesky_solve_work(static_cast<std::uint32_t>(3 * set.columns));
+  return merge_work(set.contacts, set.columns) + 6 * set.columns +
+         cholesky_solve_work(static_cast<std::uint32_t>(3 * set.columns));
 }
 
 std::uint64_t count_field_work(const SetCounts& set) noexcept { return 2 * set.columns; }

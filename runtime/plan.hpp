@@ -41,6 +41,9 @@ struct SetCounts {
 /// Work units of finding the coefficients that a set touches and counting what its factor takes.
 [[nodiscard]] std::uint64_t touch_work(const SetCounts& set) noexcept;
 
+/// What the whole capacitance matrix of a set takes.
+[[nodiscard]] CapacitanceCounts capacitance_counts(const SetCounts& set) noexcept;
+
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;
 

@@ -1,6 +1,7 @@
 #include "runtime/requirement.hpp"
 
 #include "runtime/domain.hpp"
+#include "runtime/factor_update.hpp"
 #include "runtime/support.hpp"
 
 namespace greenloop {
@@ -57,7 +58,8 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     };
     const std::uint64_t functional = most.columns > 0 ? most.column_coefficients / most.columns : 0;
     sizes.functional = functional > sizes.functional ? functional : sizes.functional;
-    plans += resolve_work(sizes.counts, most) + touch_work(most);
+    plans +=
+        resolve_work(sizes.counts, most) + touch_work(most) + find_changes_work(limits.cached_factors, most.columns);
     const std::uint64_t forces = factor_work(sizes.counts, most) + force_work(most);
     requirement.worst_work[c] = plans + forces + field(finest);
     // the coarsest level comes last: there the field is cut as well

@@ -1,0 +1,149 @@
+#include "runtime/factor_update.hpp"
+
+#include <cstddef>
+#include <cstring>
+
+#include "runtime/cholesky.hpp"
+
+namespace greenloop {
+namespace {
+
+// what tells the factor from the set; base stays null if that is too much
+FactorChanges changes_of(Factor& factor, const ContactSet& set) {
+  FactorChanges changes;
+  std::uint32_t i = 0;
+  std::uint32_t k = 0;
+  while (i < factor.columns || k < set.columns) {
+    const bool leaves = k == set.columns || (i < factor.columns && factor.column[i] < set.column[k]);
+    const bool enters = i == factor.columns || (k < set.columns && set.column[k] < factor.column[i]);
+    if ((leaves && changes.removed == FactorChanges::most) || (enters && changes.added == FactorChanges::most)) {
+      return {};
+    }
+    if (leaves) {
+      changes.out[changes.removed++] = factor.column[i++];
+    } else if (enters) {
+      changes.in[changes.added++] = set.column[k++];
+    } else {
+      ++i;
+      ++k;
+    }
+  }
+  changes.base = &factor;
+  return changes;
+}
+
+std::uint32_t distance(std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; }
+
+void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) {
+  const std::uint32_t order = padded_order(3 * from.columns);
+  for (std::uint32_t j = 0; j < order; ++j) {
+    const std::size_t begin = std::size_t{j} * stride / 4 + j / 4;
+    std::memcpy(to.matrix + begin, from.matrix + begin, sizeof(Float4) * (order / 4 - j / 4));
+  }
+  std::memcpy(to.node, from.node, sizeof(std::uint32_t) * from.columns);
+  to.columns = from.columns;
+}
+
+void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* scratch) {
+  std::uint32_t at = 0;
+  while (factor.node[at] != node) {
+    ++at;
+  }
+  cholesky_remove(3 * factor.columns, 3 * at, 3, stride, factor.matrix, scratch);
+  --factor.columns;
+  std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
+}
+
+// rows of the capacitance matrix between the new node `t` and those of the factor, of which `t` are new themselves
+void write_border(std::uint32_t t, std::uint32_t added, std::uint32_t kept, std::uint32_t stride, const float* columns,
+                  float* border) {
+  for (std::uint32_t r = 0; r < 3; ++r, border += stride) {
+    const float* own = columns + std::size_t{3 * t + r} * stride;
+    std::memcpy(border, own + std::size_t{3} * added, sizeof(float) * 3 * kept);
+    for (std::uint32_t s = 0; s < 3 * t; ++s) {
+      border[3 * kept + s] = columns[std::size_t{s} * stride + 3 * t + r];
+    }
+    for (std::uint32_t c = 0; c <= r; ++c) {
+      border[3 * (kept + t) + c] = columns[std::size_t{3 * t + c} * stride + 3 * t + r];
+    }
+  }
+}
+
+void list_positions(const ContactSet& set, Factor& factor) {
+  for (std::uint32_t i = 0; i < factor.columns; ++i) {
+    set.place_of_column[factor.node[i]] = i;
+  }
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    factor.position[k] = set.place_of_column[set.column[k]];
+    set.place_of_column[set.column[k]] = layout::none;
+  }
+}
+
+}  // namespace
+
+void FactorUpdateScratch::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
+  const std::uint64_t stride = padded_order(3 * columns_of_a_set);
+  order = arena.take<std::uint32_t>(columns_of_a_set);
+  columns = arena.take<Float4>(3 * FactorChanges::most * stride / 4);
+  border = arena.take<Float4>(3 * stride / 4);
+}
+
+FactorChanges find_changes(const FactorCache& cache, const ContactSet& set) noexcept {
+  FactorChanges nearest;
+  for (std::uint32_t i = 0; i < cache.size(); ++i) {
+    Factor& factor = cache[i];
+    if (factor.key == 0 || factor.level != set.level || factor.changes >= FactorChanges::most_in_a_row ||
+        distance(factor.columns, set.columns) > FactorChanges::most) {
+      continue;
+    }
+    const FactorChanges changes = changes_of(factor, set);
+    if (changes.base != nullptr &&
+        (nearest.base == nullptr || changes.added + changes.removed < nearest.added + nearest.removed)) {
+      nearest = changes;
+    }
+  }
+  return nearest;
+}
+
+std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, const ColumnCost* cost) noexcept {
+  const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
+  CapacitanceCounts capacitance = capacitance_counts(set);
+  capacitance.columns = changes.added;
+  capacitance.blocks = 0;
+  for (std::uint32_t t = 0; t < changes.added; ++t) {
+    capacitance.blocks += cost[changes.in[t]].blocks;
+  }
+  return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
+         changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
+}
+
+Factor* update_factor(FactorCache& cache, const ContactSet& set, const FactorChanges& changes,
+                      const CapacitanceSource& source, FactorUpdateScratch& scratch) noexcept {
+  const std::uint32_t stride = cache.stride();
+  const std::uint32_t changed = changes.base->changes + changes.added + changes.removed;
+  Factor& factor = cache.make_room(set);
+  if (&factor != changes.base) {
+    copy_factor(*changes.base, stride, factor);
+  }
+  factor.changes = changed;
+  for (std::uint32_t t = 0; t < changes.removed; ++t) {
+    remove_node(changes.out[t], stride, factor, scratch.border);
+  }
+  const std::uint32_t kept = factor.columns;
+  std::memcpy(scratch.order, changes.in, sizeof(std::uint32_t) * changes.added);
+  std::memcpy(scratch.order + changes.added, factor.node, sizeof(std::uint32_t) * kept);
+  assemble_capacitance(source.refinement, {set.level, set.columns, scratch.order}, changes.added, source.touched,
+                       source.scratch, source.force, stride, scratch.columns);
+  for (std::uint32_t t = 0; t < changes.added; ++t) {
+    write_border(t, changes.added, kept, stride, reinterpret_cast<const float*>(scratch.columns),
+                 reinterpret_cast<float*>(scratch.border));
+    if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, scratch.border)) {
+      return nullptr;
+    }
+    factor.node[factor.columns++] = changes.in[t];
+  }
+  list_positions(set, factor);
+  return &factor;
+}
+
+}  // namespace greenloop
