@@ -11,18 +11,23 @@
 #include "formats/model_file.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
+#include "rt_tests/bench/kernel_benchmark.hpp"
 #include "runtime/model.hpp"
 
 namespace {
 
 using greenloop::bench::BackSubstitution;
+using greenloop::bench::CapacitanceFigures;
 using greenloop::bench::FieldFigures;
+using greenloop::bench::ForceFigures;
+using greenloop::bench::TransformFigures;
 using nlohmann::json;
 
 struct Arguments {
   std::filesystem::path model, store;
   std::vector<std::size_t> contacts{1, 4, 16, 64};
   std::size_t rounds = 40;
+  std::uint64_t updates = 10000;
   bool json = false;
 };
 
@@ -49,6 +54,59 @@ json as_json(const FieldFigures& figures) {
           {"total_force_error", figures.total_force_error},
           {"work", figures.work},
           {"rungs", rungs}};
+}
+
+// the parts of a step by themselves
+struct KernelFigures {
+  TransformFigures transform;
+  std::vector<CapacitanceFigures> capacitance;
+  std::vector<ForceFigures> forces;
+};
+
+KernelFigures measure_kernels(const greenloop::Model& model, const greenloop::GreenStore& store,
+                              const Arguments& arguments) {
+  KernelFigures figures{greenloop::bench::measure_transform(model, store, arguments.rounds), {}, {}};
+  for (const std::size_t contacts : {16, 64}) {
+    figures.capacitance.push_back(
+        greenloop::bench::measure_capacitance(model, contacts, arguments.rounds, arguments.updates));
+  }
+  for (const std::size_t contacts : {1, 16, 64}) {
+    figures.forces.push_back(greenloop::bench::measure_forces(model, contacts, arguments.rounds));
+  }
+  return figures;
+}
+
+json as_json(const CapacitanceFigures& figures) {
+  return {{"contacts", figures.contacts},   {"extract_ns_per_block", figures.extract_ns_per_block},
+          {"factor_us", figures.factor_us}, {"insert_us", figures.insert_us},
+          {"remove_us", figures.remove_us}, {"updates", figures.updates},
+          {"drift", figures.drift}};
+}
+
+json as_json(const ForceFigures& figures) { return {{"contacts", figures.contacts}, {"us", figures.us}}; }
+
+template <class Figures>
+json list_of(const std::vector<Figures>& all) {
+  json list = json::array();
+  for (const auto& figures : all) {
+    list.push_back(as_json(figures));
+  }
+  return list;
+}
+
+void print_kernels(const KernelFigures& kernels) {
+  fmt::print("\nParts of a step, thread CPU time:\n");
+  fmt::print("inverse transform {:.2f} us, one dense Green's function {:.2f} us: {:.2f}\n",
+             kernels.transform.transform_us, kernels.transform.dense_column_us, kernels.transform.ratio);
+  fmt::print("{:>8} {:>16} {:>11} {:>11} {:>11} {:>9} {:>9}\n", "contacts", "extract ns/block", "factor us",
+             "insert us", "remove us", "updates", "drift");
+  for (const auto& c : kernels.capacitance) {
+    fmt::print("{:>8} {:>16.0f} {:>11.2f} {:>11.2f} {:>11.2f} {:>9} {:>9.1e}\n", c.contacts, c.extract_ns_per_block,
+               c.factor_us, c.insert_us, c.remove_us, c.updates, c.drift);
+  }
+  for (const auto& f : kernels.forces) {
+    fmt::print("forces of {} contacts alone, factor cached: {:.2f} us\n", f.contacts, f.us);
+  }
 }
 
 void print_table(const std::vector<FieldFigures>& all, const BackSubstitution& back) {
@@ -80,18 +138,22 @@ int run(const Arguments& arguments) {
   for (const std::size_t contacts : arguments.contacts) {
     all.push_back(greenloop::bench::measure_field(opened.model, store, contacts, arguments.rounds, back.seconds));
   }
+  const KernelFigures kernels = measure_kernels(opened.model, store, arguments);
   if (!arguments.json) {
     print_table(all, back);
+    print_kernels(kernels);
     return 0;
-  }
-  json field = json::array();
-  for (const auto& figures : all) {
-    field.push_back(as_json(figures));
   }
   fmt::print("{}\n", json{{"model", arguments.model.filename().string()},
                           {"backsolve_us", 1e6 * back.seconds},
                           {"backsolve_solver", back.solver},
-                          {"field", field}}
+                          {"field", list_of(all)},
+                          {"transform_us", kernels.transform.transform_us},
+                          {"dense_column_us", kernels.transform.dense_column_us},
+                          {"transform_over_dense_column", kernels.transform.ratio},
+                          {"extract_ns_per_block", kernels.capacitance.back().extract_ns_per_block},
+                          {"capacitance", list_of(kernels.capacitance)},
+                          {"force_only", list_of(kernels.forces)}}
                          .dump(2));
   return 0;
 }
@@ -114,6 +176,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--rounds", arguments.rounds, "Rounds per figure; medians are reported")
       ->check(CLI::Range(3, 100000))
+      ->capture_default_str();
+  app.add_option("--updates", arguments.updates, "Nodes that leave and enter a factor before its drift is measured")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");
   CLI11_PARSE(app, argc, argv);
