@@ -11,9 +11,10 @@ Float4& at_offset(Float4* x, std::uint32_t byte_offset) {
   return *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + byte_offset);
 }
 
-// calls visit(i) for every i < count whose byte is not 0, in order
+// calls visit(i) for every i < count whose byte is not 0, in order; returns how many there are
 template <class Visit>
-void visit_touched(const std::uint8_t* touched, std::uint32_t count, Visit visit) {
+std::uint32_t visit_touched(const std::uint8_t* touched, std::uint32_t count, Visit visit) {
+  std::uint32_t visited = 0;
   std::uint32_t i = 0;
   while (i < count) {
     std::uint64_t eight = 0;
@@ -21,9 +22,11 @@ void visit_touched(const std::uint8_t* touched, std::uint32_t count, Visit visit
     while (eight != 0) {
       visit(i + static_cast<std::uint32_t>(std::countr_zero(eight)) / 8);
       eight &= eight - 1;
+      ++visited;
     }
     i += 8;
   }
+  return visited;
 }
 
 // x = the averages of level 0
@@ -34,9 +37,11 @@ void copy_averages(const ModelView& view, SparseCoefficients& averages, Float4* 
   std::memset(averages.touched, 0, count);
 }
 
-void undo_lifting(const LevelView& level, const ParentOffsets* parents, const SparseCoefficients& details, Float4* x) {
+// returns the number of details
+std::uint32_t undo_lifting(const LevelView& level, const ParentOffsets* parents, const SparseCoefficients& details,
+                           Float4* x) {
   const std::uint32_t begin = level.domain_begin;
-  visit_touched(details.touched + begin, level.counts->domain_count, [&](std::uint32_t i) {
+  return visit_touched(details.touched + begin, level.counts->domain_count, [&](std::uint32_t i) {
     const Float4 detail = details.value[begin + i];
     const float* lift = level.refinement[i].lift;
     at_offset(x, parents[begin + i].byte_offset[0]) -= splat(lift[0]) * detail;
@@ -51,6 +56,21 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   for (std::uint32_t i = 0; i < count; ++i) {
     odd[i] = splat(0.5F) * (at_offset(x, of_level[i].byte_offset[0]) + at_offset(x, of_level[i].byte_offset[1]));
   }
+}
+
+// the same as predict and add_details, bit by bit, in one pass over all nodes
+void predict_with_details(const LevelView& level, const ParentOffsets* parents, SparseCoefficients& details,
+                          Float4* x) {
+  Float4* odd = x + level.node_begin;
+  Float4* value = details.value + level.domain_begin;
+  const ParentOffsets* of_level = parents + level.domain_begin;
+  const std::uint32_t count = level.counts->domain_count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    odd[i] =
+        splat(0.5F) * (at_offset(x, of_level[i].byte_offset[0]) + at_offset(x, of_level[i].byte_offset[1])) + value[i];
+    value[i] = Float4{};
+  }
+  std::memset(details.touched + level.domain_begin, 0, count);
 }
 
 void add_details(const LevelView& level, SparseCoefficients& details, Float4* x) {
@@ -157,11 +177,11 @@ void inverse_transform(const ModelView& view, const ParentOffsets* parents, std:
   clear_others(view.level[0], x);
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
-    if (q <= field_level) {
-      undo_lifting(level, parents, coefficients, x);
-    }
-    predict(level, parents, x);
-    if (q <= field_level) {
+    const std::uint32_t details = q <= field_level ? undo_lifting(level, parents, coefficients, x) : 0;
+    if (details > level.counts->domain_count / 4) {
+      predict_with_details(level, parents, coefficients, x);
+    } else {
+      predict(level, parents, x);
       add_details(level, coefficients, x);
     }
     clear_others(level, x);
