@@ -1,0 +1,77 @@
+// recorded_digest BUILD [--flip-bit]: runs the recorded script on the model compiled in and compares the digest of all
+// answers with the one that every compiler and processor has to find; exits with 4 if they differ. BUILD is what the
+// program was meant to be compiled by and for. "--flip-bit" changes one bit of one answer, which must be noticed.
+#include <cinttypes>
+#include <cstdio>
+#include <cstring>
+
+#include "recorded_model.h"
+#include "rt_tests/determinism/recorded_script.hpp"
+
+namespace {
+
+#if defined(__clang__)
+#define GREENLOOP_COMPILER "clang"
+#else
+#define GREENLOOP_COMPILER "gcc"
+#endif
+#if defined(__aarch64__)
+#define GREENLOOP_PROCESSOR "aarch64"
+#elif defined(__AVX512F__)
+#define GREENLOOP_PROCESSOR "avx512"
+#elif defined(__AVX2__)
+#define GREENLOOP_PROCESSOR "avx2"
+#elif defined(__x86_64__)
+#define GREENLOOP_PROCESSOR "sse2"
+#endif
+#if defined(__OPTIMIZE__)
+#define GREENLOOP_OPTIMISATION "optimised"
+#else
+#define GREENLOOP_OPTIMISATION "unoptimised"
+#endif
+constexpr const char* this_build = GREENLOOP_COMPILER "-" GREENLOOP_PROCESSOR "-" GREENLOOP_OPTIMISATION;
+
+bool processor_runs_this() {
+#if defined(__AVX512F__)
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+#elif defined(__AVX2__)
+  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+  return true;
+#endif
+}
+
+alignas(64) std::byte arena[2 << 20];
+alignas(16) float field[4 * 512];
+
+void print(const greenloop::RecordedRun& run) {
+  std::printf("%s: %" PRIu32 " cycles, %" PRIu64 " units of work, %" PRIu32
+              " cached factors, arena %zu bytes; answers by status:",
+              this_build, greenloop::RecordedScript::cycles, run.outcome.work, run.outcome.cached, run.arena_bytes);
+  for (const std::uint32_t count : run.outcome.by_status) {
+    std::printf(" %" PRIu32, count);
+  }
+  std::printf("; levels 0x%" PRIx32 "\ndigest %016" PRIx64 ", expected %016" PRIx64 "\n", run.outcome.levels,
+              run.outcome.digest, greenloop::recorded_digest);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2 || std::strcmp(argv[1], this_build) != 0) {
+    std::printf("this program is compiled as %s\n", this_build);
+    return 2;
+  }
+  if (!processor_runs_this()) {
+    std::printf("this processor lacks the instructions of %s: nothing was compared\n", this_build);
+    return 3;
+  }
+  const bool flip = argc > 2 && std::strcmp(argv[2], "--flip-bit") == 0;
+  const auto run = greenloop::run_recorded_script(std::as_bytes(std::span(recorded_model)), arena, field, flip);
+  print(run);
+  if (run.error != nullptr) {
+    std::printf("%s\n", run.error);
+    return 1;
+  }
+  return run.outcome.digest == greenloop::recorded_digest ? 0 : 4;
+}

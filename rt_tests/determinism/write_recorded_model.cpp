@@ -1,0 +1,101 @@
+// write_recorded_model FILE.h: the model of the recorded script as a C array, FILE.h and FILE.c. It is the synthetic
+// sphere's mesh with arbitrary numbers on it: bits that no mathematical library has a part in.
+#include <exception>
+#include <iostream>
+#include <random>
+#include <vector>
+
+#include "formats/c_array.hpp"
+#include "formats/testing/synthetic_model.hpp"
+
+namespace greenloop {
+namespace {
+
+float uniform(std::mt19937_64& random) { return static_cast<float>(random() >> 40) * 0x1p-24F; }
+
+void fill_couplings(std::mt19937_64& random, std::size_t columns, std::size_t before, std::uint32_t layer,
+                    CouplingsData& couplings) {
+  couplings.begin = {0};
+  couplings.index.clear();
+  couplings.value.clear();
+  const int most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
+  for (std::size_t j = 0; j < columns; ++j) {
+    for (std::uint32_t i = 0; i < before + j; ++i) {
+      if (random() % 12 != 0) {
+        continue;
+      }
+      couplings.index.push_back(i);
+      for (int k = 0; k < 9; ++k) {
+        couplings.value.push_back(static_cast<std::int16_t>(static_cast<int>(random() % (2U * most + 1)) - most));
+      }
+    }
+    couplings.begin.push_back(static_cast<std::uint32_t>(couplings.index.size()));
+  }
+}
+
+void fill_scales(std::mt19937_64& random, std::vector<layout::Scale>& scales) {
+  for (layout::Scale& scale : scales) {
+    const float size = 0x1p-6F * (1 + uniform(random));
+    for (float* matrix : {scale.root, scale.diagonal}) {
+      for (int k = 0; k < 6; ++k) {
+        matrix[k] = k == 0 || k == 3 || k == 5 ? size : size / 4 * uniform(random);
+      }
+    }
+    for (float& value : scale.diagonal) {
+      value *= 64;
+    }
+  }
+}
+
+std::size_t domain(const LevelData& level) {
+  std::size_t count = 0;
+  for (const layout::NodeRecord& node : level.nodes) {
+    count += (node.flags & layout::node_domain) != 0 ? 1 : 0;
+  }
+  return count;
+}
+
+ModelData arbitrary_model() {
+  std::mt19937_64 random(20);
+  ModelData data = synthetic_model({.levels = 4, .touchable_above = 0.2});
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    // small enough that the identity outweighs a whole row
+    const int most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
+    data.info.quantum[layer] = 0x1p-10F / static_cast<float>(most) * (1 + uniform(random));
+  }
+  std::size_t before = 0;
+  for (LevelData& level : data.levels) {
+    for (layout::RefinementRecord& record : level.refinement) {
+      for (float& lift : record.lift) {
+        lift = lift == 0 ? 0 : uniform(random) / 4;
+      }
+    }
+    fill_scales(random, level.scales);
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      fill_couplings(random, domain(level), before, layer, level.couplings[layer]);
+    }
+    before += domain(level);
+    level.counts.worst_column_error = 0.5F;
+    level.counts.rms_error = 0.25F;
+    level.counts.field_column_error = 0.5F;
+    level.counts.field_rms_error = 0.25F;
+  }
+  return data;
+}
+
+}  // namespace
+}  // namespace greenloop
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: write_recorded_model FILE.h\n";
+    return 2;
+  }
+  try {
+    greenloop::write_c_array(argv[1], greenloop::encode(greenloop::arbitrary_model()));
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
