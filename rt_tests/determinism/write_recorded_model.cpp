@@ -18,7 +18,7 @@ void fill_couplings(std::mt19937_64& random, std::size_t columns, std::size_t be
   couplings.begin = {0};
   couplings.index.clear();
   couplings.value.clear();
-  const int most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
+  const int most = (1 << (layout::value_bits[layer] - 1)) - 1;
   for (std::size_t j = 0; j < columns; ++j) {
     for (std::uint32_t i = 0; i < before + j; ++i) {
       if (random() % 12 != 0) {
@@ -60,7 +60,7 @@ ModelData arbitrary_model() {
   ModelData data = synthetic_model({.levels = 4, .touchable_above = 0.2});
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     // small enough that the identity outweighs a whole row
-    const int most = (1 << (layout::layer[layer].value_bits - 1)) - 1;
+    const int most = (1 << (layout::value_bits[layer] - 1)) - 1;
     data.info.quantum[layer] = 0x1p-10F / static_cast<float>(most) * (1 + uniform(random));
   }
   std::size_t before = 0;
@@ -80,6 +80,7 @@ ModelData arbitrary_model() {
     level.counts.field_column_error = 0.5F;
     level.counts.field_rms_error = 0.25F;
   }
+  allow_all_field_blocks(data);
   return data;
 }
 

@@ -6,15 +6,17 @@ source_dir=$1 build=$2 via=$3 version=$4 model=$5
 work=$build/packaging/$via-$version
 rm -rf "$work" && mkdir -p "$work"
 
-# the README's example is what the consumer compiles
-awk '/^```cpp$/ {inside = 1; next} /^```$/ {inside = 0} inside' "$source_dir/README.md" >"$work/readme_example.cpp"
-test -s "$work/readme_example.cpp" || { echo "README.md has no cpp block"; exit 1; }
+# the examples of README.md are what the consumers compile
+for language in cpp c; do
+  awk "/^\`\`\`$language\$/ {inside = 1; next} /^\`\`\`\$/ {inside = 0} inside" "$source_dir/README.md" >"$work/readme_example.$language"
+  test -s "$work/readme_example.$language" || { echo "README.md has no $language block"; exit 1; }
+done
 
 cmake --install "$build" --prefix "$work/prefix" --component runtime >/dev/null
 configure() {
   PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name greenloop.pc)") cmake -S "$source_dir/rt_tests/packaging/consumer" \
     -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" -DCONSUMER_VIA="$via" \
-    -DWANTED_VERSION="$version" -DGREENLOOP_SOURCE="$source_dir" -DREADME_EXAMPLE="$work/readme_example.cpp"
+    -DWANTED_VERSION="$version" -DGREENLOOP_SOURCE="$source_dir" -DREADME_EXAMPLE="$work/readme_example"
 }
 if [ "$model" = refuse ]; then
   if configure >"$work/configure.log" 2>&1; then
@@ -26,4 +28,16 @@ if [ "$model" = refuse ]; then
 fi
 configure >/dev/null
 cmake --build "$work/build"
-"$work/build/consumer" "$model"
+"$work/build/consumer" "$model" >"$work/forces.cpp.txt"
+"$work/build/c_consumer" "$model" >"$work/forces.c.txt"
+test "$(wc -l <"$work/forces.c.txt")" -eq 100
+cmp "$work/forces.cpp.txt" "$work/forces.c.txt"
+if [ "$via" = pkg-config ]; then
+  # a C compiler alone links it, without a C++ standard library
+  export PKG_CONFIG_PATH
+  PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name greenloop.pc)")
+  # shellcheck disable=SC2046
+  cc -std=c11 -Wall -Wextra -pedantic -Werror "$source_dir/rt_tests/packaging/consumer/main.c" "$work/readme_example.c" \
+    $(pkg-config --cflags --libs greenloop) -o "$work/plain_c"
+  "$work/plain_c" "$model" | cmp - "$work/forces.c.txt"
+fi

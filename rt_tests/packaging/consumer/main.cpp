@@ -1,4 +1,4 @@
-// Runs the README's example for a few cycles on the model named on the command line.
+// Runs the README's C++ example for a few cycles on the model named on the command line and prints every force.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +20,10 @@ bool sense(greenloop::Contact& contact) {
   return cycles++ < 100;
 }
 
-void actuate(const float* force) { total_force += std::hypot(force[0], force[1], force[2]); }
+void actuate(const float* force) {
+  std::printf("%a %a %a\n", double{force[0]}, double{force[1]}, double{force[2]});
+  total_force += std::hypot(force[0], force[1], force[2]);
+}
 
 std::span<const std::byte> read_aligned(const char* path) {
   std::ifstream stream(path, std::ios::binary);
@@ -44,11 +47,11 @@ int main(int argc, char** argv) {
     return 65;
   }
   const auto& finest = opened.model.view().level[opened.model.level_count() - 1];
-  touched_node = finest.node_begin;
+  touched_node = finest.node_begin + finest.counts->node_count - 1;
   while ((finest.nodes[touched_node - finest.node_begin].flags & greenloop::layout::node_touchable) == 0) {
-    ++touched_node;
+    --touched_node;
   }
   const int status = control_loop(file, sense, actuate);
-  std::printf("status %d after %d cycles, total force %g N\n", status, cycles, total_force);
+  std::fprintf(stderr, "status %d after %d cycles, total force %g N\n", status, cycles, total_force);
   return status == 0 && cycles == 101 && total_force > 0 ? 0 : 1;
 }

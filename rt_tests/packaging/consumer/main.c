@@ -1,0 +1,55 @@
+/* Runs the README's C example for a few cycles on the model named on the command line and prints every force. */
+#include <runtime/greenloop.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+int c_control_loop(const void* file, size_t size, int (*sense)(greenloop_contact*), void (*actuate)(const float*));
+
+static int cycles = 0;
+static uint32_t touched_node = 0;
+static double total_force = 0;
+
+static int sense(greenloop_contact* contact) {
+  const greenloop_contact pressed = {touched_node, {0.0F, 0.0F, 1e-6F * (float)cycles}};
+  *contact = pressed;
+  return cycles++ < 100;
+}
+
+static double magnitude(float value) { return value < 0 ? -(double)value : (double)value; }
+
+static void actuate(const float* force) {
+  printf("%a %a %a\n", (double)force[0], (double)force[1], (double)force[2]);
+  total_force += magnitude(force[0]) + magnitude(force[1]) + magnitude(force[2]);
+}
+
+static void* read_aligned(const char* path, size_t* size) {
+  FILE* stream = fopen(path, "rb");
+  void* memory = NULL;
+  if (stream != NULL && fseek(stream, 0, SEEK_END) == 0) {
+    *size = (size_t)ftell(stream); /* a multiple of 64, as aligned_alloc asks */
+    memory = aligned_alloc(GREENLOOP_ALIGNMENT, *size);
+    rewind(stream);
+    if (memory == NULL || fread(memory, 1, *size, stream) != *size) exit(66);
+    fclose(stream);
+  }
+  return memory;
+}
+
+int main(int argc, char** argv) {
+  static greenloop_model model;
+  size_t size = 0;
+  void* file;
+  int status;
+  if (argc != 2 || (file = read_aligned(argv[1], &size)) == NULL) return 64;
+  const greenloop_fault fault = greenloop_open(file, size, &model);
+  if (fault.rule != GREENLOOP_RULE_OK) {
+    fprintf(stderr, "%s: %s\n", fault.field, greenloop_rule_text(fault.rule));
+    return 65;
+  }
+  touched_node = greenloop_node_count(&model) - 1;
+  while (!greenloop_is_touchable(&model, touched_node)) --touched_node;
+  status = c_control_loop(file, size, sense, actuate);
+  fprintf(stderr, "status %d after %d cycles, total force %g N\n", status, cycles, total_force);
+  free(file);
+  return status == 0 && cycles == 101 && total_force > 0 ? 0 : 1;
+}

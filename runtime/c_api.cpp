@@ -1,0 +1,185 @@
+#include <bit>
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <type_traits>
+
+#include "formats/rule_text.hpp"
+#include "runtime/body.hpp"
+#include "runtime/domain.hpp"
+#include "runtime/elastostatic.hpp"
+#include "runtime/greenloop.h"
+
+namespace greenloop {
+namespace {
+
+static_assert(GREENLOOP_MAX_LEVELS == layout::max_levels && GREENLOOP_ALIGNMENT == layout::alignment);
+
+template <class C, class Cpp>
+constexpr bool same(C c, Cpp cpp) {
+  return static_cast<int>(c) == static_cast<int>(cpp);
+}
+
+static_assert(same(GREENLOOP_RULE_OK, VerifyRule::ok) &&
+              same(GREENLOOP_RULE_MISALIGNED_MEMORY, VerifyRule::misaligned_memory) &&
+              same(GREENLOOP_RULE_TOO_SHORT, VerifyRule::too_short) &&
+              same(GREENLOOP_RULE_BAD_MAGIC, VerifyRule::bad_magic) &&
+              same(GREENLOOP_RULE_FOREIGN_ENDIANNESS, VerifyRule::foreign_endianness) &&
+              same(GREENLOOP_RULE_UNSUPPORTED_MAJOR, VerifyRule::unsupported_major) &&
+              same(GREENLOOP_RULE_WRONG_LENGTH, VerifyRule::wrong_length) &&
+              same(GREENLOOP_RULE_HEADER_CHECKSUM, VerifyRule::header_checksum) &&
+              same(GREENLOOP_RULE_TABLE_CHECKSUM, VerifyRule::table_checksum) &&
+              same(GREENLOOP_RULE_SECTION_OUT_OF_BOUNDS, VerifyRule::section_out_of_bounds) &&
+              same(GREENLOOP_RULE_SECTION_MISALIGNED, VerifyRule::section_misaligned) &&
+              same(GREENLOOP_RULE_SECTION_OVERLAP, VerifyRule::section_overlap) &&
+              same(GREENLOOP_RULE_SECTION_ORDER, VerifyRule::section_order) &&
+              same(GREENLOOP_RULE_SECTION_MISSING, VerifyRule::section_missing) &&
+              same(GREENLOOP_RULE_SECTION_DUPLICATE, VerifyRule::section_duplicate) &&
+              same(GREENLOOP_RULE_SECTION_SIZE, VerifyRule::section_size) &&
+              same(GREENLOOP_RULE_SECTION_CHECKSUM, VerifyRule::section_checksum) &&
+              same(GREENLOOP_RULE_PADDING_NOT_ZERO, VerifyRule::padding_not_zero) &&
+              same(GREENLOOP_RULE_RESERVED_NOT_ZERO, VerifyRule::reserved_not_zero) &&
+              same(GREENLOOP_RULE_BAD_ENUM, VerifyRule::bad_enum) &&
+              same(GREENLOOP_RULE_OUT_OF_RANGE, VerifyRule::out_of_range) &&
+              same(GREENLOOP_RULE_NOT_FINITE, VerifyRule::not_finite) &&
+              same(GREENLOOP_RULE_NOT_INCREASING, VerifyRule::not_increasing) &&
+              same(GREENLOOP_RULE_INCONSISTENT, VerifyRule::inconsistent));
+static_assert(same(GREENLOOP_CREATE_OK, CreateError::none) &&
+              same(GREENLOOP_CREATE_ARENA_TOO_SMALL, CreateError::arena_too_small) &&
+              same(GREENLOOP_CREATE_ARENA_MISALIGNED, CreateError::arena_misaligned) &&
+              same(GREENLOOP_CREATE_BAD_LIMITS, CreateError::bad_limits) &&
+              same(GREENLOOP_CREATE_UNSUPPORTED_MODEL, CreateError::unsupported_model));
+static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::coarser) &&
+              same(GREENLOOP_HELD_NOT_FINITE, Status::held_not_finite) &&
+              same(GREENLOOP_HELD_OUT_OF_RANGE, Status::held_out_of_range) &&
+              same(GREENLOOP_HELD_NOT_TOUCHABLE, Status::held_not_touchable) &&
+              same(GREENLOOP_HELD_DUPLICATE, Status::held_duplicate) &&
+              same(GREENLOOP_HELD_RESPONSE_SIZE, Status::held_response_size) &&
+              same(GREENLOOP_HELD_OVER_BUDGET, Status::held_over_budget) &&
+              same(GREENLOOP_HELD_SINGULAR, Status::held_singular) &&
+              same(GREENLOOP_HELD_OVERFLOW, Status::held_overflow));
+
+// NOLINTBEGIN(misc-redundant-expression): two types are compared
+static_assert(sizeof(Model) <= sizeof(greenloop_model) && alignof(Model) <= alignof(greenloop_model) &&
+              std::is_trivially_destructible_v<Model>);
+static_assert(sizeof(Contact) == sizeof(greenloop_contact) && alignof(Contact) == alignof(greenloop_contact) &&
+              offsetof(Contact, node) == offsetof(greenloop_contact, node) &&
+              offsetof(Contact, displacement) == offsetof(greenloop_contact, displacement));
+// NOLINTEND(misc-redundant-expression)
+static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
+
+const Model& model_in(const greenloop_model* model) {
+  return *std::launder(reinterpret_cast<const Model*>(model->storage));
+}
+
+const layout::NodeRecord* find_node(const greenloop_model* model, std::uint32_t node) {
+  const ModelView& view = model_in(model).view();
+  if (node >= view.node_count) {
+    return nullptr;
+  }
+  const LevelView& level = view.level[level_of(view, node)];
+  return level.nodes + (node - level.node_begin);
+}
+
+constexpr const char* create_error_texts[] = {
+    "the body was created",
+    "the arena is too small: give it as many bytes as were requested",
+    "the arena is not 64-byte aligned",
+    "the limits are out of range: 1..4096 contacts, 1..1024 cached factors",
+    "the model is not one of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks",
+};
+
+constexpr const char* status_texts[] = {
+    "answered at the finest level",
+    "answered within the budget at a coarser level",
+    "held: a contact's displacement is NaN or infinite",
+    "held: a contact names no node of the model, or there are more contacts than the limits allow",
+    "held: a contact names a node that the scene did not declare touchable",
+    "held: two contacts name the same node",
+    "held: the field's buffer is not 16-byte aligned",
+    "held: the budget is below the least work",
+    "held: the capacitance matrix is not positive definite to working precision",
+    "held: the forces are too large for a finite field",
+};
+
+template <std::size_t count>
+const char* text_at(const char* const (&texts)[count], unsigned index) {
+  return index < count ? texts[index] : "unknown";
+}
+
+}  // namespace
+}  // namespace greenloop
+
+using namespace greenloop;
+
+greenloop_fault greenloop_open(const void* bytes, size_t size, greenloop_model* model) {
+  const auto opened = Model::open({static_cast<const std::byte*>(bytes), size});
+  new (model->storage) Model(opened.model);
+  const VerifyResult& result = opened.result;
+  return {static_cast<greenloop_rule>(result.rule),
+          static_cast<std::uint32_t>(result.kind),
+          result.a,
+          result.b,
+          result.field,
+          result.index,
+          result.value,
+          result.limit};
+}
+
+uint32_t greenloop_node_count(const greenloop_model* model) { return model_in(model).node_count(); }
+
+uint32_t greenloop_level_count(const greenloop_model* model) { return model_in(model).level_count(); }
+
+int greenloop_is_touchable(const greenloop_model* model, uint32_t node) {
+  const layout::NodeRecord* record = find_node(model, node);
+  return record != nullptr && (record->flags & layout::node_touchable) != 0 ? 1 : 0;
+}
+
+int greenloop_position(const greenloop_model* model, uint32_t node, float* position) {
+  const layout::NodeRecord* record = find_node(model, node);
+  if (record == nullptr) {
+    return 0;
+  }
+  std::memcpy(position, record->position, sizeof record->position);
+  return 1;
+}
+
+greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits) {
+  const Requirement need = Elastostatic::required(
+      model_in(model), {.max_contacts = limits.max_contacts, .cached_factors = limits.cached_factors});
+  greenloop_requirement requirement = {need.bytes, need.least_work, {}};
+  std::memcpy(requirement.worst_work, need.worst_work, sizeof need.worst_work);
+  return requirement;
+}
+
+greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes) {
+  const auto created = Elastostatic::create(
+      model_in(model), {.max_contacts = limits.max_contacts, .cached_factors = limits.cached_factors},
+      {static_cast<std::byte*>(arena), bytes});
+  return {static_cast<greenloop_create_error>(created.error), created.requested, created.available, created.missing,
+          reinterpret_cast<greenloop_body*>(std::bit_cast<Body*>(created.body))};
+}
+
+greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* contacts, size_t count, uint64_t work,
+                                float* force, float* displacement) {
+  auto* const in_arena = reinterpret_cast<Body*>(body);
+  const std::size_t floats = displacement == nullptr ? 0 : static_cast<std::size_t>(4 * in_arena->counts.nodes);
+  const StepReport report = std::bit_cast<Elastostatic>(in_arena).step(
+      {reinterpret_cast<const Contact*>(contacts), count}, {work}, {{force, 3 * count}, {displacement, floats}});
+  return {static_cast<greenloop_status>(report.status),
+          report.constraint_level,
+          report.field_level,
+          report.error,
+          report.work,
+          report.cached_factor ? 1 : 0};
+}
+
+const char* greenloop_rule_text(greenloop_rule rule) { return rule_text(static_cast<VerifyRule>(rule)).meaning; }
+
+const char* greenloop_create_error_text(greenloop_create_error error) {
+  return text_at(create_error_texts, static_cast<unsigned>(error));
+}
+
+const char* greenloop_status_text(greenloop_status status) {
+  return text_at(status_texts, static_cast<unsigned>(status));
+}

@@ -1,0 +1,156 @@
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "runtime/greenloop.h"
+#include "runtime/testing/test_body.hpp"
+
+namespace greenloop {
+namespace {
+
+constexpr greenloop_limits limits{.max_contacts = 9, .cached_factors = 2};
+
+// a body made and stepped through C alone
+class CBody {
+ public:
+  CBody() : bytes_(encode(synthetic_model({.levels = 3, .touchable_above = 0.1}))) {
+    REQUIRE(greenloop_open(bytes_.data(), bytes_.size(), &model).rule == GREENLOOP_RULE_OK);
+    need = greenloop_required(&model, limits);
+    arena_ = AlignedBytes(need.bytes);
+    field_ = AlignedBytes(std::size_t{16} * greenloop_node_count(&model));
+    created = greenloop_create(&model, limits, arena_.data(), arena_.size());
+    REQUIRE(created.error == GREENLOOP_CREATE_OK);
+  }
+
+  [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_.span(); }
+  [[nodiscard]] float* field() { return reinterpret_cast<float*>(field_.data()); }
+
+  greenloop_model model{};
+  greenloop_requirement need{};
+  greenloop_created created{};
+
+ private:
+  AlignedBytes bytes_;
+  AlignedBytes arena_;
+  AlignedBytes field_;
+};
+
+std::vector<greenloop_contact> random_contacts(std::mt19937_64& random, const std::vector<std::uint32_t>& touchable) {
+  std::vector<greenloop_contact> contacts(random() % 11);
+  const std::size_t first = random() % touchable.size();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto depth = static_cast<float>(random() % 1000) * 1e-6F;
+    contacts[i] = {touchable[(first + i) % touchable.size()], {depth, 0, -depth}};
+  }
+  if (!contacts.empty() && random() % 8 == 0) {
+    contacts[0].displacement[1] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return contacts;
+}
+
+std::vector<Contact> to_cpp(const std::vector<greenloop_contact>& contacts) {
+  std::vector<Contact> same;
+  for (const auto& [node, u] : contacts) {
+    same.push_back({node, {u[0], u[1], u[2]}});
+  }
+  return same;
+}
+
+TEST_CASE("C and C++ give the same answers, bit for bit") {
+  CBody c;
+  const TestModel model(c.bytes());
+  TestBody body(model, {.max_contacts = limits.max_contacts, .cached_factors = limits.cached_factors});
+  CHECK(c.need.bytes == body.requirement().bytes);
+  CHECK(c.need.least_work == body.requirement().least_work);
+  CHECK(std::memcmp(c.need.worst_work, body.requirement().worst_work, sizeof c.need.worst_work) == 0);
+  CHECK(greenloop_level_count(&c.model) == 3);
+  std::mt19937_64 random(31);
+  std::set<int> met;
+  for (int i = 0; i < 500; ++i) {
+    const auto contacts = random_contacts(random, model.touchable());
+    const std::uint64_t work = c.need.least_work - 1 + random() % c.need.worst_work[2];
+    const bool with_field = i % 3 != 0;
+    std::vector<float> force(3 * contacts.size());
+    const auto report = greenloop_step(c.created.body, contacts.data(), contacts.size(), work, force.data(),
+                                       with_field ? c.field() : nullptr);
+    const StepReport expected = body.step(to_cpp(contacts), work, with_field);
+    REQUIRE(static_cast<int>(report.status) == static_cast<int>(expected.status));
+    CHECK(report.constraint_level == expected.constraint_level);
+    CHECK(report.field_level == expected.field_level);
+    CHECK(report.error == expected.error);
+    CHECK(report.work == expected.work);
+    CHECK((report.cached_factor == 1) == expected.cached_factor);
+    met.insert(report.status);
+    if (report.status <= GREENLOOP_COARSER) {
+      CHECK(std::memcmp(force.data(), body.force().data(), sizeof(float) * force.size()) == 0);
+      CHECK(std::memcmp(c.field(), body.field().data(), body.field().size_bytes()) == 0);
+    }
+  }
+  CHECK(met.count(GREENLOOP_OK) == 1);
+  CHECK(met.count(GREENLOOP_COARSER) == 1);
+  CHECK(met.count(GREENLOOP_HELD_NOT_FINITE) == 1);
+  CHECK(met.count(GREENLOOP_HELD_OUT_OF_RANGE) == 1);
+}
+
+TEST_CASE("nodes are described, those that are not there are refused") {
+  CBody c;
+  const TestModel model(c.bytes());
+  std::size_t touchable = 0;
+  float position[3] = {};
+  for (std::uint32_t node = 0; node < greenloop_node_count(&c.model); ++node) {
+    touchable += greenloop_is_touchable(&c.model, node) != 0 ? 1 : 0;
+    REQUIRE(greenloop_position(&c.model, node, position) == 1);
+    CHECK(position[0] * position[0] + position[1] * position[1] + position[2] * position[2] ==
+          doctest::Approx(0.01).epsilon(1e-5));
+  }
+  CHECK(touchable == model.touchable().size());
+  CHECK(touchable < greenloop_node_count(&c.model));
+  CHECK(greenloop_is_touchable(&c.model, greenloop_node_count(&c.model)) == 0);
+  CHECK(greenloop_position(&c.model, greenloop_node_count(&c.model), position) == 0);
+}
+
+TEST_CASE("what is wrong is named") {
+  CBody c;
+  std::vector<std::byte> damaged(c.bytes().begin(), c.bytes().end());
+  damaged[damaged.size() / 2] ^= std::byte{1};
+  const AlignedBytes file(damaged);
+  greenloop_model model;
+  const greenloop_fault fault = greenloop_open(file.data(), file.size(), &model);
+  CHECK(fault.rule == GREENLOOP_RULE_SECTION_CHECKSUM);
+  CHECK(fault.section != 0);
+  CHECK(std::string(fault.field) == "section.crc");
+  CHECK(greenloop_open(file.data(), 10, &model).rule == GREENLOOP_RULE_TOO_SHORT);
+
+  AlignedBytes arena(c.need.bytes);
+  const auto small = greenloop_create(&c.model, limits, arena.data(), c.need.bytes - 64);
+  CHECK(small.error == GREENLOOP_CREATE_ARENA_TOO_SMALL);
+  CHECK(small.requested == c.need.bytes);
+  CHECK(small.missing == 64);
+  CHECK(small.body == nullptr);
+  CHECK(greenloop_create(&c.model, {0, 1}, arena.data(), c.need.bytes).error == GREENLOOP_CREATE_BAD_LIMITS);
+}
+
+TEST_CASE("every code has a text of its own") {
+  std::set<std::string> texts;
+  for (int rule = GREENLOOP_RULE_OK; rule <= GREENLOOP_RULE_INCONSISTENT; ++rule) {
+    texts.insert(greenloop_rule_text(static_cast<greenloop_rule>(rule)));
+  }
+  for (int error = GREENLOOP_CREATE_OK; error <= GREENLOOP_CREATE_UNSUPPORTED_MODEL; ++error) {
+    texts.insert(greenloop_create_error_text(static_cast<greenloop_create_error>(error)));
+  }
+  for (int status = GREENLOOP_OK; status <= GREENLOOP_HELD_OVERFLOW; ++status) {
+    texts.insert(greenloop_status_text(static_cast<greenloop_status>(status)));
+  }
+  CHECK(texts.size() ==
+        (GREENLOOP_RULE_INCONSISTENT + 1) + (GREENLOOP_CREATE_UNSUPPORTED_MODEL + 1) + (GREENLOOP_HELD_OVERFLOW + 1));
+  CHECK(texts.count("unknown") == 0);
+  CHECK(std::string(greenloop_status_text(static_cast<greenloop_status>(15))) == "unknown");
+}
+
+}  // namespace
+}  // namespace greenloop

@@ -1,0 +1,167 @@
+/* Greenloop for C99 and every language that calls C: the same loop as runtime/elastostatic.hpp, the same bits.
+ *
+ * Memory: the caller owns all of it. A model is read in place: its bytes, the greenloop_model and the arena stay where
+ * they are, unchanged by others, while a body uses them. Nothing here allocates, locks or enters the kernel.
+ *
+ * Threads: a greenloop_model does not change once it is open, so any number of threads may use one at once, each with a
+ * body and an arena of its own. A body is for one thread at a time; so are the buffers of a step.
+ *
+ * Only greenloop_step is for the loop; the rest is for start-up. */
+#ifndef GREENLOOP_H
+#define GREENLOOP_H
+/* NOLINTBEGIN(modernize-use-using, modernize-deprecated-headers): this header is C */
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { GREENLOOP_ALIGNMENT = 64 };  /* of a model's bytes and of an arena */
+enum { GREENLOOP_MAX_LEVELS = 12 }; /* of a model */
+
+/* Rules of the verifier that a model file can break. */
+typedef enum greenloop_rule {
+  GREENLOOP_RULE_OK,
+  GREENLOOP_RULE_MISALIGNED_MEMORY,
+  GREENLOOP_RULE_TOO_SHORT,
+  GREENLOOP_RULE_BAD_MAGIC,
+  GREENLOOP_RULE_FOREIGN_ENDIANNESS,
+  GREENLOOP_RULE_UNSUPPORTED_MAJOR,
+  GREENLOOP_RULE_WRONG_LENGTH,
+  GREENLOOP_RULE_HEADER_CHECKSUM,
+  GREENLOOP_RULE_TABLE_CHECKSUM,
+  GREENLOOP_RULE_SECTION_OUT_OF_BOUNDS,
+  GREENLOOP_RULE_SECTION_MISALIGNED,
+  GREENLOOP_RULE_SECTION_OVERLAP,
+  GREENLOOP_RULE_SECTION_ORDER,
+  GREENLOOP_RULE_SECTION_MISSING,
+  GREENLOOP_RULE_SECTION_DUPLICATE,
+  GREENLOOP_RULE_SECTION_SIZE,
+  GREENLOOP_RULE_SECTION_CHECKSUM,
+  GREENLOOP_RULE_PADDING_NOT_ZERO,
+  GREENLOOP_RULE_RESERVED_NOT_ZERO,
+  GREENLOOP_RULE_BAD_ENUM,
+  GREENLOOP_RULE_OUT_OF_RANGE,
+  GREENLOOP_RULE_NOT_FINITE,
+  GREENLOOP_RULE_NOT_INCREASING,
+  GREENLOOP_RULE_INCONSISTENT
+} greenloop_rule;
+
+typedef enum greenloop_create_error {
+  GREENLOOP_CREATE_OK,
+  GREENLOOP_CREATE_ARENA_TOO_SMALL,
+  GREENLOOP_CREATE_ARENA_MISALIGNED,
+  GREENLOOP_CREATE_BAD_LIMITS,
+  GREENLOOP_CREATE_UNSUPPORTED_MODEL
+} greenloop_create_error;
+
+/* What came of a step. On GREENLOOP_OK and GREENLOOP_COARSER the buffers hold the answer; on any other nothing was
+ * written, so they still hold the last good one, and the body stays usable. */
+typedef enum greenloop_status {
+  GREENLOOP_OK,
+  GREENLOOP_COARSER,
+  GREENLOOP_HELD_NOT_FINITE,
+  GREENLOOP_HELD_OUT_OF_RANGE,
+  GREENLOOP_HELD_NOT_TOUCHABLE,
+  GREENLOOP_HELD_DUPLICATE,
+  GREENLOOP_HELD_RESPONSE_SIZE,
+  GREENLOOP_HELD_OVER_BUDGET,
+  GREENLOOP_HELD_SINGULAR,
+  GREENLOOP_HELD_OVERFLOW
+} greenloop_status;
+
+/* An open model; its contents are the library's. */
+typedef struct greenloop_model {
+#if UINTPTR_MAX > 0xffffffffU
+  uint64_t storage[640];
+#else
+  uint64_t storage[384];
+#endif
+} greenloop_model;
+
+/* A body; it lives in the caller's arena. */
+typedef struct greenloop_body greenloop_body;
+
+/* The first fault of a model file. */
+typedef struct greenloop_fault {
+  greenloop_rule rule;
+  uint32_t section;  /* kind of the section at fault, as in docs/format.md; 0: the header or the table */
+  uint16_t a, b;     /* its indices */
+  const char* field; /* static storage */
+  uint64_t index;    /* of the element within the section */
+  double value;      /* what stands there */
+  double limit;      /* what was allowed */
+} greenloop_fault;
+
+/* What a body must be able to do. */
+typedef struct greenloop_limits {
+  uint32_t max_contacts;   /* 1..4096, contacts per step */
+  uint32_t cached_factors; /* 1..1024, capacitance factors kept */
+} greenloop_limits;
+
+/* What those limits cost. Work is counted in units: see docs/runtime.md. */
+typedef struct greenloop_requirement {
+  size_t bytes;                              /* of the arena; 0: greenloop_create would refuse */
+  uint64_t least_work;                       /* the smallest budget that greenloop_step accepts */
+  uint64_t worst_work[GREENLOOP_MAX_LEVELS]; /* of a step that is resolved at that constraint level */
+} greenloop_requirement;
+
+typedef struct greenloop_created {
+  greenloop_create_error error;
+  size_t requested, available, missing; /* bytes */
+  greenloop_body* body;                 /* null on an error */
+} greenloop_created;
+
+/* A node held at a prescribed displacement. */
+typedef struct greenloop_contact {
+  uint32_t node;         /* index in the model file */
+  float displacement[3]; /* m */
+} greenloop_contact;
+
+typedef struct greenloop_report {
+  greenloop_status status;
+  uint32_t constraint_level; /* level at which the contacts were resolved */
+  uint32_t field_level;      /* finest level whose details are in the field */
+  float error;               /* worst column error of that constraint level, measured offline */
+  uint64_t work;             /* units spent, never more than the budget */
+  int cached_factor;         /* 1: the capacitance factor came from the cache */
+} greenloop_report;
+
+/* Verifies every field of a model file once. bytes: GREENLOOP_ALIGNMENT-aligned. The model is usable only if the rule
+ * is GREENLOOP_RULE_OK. Start-up; work linear in the bytes. */
+greenloop_fault greenloop_open(const void* bytes, size_t size, greenloop_model* model);
+
+uint32_t greenloop_node_count(const greenloop_model* model);
+uint32_t greenloop_level_count(const greenloop_model* model);
+
+/* Whether a node may be a contact; 0 for a node that the model does not have. */
+int greenloop_is_touchable(const greenloop_model* model, uint32_t node);
+
+/* Writes a node's place at rest, 3 floats [m]; 0 if the model does not have the node. */
+int greenloop_position(const greenloop_model* model, uint32_t node, float* position);
+
+/* Bytes and worst-case work in closed form. Start-up. */
+greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits);
+
+/* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up. */
+greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes);
+
+/* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of every node.
+ * force: 3 * count floats [N], in the order of the contacts. displacement: 4 * node_count floats [m], x y z 0 per node,
+ * 16-byte aligned; null if no field is wanted, which then costs nothing. Spends at most `work` units. */
+greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* contacts, size_t count, uint64_t work,
+                                float* force, float* displacement);
+
+/* One sentence each; static storage. */
+const char* greenloop_rule_text(greenloop_rule rule);
+const char* greenloop_create_error_text(greenloop_create_error error);
+const char* greenloop_status_text(greenloop_status status);
+
+#ifdef __cplusplus
+}
+#endif
+
+/* NOLINTEND(modernize-use-using, modernize-deprecated-headers) */
+#endif
