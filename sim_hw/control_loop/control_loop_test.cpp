@@ -15,12 +15,12 @@
 #include "formats/aligned_bytes.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "runtime/model.hpp"
+#include "runtime/newest.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"
 #include "sim_hw/device/encoder.hpp"
 #include "sim_hw/guard/allocation_guard.hpp"
 #include "sim_hw/guard/mutex_guard.hpp"
 #include "sim_hw/guard/system_call_guard.hpp"
-#include "sim_hw/handover/newest.hpp"
 #include "sim_hw/session/loaded_model.hpp"
 
 namespace greenloop {

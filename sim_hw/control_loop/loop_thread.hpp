@@ -5,9 +5,9 @@
 #include <semaphore>
 #include <thread>
 
+#include "runtime/newest.hpp"
 #include "sim_hw/control_loop/control_loop.hpp"
 #include "sim_hw/control_loop/run_log.hpp"
-#include "sim_hw/handover/newest.hpp"
 
 namespace greenloop {
 

@@ -1,4 +1,4 @@
-#include "sim_hw/handover/newest.hpp"
+#include "runtime/newest.hpp"
 
 #include <doctest/doctest.h>
 
