@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -27,7 +28,10 @@ Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_coun
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;
 constexpr float without_denormals(float displacement) {
-  return displacement < least_displacement && displacement > -least_displacement ? 0.0F : displacement;
+  // no branch on data: the same instructions for every number
+  const std::uint32_t tiny = static_cast<std::uint32_t>(displacement < least_displacement) &
+                             static_cast<std::uint32_t>(displacement > -least_displacement);
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(displacement) & (tiny - 1));
 }
 
 /// The contacts of a step as columns of one constraint level: the places, in the domain, of the nodes that stand for

@@ -1,6 +1,7 @@
 #include "runtime/elastostatic.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 #include "runtime/arena.hpp"
@@ -143,7 +144,7 @@ bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& f
   to_set_order(factor, body.set.columns, solution, force);
   float sum = 0;
   for (std::uint32_t i = 0; i < order; ++i) {
-    sum += force[i] < 0 ? -force[i] : force[i];
+    sum += std::fabs(force[i]);
   }
   return sum <= body.force_limit;
 }

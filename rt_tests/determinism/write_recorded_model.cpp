@@ -21,7 +21,7 @@ void fill_couplings(std::mt19937_64& random, std::size_t columns, std::size_t be
   const int most = (1 << (layout::value_bits[layer] - 1)) - 1;
   for (std::size_t j = 0; j < columns; ++j) {
     for (std::uint32_t i = 0; i < before + j; ++i) {
-      if (random() % 12 != 0) {
+      if (random() % 4 != 0) {
         continue;
       }
       couplings.index.push_back(i);
@@ -57,7 +57,7 @@ std::size_t domain(const LevelData& level) {
 
 ModelData arbitrary_model() {
   std::mt19937_64 random(20);
-  ModelData data = synthetic_model({.levels = 4, .touchable_above = 0.2});
+  ModelData data = synthetic_model({.levels = 3, .touchable_above = 0.2});
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     // small enough that the identity outweighs a whole row
     const int most = (1 << (layout::value_bits[layer] - 1)) - 1;

@@ -8,6 +8,7 @@
 
 #include "formats/describe.hpp"
 #include "formats/model_file.hpp"
+#include "rt_tests/stress/heaviest_step.hpp"
 #include "rt_tests/stress/stress_run.hpp"
 
 namespace {
@@ -16,10 +17,14 @@ using greenloop::InjectedFault;
 using greenloop::StressResult;
 using greenloop::TimeHistogram;
 
-nlohmann::json to_json(const StressResult& result) {
+nlohmann::json to_json(const StressResult& result, std::int64_t instructions) {
   nlohmann::json system_calls = nullptr;
   if (result.system_calls >= 0) {
     system_calls = result.system_calls;
+  }
+  nlohmann::json instructions_max = nullptr;
+  if (instructions >= 0) {
+    instructions_max = instructions;
   }
   return {{"cycles", result.cycles},
           {"answered", result.answered},
@@ -32,6 +37,7 @@ nlohmann::json to_json(const StressResult& result) {
           {"minor_faults", result.minor_faults},
           {"worst_work", result.worst_work},
           {"declared_work", result.declared_work},
+          {"instructions_max", instructions_max},
           {"force_step_max", result.force_step_max},
           {"digest", result.digest}};
 }
@@ -54,7 +60,7 @@ void print_times(const TimeHistogram& times, std::uint64_t cycles) {
   std::printf("%5zu+ us %9llu\n", TimeHistogram::bins, static_cast<unsigned long long>(times.overflow));
 }
 
-void print(const StressResult& result) {
+void print(const StressResult& result, std::int64_t instructions) {
   const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
   std::printf("%llu cycles: %llu answered (%llu coarser, %llu with a cached factor), %llu refused\nlevels used:",
               number(result.cycles), number(result.answered), number(result.coarser), number(result.cached),
@@ -73,6 +79,11 @@ void print(const StressResult& result) {
   } else {
     std::printf("system calls %lld\n", static_cast<long long>(result.system_calls));
   }
+  if (instructions < 0) {
+    std::printf("instructions not counted\n");
+  } else {
+    std::printf("instructions of the heaviest kind of step %lld\n", static_cast<long long>(instructions));
+  }
   std::printf("largest step of the total force while pressing %.3g N\ndigest %016llx\n", result.force_step_max,
               number(result.digest));
   print_times(result.times, result.cycles);
@@ -84,6 +95,7 @@ int stress(int argc, char** argv) {
   std::string path;
   greenloop::StressOptions options;
   bool json = false;
+  bool count_instructions = true;
   options.limits.max_contacts = 0;
   app.add_option("MODEL", path, "model file (.gloop)")->required()->check(CLI::ExistingFile);
   app.add_option("--cycles", options.cycles, "steps to run")
@@ -95,6 +107,8 @@ int stress(int argc, char** argv) {
   app.add_option("--factors", options.limits.cached_factors, "cached factors")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
+  app.add_flag("--instructions,!--no-instructions", count_instructions,
+               "count those of the heaviest kind of step; microseconds each");
   app.add_flag("--json", json, "machine-readable result");
   const std::map<std::string, InjectedFault> faults = {{"allocation", InjectedFault::allocation},
                                                        {"lock", InjectedFault::lock},
@@ -113,10 +127,12 @@ int stress(int argc, char** argv) {
     options.limits.max_contacts = opened.model.view().info->max_contacts;
   }
   const StressResult result = greenloop::run_stress(opened.model, options);
+  const std::int64_t instructions =
+      count_instructions ? greenloop::instructions_of_heaviest_step(opened.model, options.limits) : -1;
   if (json) {
-    std::printf("%s\n", to_json(result).dump(2).c_str());
+    std::printf("%s\n", to_json(result, instructions).dump(2).c_str());
   } else {
-    print(result);
+    print(result, instructions);
   }
   return result.passed() ? 0 : 1;
 }

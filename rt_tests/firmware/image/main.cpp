@@ -1,0 +1,168 @@
+// What the host's command line asks for: "--script" runs the recorded script and compares its digest, "--loop" runs a
+// hand of eight contacts in a 1 kHz interrupt and compares the instructions of a step with the bar. "--flip-bit" and
+// "--slow" are their negative controls. Exit status: 0, or which check failed.
+#include <algorithm>
+
+#include "body_model.h"
+#include "recorded_model.h"
+#include "rt_tests/determinism/recorded_script.hpp"
+#include "rt_tests/firmware/image/instruction_clock.hpp"
+#include "rt_tests/firmware/image/semihosting.hpp"
+#include "rt_tests/firmware/image/stack.hpp"
+#include "rt_tests/firmware/image/timed_loop.hpp"
+
+extern "C" const std::byte flash_used[], ram_used[];  // their addresses are the numbers of bytes
+
+namespace greenloop::firmware {
+namespace {
+
+enum ExitStatus : int { passed, clock_is_wrong, does_not_run, not_a_check, digest_differs, over_the_bar };
+
+constexpr std::uint32_t bar = 100'000;  // instructions: a quarter of 1 ms at 400 MHz, one instruction a cycle
+constexpr Budget budget{20'000};        // units, measured to stay below the bar whatever is touched
+
+constexpr std::size_t most_nodes = 300;
+alignas(64) std::byte arena[452 * 1024];
+alignas(16) float field[4 * most_nodes];
+Requirement requirement;
+RecordedRun recorded;
+
+struct Neighbour {
+  float square_distance;
+  std::uint32_t node;
+};
+Neighbour neighbour[most_nodes];
+std::uint32_t nodes[most_nodes];
+
+void print_line(const char* name, std::uint64_t number) {
+  print(name);
+  print(" ");
+  print(number);
+  print("\n");
+}
+
+// three instructions for every turn
+bool clock_is_right() {
+  constexpr std::uint32_t turns = 100'000;
+  const std::uint64_t begin = instructions();
+  std::uint32_t left = turns;
+  asm volatile("1: nop\n subs %0, #1\n bne 1b" : "+l"(left)::"cc");
+  const std::uint64_t counted = instructions() - begin;
+  print_line("instructions counted in a loop of 300000", counted);
+  return counted >= 3 * turns && counted <= 3 * turns + 2 * instructions_per_tick;
+}
+
+void print_sizes() {
+  print_line("flash bytes, both models included", reinterpret_cast<std::uintptr_t>(flash_used));
+  print_line("RAM bytes, stack and arena included", reinterpret_cast<std::uintptr_t>(ram_used));
+  print_line("deepest stack bytes", deepest_stack());
+}
+
+int run_script(bool flip) {
+  recorded = run_recorded_script(std::as_bytes(std::span(recorded_model)), arena, field, flip);
+  print_line("arena bytes", recorded.arena_bytes);
+  if (recorded.error != nullptr) {
+    print(recorded.error);
+    return does_not_run;
+  }
+  print_line("work units", recorded.outcome.work);
+  print("digest ");
+  print_hexadecimal(recorded.outcome.digest);
+  print("\n");
+  return recorded.outcome.digest == recorded_digest ? passed : digest_differs;
+}
+
+// touchable nodes by their distance from the first of them
+std::span<const std::uint32_t> list_nodes(const ModelView& view) {
+  std::uint32_t count = 0;
+  const float* centre = nullptr;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+      const layout::NodeRecord& record = level.nodes[i];
+      if ((record.flags & layout::node_touchable) == 0 || count == most_nodes) {
+        continue;
+      }
+      centre = centre == nullptr ? record.position : centre;
+      float sum = 0;
+      for (int r = 0; r < 3; ++r) {
+        sum += (record.position[r] - centre[r]) * (record.position[r] - centre[r]);
+      }
+      neighbour[count++] = {sum, level.node_begin + i};
+    }
+  }
+  std::sort(neighbour, neighbour + count,
+            [](const Neighbour& a, const Neighbour& b) { return a.square_distance < b.square_distance; });
+  std::transform(neighbour, neighbour + count, nodes, [](const Neighbour& at) { return at.node; });
+  return {nodes, count};
+}
+
+void print_line(const Motion& motion, const Timing& timing) {
+  print(motion.name);
+  print(": instructions of a step, median ");
+  print(timing.median);
+  print(", worst ");
+  print(timing.worst);
+  print("; most work ");
+  print(timing.worst_work);
+  print("; finest level ");
+  print(timing.finest);
+  print(", not answered ");
+  print(timing.held);
+  print(", late ");
+  print(timing.late);
+  print(" of ");
+  print(timing.cycles);
+  print("\n");
+}
+
+int run_loop(bool slow) {
+  constexpr Motion motions[] = {{"pressed", 0, false},
+                                {"a node in 16 ms", 16, false},
+                                {"a node in every step", 1, false},
+                                {"pressed at the finest level", 0, true}};
+  constexpr Limits limits{.max_contacts = contacts_per_step, .cached_factors = 4};
+  const auto opened = Model::open(std::as_bytes(std::span(body_model)));
+  if (!opened || opened.model.node_count() > most_nodes) {
+    return does_not_run;
+  }
+  requirement = Elastostatic::required(opened.model, limits);
+  print_line("nodes", opened.model.node_count());
+  print_line("arena bytes", requirement.bytes);
+  print_line("least work", requirement.least_work);
+  print_line("budget", budget.work);
+  auto created = Elastostatic::create(opened.model, limits, arena);
+  if (!created) {
+    return does_not_run;
+  }
+  const std::span<float> displacement(field, std::size_t{4} * opened.model.node_count());
+  int status = passed;
+  for (const Motion& motion : motions) {
+    const Timing timing =
+        run_timed_loop(created.body, budget, list_nodes(opened.model.view()), displacement, motion, slow);
+    print_line(motion, timing);
+    const bool met = timing.worst <= bar && timing.held == 0 && timing.late == 0 &&
+                     (!motion.factor_at_hand || timing.finest == timing.cycles);
+    status = met ? status : over_the_bar;
+  }
+  return status;
+}
+
+}  // namespace
+}  // namespace greenloop::firmware
+
+int main() {
+  using namespace greenloop::firmware;
+  start_instruction_clock();
+  if (!clock_is_right()) {
+    return clock_is_wrong;
+  }
+  int status = not_a_check;
+  if (command_line_contains("--script")) {
+    status = run_script(command_line_contains("--flip-bit"));
+  } else if (command_line_contains("--loop")) {
+    status = run_loop(command_line_contains("--slow"));
+  }
+  print_sizes();
+  return status;
+}
