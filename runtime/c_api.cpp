@@ -171,7 +171,8 @@ greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* c
           report.field_level,
           report.error,
           report.work,
-          report.cached_factor ? 1 : 0};
+          report.cached_factor ? 1 : 0,
+          report.changed_nodes};
 }
 
 const char* greenloop_rule_text(greenloop_rule rule) { return rule_text(static_cast<VerifyRule>(rule)).meaning; }

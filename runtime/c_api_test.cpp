@@ -85,6 +85,7 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
     CHECK(report.error == expected.error);
     CHECK(report.work == expected.work);
     CHECK((report.cached_factor == 1) == expected.cached_factor);
+    CHECK(report.changed_nodes == expected.changed_nodes);
     met.insert(report.status);
     if (report.status <= GREENLOOP_COARSER) {
       CHECK(std::memcmp(force.data(), body.force().data(), sizeof(float) * force.size()) == 0);

@@ -126,7 +126,8 @@ typedef struct greenloop_report {
   uint32_t field_level;      /* finest level whose details are in the field */
   float error;               /* worst column error of that constraint level, measured offline */
   uint64_t work;             /* units spent, never more than the budget */
-  int cached_factor;         /* 1: the capacitance factor came from the cache */
+  int cached_factor;         /* 1: the capacitance factor came from the cache, unchanged */
+  uint32_t changed_nodes;    /* nodes put into a cached factor and taken out of it, to make this one */
 } greenloop_report;
 
 /* Verifies every field of a model file once. bytes: GREENLOOP_ALIGNMENT-aligned. The model is usable only if the rule

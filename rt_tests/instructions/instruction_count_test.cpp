@@ -91,7 +91,7 @@ TEST_CASE("kernels take the same instructions whatever the numbers") {
     compute_field({view, body.columns, body.parents}, {1, 1, &place, force}, 1, body.sums, x.data());
   });
   CHECK(all_equal(field));
-  CHECK(field[0] > 1000);
+  CHECK(field[0] > 100);
 
   touch(body.refinement, 1, &place, 1, body.touched);
   const auto transformed = counts([&](float value) {
@@ -106,7 +106,7 @@ TEST_CASE("kernels take the same instructions whatever the numbers") {
   std::vector<Float4> b(order / 4);
   const auto solve = counts([&](float value) {
     std::fill(b.begin(), b.end(), splat(value));
-    cholesky_solve(order, factor.data(), b.data());
+    cholesky_solve(order, order, factor.data(), b.data());
   });
   CHECK(all_equal(solve));
 }
