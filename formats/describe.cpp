@@ -79,6 +79,8 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
       return "BaseTriangles";
     case SectionKind::refinement:
       return fmt::format("Refinement({})", a);
+    case SectionKind::stencils:
+      return fmt::format("Stencils({})", a);
     case SectionKind::representatives:
       return fmt::format("Representatives({}, {})", a, b);
     case SectionKind::scales:
@@ -87,6 +89,20 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
       return fmt::format("Couplings({}, {})", a, b);
   }
   return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);
+}
+
+std::string_view wavelet_name(std::uint32_t wavelet) {
+  switch (static_cast<layout::Wavelet>(wavelet)) {
+    case layout::Wavelet::lifted_linear:
+      return "lifted linear";
+    case layout::Wavelet::linear:
+      return "linear";
+    case layout::Wavelet::lifted_butterfly:
+      return "lifted butterfly";
+    case layout::Wavelet::butterfly:
+      return "butterfly";
+  }
+  return "unknown";
 }
 
 std::string_view rule_name(VerifyRule rule) { return text_of(rule).name; }

@@ -13,6 +13,7 @@
 //       Nodes(q)                                         NodeRecord [node_count(q)]: M(q), domain nodes first
 //       BaseTriangles                                    only q = 0: u32 [3 * base_triangle_count]
 //       Refinement(q)                                    only q > 0: RefinementRecord [node_count(q)]
+//       Stencils(q)                                      only q > 0, Butterfly: StencilRecord [domain_count(q)]
 //       Representatives(c, q) for c = first..q           u32 [node_count(q)]: node of K(c) that stands for a node
 //       Representatives(q, r) for r = 0..q-1             u32 [node_count(r)]
 //       Scales(q)                                        Scale [domain_count(q)]
@@ -44,7 +45,7 @@ inline constexpr std::uint16_t version_major = 3;
 inline constexpr std::uint16_t version_minor = 0;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
-inline constexpr std::uint32_t none = 0xffffffff;  ///< no representative
+inline constexpr std::uint32_t none = 0xffffffff;  ///< no node
 
 /// What a section holds. `a`, `b` of its entry: the indices in parentheses, else 0.
 enum class SectionKind : std::uint32_t {
@@ -57,6 +58,7 @@ enum class SectionKind : std::uint32_t {
   representatives = 8,  ///< (c, q) u32[]
   scales = 10,          ///< (q) Scale[]
   couplings = 11,       ///< (q, layer) CouplingsHeader and its arrays
+  stencils = 12,        ///< (q) StencilRecord[]
 };
 
 /// Couplings are stored in layers by size. The first, of a coarser quantum, is for what is too large for the second;
@@ -90,7 +92,16 @@ struct SectionEntry {
 static_assert(sizeof(SectionEntry) == 32);
 
 enum class Problem : std::uint32_t { elastostatic = 1 };
-enum class Wavelet : std::uint32_t { lifted_linear = 1, linear = 2 };
+enum class Wavelet : std::uint32_t { lifted_linear = 1, linear = 2, lifted_butterfly = 3, butterfly = 4 };
+inline constexpr Wavelet wavelets[] = {Wavelet::lifted_linear, Wavelet::linear, Wavelet::lifted_butterfly,
+                                       Wavelet::butterfly};
+
+constexpr bool is_lifted(Wavelet wavelet) {
+  return wavelet == Wavelet::lifted_linear || wavelet == Wavelet::lifted_butterfly;
+}
+constexpr bool is_butterfly(Wavelet wavelet) {
+  return wavelet == Wavelet::lifted_butterfly || wavelet == Wavelet::butterfly;
+}
 
 struct Info {
   std::uint32_t problem;       ///< Problem
@@ -161,6 +172,16 @@ struct RefinementRecord {
   float lift[2];            ///< lifting weights towards the parents; 0 towards those outside the domain; 0 if unlifted
 };
 static_assert(sizeof(RefinementRecord) == 16);
+
+/// What the Butterfly scheme predicts a node from besides the two ends of its edge, which weigh 1/2 each: nodes of
+/// coarser levels in the domain or fixed; all `none`: from the two ends alone. Nodes may occur twice: weights add.
+struct StencilRecord {
+  std::uint32_t wing[2];   ///< weight 1/8: the third corners of the two triangles at the edge
+  std::uint32_t outer[4];  ///< weight -1/16: across the sides of those triangles, two of each triangle
+};
+static_assert(sizeof(StencilRecord) == 24);
+
+inline constexpr float wing_weight = 0.125F, outer_weight = -0.0625F;
 
 /// The scale of a coefficient: two symmetric positive definite matrices xx, xy, xz, yy, yz, zz.
 struct Scale {

@@ -1,6 +1,7 @@
 #include "formats/verify_sections.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace greenloop {
@@ -9,6 +10,7 @@ namespace {
 using layout::NodeRecord;
 using layout::RefinementRecord;
 using layout::Scale;
+using layout::StencilRecord;
 
 constexpr std::uint32_t known_flags =
     layout::node_domain | layout::node_touchable | layout::node_fixed | layout::node_read;
@@ -86,7 +88,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
   const std::uint32_t present = context.view.header->levels;
   context.view.info = &info;
   return require_enum(check, "problem", info.problem, static_cast<std::uint32_t>(layout::Problem::elastostatic)) &&
-         require_enum(check, "wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::linear)) &&
+         require_enum(check, "wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::butterfly)) &&
          require_equal(check, "components", 0, info.components, 3) &&
          require_at_most(check, "levels", 0, info.levels, layout::max_levels) &&
          check.require(info.levels >= present, VerifyRule::inconsistent, "levels", 0, info.levels, present) &&
@@ -256,7 +258,7 @@ bool verify_parent(SectionCheck& check, const ModelView& view, const RefinementR
   }
   const NodeRecord& parent = node_at(view, record.parent[k]);
   const bool parent_in_domain = has_flag(parent, layout::node_domain);
-  const bool lifted = view.info->wavelet == static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
+  const bool lifted = layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet));
   return check.require((lifted && parent_in_domain) || record.lift[k] == 0, VerifyRule::inconsistent, "lift", i,
                        record.lift[k], 0) &&
          check.require(!in_domain || parent_in_domain || has_flag(parent, layout::node_fixed), VerifyRule::inconsistent,
@@ -281,6 +283,42 @@ bool verify_refinement(const Section& section, VerifyContext& context) {
     }
   }
   level.refinement = records;
+  return true;
+}
+
+namespace {
+
+// the six nodes of a stencil, in file order
+std::array<std::uint32_t, 6> nodes_of(const StencilRecord& stencil) {
+  return {stencil.wing[0], stencil.wing[1], stencil.outer[0], stencil.outer[1], stencil.outer[2], stencil.outer[3]};
+}
+
+bool verify_stencil(SectionCheck& check, const ModelView& view, const StencilRecord& stencil, std::uint32_t i,
+                    std::uint32_t first_of_level) {
+  const auto nodes = nodes_of(stencil);
+  const bool absent = nodes[0] == layout::none;
+  for (const std::uint32_t node : nodes) {
+    if (absent && !require_equal(check, "node", i, node, layout::none)) return false;
+    if (absent) continue;
+    if (!require_at_most(check, "node", i, node, first_of_level - 1.0)) return false;
+    const NodeRecord& record = node_at(view, node);
+    const bool known = has_flag(record, layout::node_domain) || has_flag(record, layout::node_fixed);
+    if (!check.require(known, VerifyRule::inconsistent, "node", i, node, layout::none)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool verify_stencils(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  LevelView& level = context.view.level[section.a];
+  const auto* stencils = section.as<StencilRecord>();
+  if (!require_size(check, section, level.counts->domain_count, sizeof(StencilRecord))) return false;
+  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+    if (!verify_stencil(check, context.view, stencils[i], i, level.node_begin)) return false;
+  }
+  level.stencils = stencils;
   return true;
 }
 

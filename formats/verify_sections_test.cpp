@@ -18,6 +18,7 @@ using layout::NodeRecord;
 using layout::RefinementRecord;
 using layout::Scale;
 using layout::SectionKind;
+using layout::StencilRecord;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -95,7 +96,7 @@ TEST_CASE("verify refuses: sections whose size does not follow from the counts")
 TEST_CASE("verify refuses: an unknown problem or wavelet") {
   check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 2; });
   check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 0; });
-  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 3; });
+  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 5; });
   check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 0; });
 }
 
@@ -308,11 +309,75 @@ TEST_CASE("verify refuses: lifting weights that are not finite, or towards a par
   });
 }
 
+TEST_CASE("verify refuses: a wavelet of a newer minor version by its name, not by the sections it brings") {
+  ModelMutant mutant = valid();
+  mutant.header().minor = layout::version_minor + 1;
+  mutant.records<layout::Info>(SectionKind::info)->wavelet = 5;
+  mutant.rebuild([](std::vector<SectionCopy>& sections) {
+    SectionCopy unknown = sections.front();
+    unknown.entry.kind = 13;
+    sections.insert(sections.begin() + 7, unknown);
+  });
+  check_refused(mutant, VerifyRule::bad_enum, SectionKind::info, 0, 0, "wavelet", 0);
+}
+
 TEST_CASE("verify refuses: lifting weights where the wavelet is not lifted, accepts it without") {
-  ModelMutant mutant(SyntheticOptions{.levels = 2, .lifted = false});
+  ModelMutant mutant(SyntheticOptions{.levels = 2, .wavelet = layout::Wavelet::linear});
   CHECK(mutant.verdict().ok());
   mutant.records<RefinementRecord>(SectionKind::refinement, 1)[1].lift[0] = 0.125F;
   check_refused(mutant, VerifyRule::inconsistent, SectionKind::refinement, 1, 0, "lift", 1);
+}
+
+ModelMutant butterfly() {
+  return ModelMutant(SyntheticOptions{.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly});
+}
+
+void check_stencil(std::uint32_t i, VerifyRule rule, void (*change)(StencilRecord&)) {
+  ModelMutant mutant = butterfly();
+  REQUIRE(mutant.verdict().ok());
+  change(mutant.records<StencilRecord>(SectionKind::stencils, 1)[i]);
+  check_refused(mutant, rule, SectionKind::stencils, 1, 0, "node", i);
+}
+
+TEST_CASE("verify refuses: more or fewer stencils than domain nodes") {
+  for (const int change : {-4, 4}) {
+    ModelMutant mutant = butterfly();
+    mutant.rebuild([&](std::vector<SectionCopy>& sections) {
+      for (SectionCopy& copy : sections) {
+        if (copy.is(SectionKind::stencils, 1)) copy.bytes.resize(copy.bytes.size() + change);
+      }
+    });
+    check_refused(mutant, VerifyRule::section_size, SectionKind::stencils, 1, 0, "bytes", 0);
+  }
+}
+
+TEST_CASE("verify refuses: stencils of nodes that are not coarser, or only half there") {
+  check_stencil(2, VerifyRule::out_of_range, [](StencilRecord& record) { record.outer[3] = 6; });
+  check_stencil(3, VerifyRule::out_of_range, [](StencilRecord& record) { record.outer[0] = layout::none; });
+  check_stencil(0, VerifyRule::inconsistent, [](StencilRecord& record) { record.wing[0] = layout::none; });
+}
+
+TEST_CASE("verify refuses: a stencil with a free node outside the domain") {
+  ModelMutant mutant = butterfly();
+  constexpr std::uint32_t lowest = 5;  // no domain node's parent, but in the stencils of the equator
+  std::uint32_t& flags = mutant.records<NodeRecord>(SectionKind::nodes, 0)[lowest].flags;
+  CHECK(flags == layout::node_fixed);
+  flags = 0;
+  const auto* stencils = mutant.records<StencilRecord>(SectionKind::stencils, 1);
+  std::uint32_t i = 0;
+  while (stencils[i].wing[0] != lowest && stencils[i].wing[1] != lowest) ++i;
+  check_refused(mutant, VerifyRule::inconsistent, SectionKind::stencils, 1, 0, "node", i);
+}
+
+TEST_CASE("verify refuses: stencils where the wavelet has none, and none where it has them") {
+  ModelMutant with = butterfly(), without(SyntheticOptions{.levels = 2});
+  with.records<layout::Info>(SectionKind::info)->wavelet = static_cast<std::uint32_t>(layout::Wavelet::lifted_linear);
+  CHECK(with.verdict().rule == VerifyRule::section_order);
+  without.records<layout::Info>(SectionKind::info)->wavelet =
+      static_cast<std::uint32_t>(layout::Wavelet::lifted_butterfly);
+  const VerifyResult result = without.verdict();
+  CHECK(result.rule == VerifyRule::section_missing);
+  CHECK(result.kind == SectionKind::stencils);
 }
 
 // file indices: 0..4 the domain of level 0, 5 fixed; 6..13 the domain of level 1, 14..17 fixed

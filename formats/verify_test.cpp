@@ -113,9 +113,9 @@ TEST_CASE("verify: the view shows every array where it stands") {
   CHECK(view.domain_count == domain);
 }
 
-TEST_CASE("verify accepts: either wavelet") {
-  for (const bool lifted : {true, false}) {
-    ModelMutant mutant(SyntheticOptions{.levels = 3, .lifted = lifted});
+TEST_CASE("verify accepts: every wavelet") {
+  for (const layout::Wavelet kind : layout::wavelets) {
+    ModelMutant mutant(SyntheticOptions{.levels = 3, .wavelet = kind});
     check_accepted(mutant);
   }
 }
@@ -363,7 +363,7 @@ TEST_CASE("verify refuses: an unknown section that is not of a newer minor versi
   mutant.rebuild([](std::vector<SectionCopy>& sections) { sections.push_back(unknown_section()); });
   check_refused(mutant, VerifyRule::bad_enum, static_cast<SectionKind>(unknown_kind), 0, 0, "section.kind",
                 mutant.table().size() - 1);
-  for (const std::uint32_t undefined : {0u, 7u, 9u, 12u}) {
+  for (const std::uint32_t undefined : {0u, 7u, 9u, 13u}) {
     mutant.table().back().kind = undefined;
     const VerifyResult result = mutant.verdict();
     CHECK(result.rule == VerifyRule::bad_enum);

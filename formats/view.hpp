@@ -25,6 +25,7 @@ struct LevelView {
   std::uint32_t domain_begin = 0;  ///< domain nodes of all coarser levels
   const layout::NodeRecord* nodes = nullptr;
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
+  const layout::StencilRecord* stencils = nullptr;       ///< [domain nodes]; null without Butterfly wavelets
   const layout::Scale* scales = nullptr;                 ///< [domain nodes]
   CouplingsView couplings[layout::layers];
 };

@@ -124,6 +124,7 @@ class SectionList {
       require_size(fmt::format("levels[{}].refinement", q), level.refinement.size(), level.nodes.size());
       add(SectionKind::refinement, q, 0, bytes_of(level.refinement));
     }
+    add_stencils(q);
     for (std::uint32_t c = 0; c <= q; ++c) add_representatives(c, q);
     for (std::uint32_t r = 0; r < q; ++r) add_representatives(q, r);
     require_size(fmt::format("levels[{}].scales", q), level.scales.size(), domain_count(q));
@@ -131,6 +132,13 @@ class SectionList {
     kept_blocks_ += level.scales.size();
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) add_couplings(q, layer);
     sections_[place] = section(SectionKind::level, q, 0, bytes_of_one(completed_counts(q)));  // now they are known
+  }
+
+  void add_stencils(std::uint32_t q) {
+    const bool wanted = q > 0 && layout::is_butterfly(static_cast<layout::Wavelet>(model_.info.wavelet));
+    const auto& stencils = model_.levels[q].stencils;
+    require_size(fmt::format("levels[{}].stencils", q), stencils.size(), wanted ? domain_count(q) : 0);
+    if (wanted) add(SectionKind::stencils, q, 0, bytes_of(stencils));
   }
 
   void add_representatives(std::uint32_t c, std::uint32_t q) {

@@ -24,6 +24,7 @@ struct LevelData {
   layout::Level counts{};
   std::vector<layout::NodeRecord> nodes;
   std::vector<layout::RefinementRecord> refinement;  ///< empty on level 0
+  std::vector<layout::StencilRecord> stencils;  ///< [domain nodes]; empty on level 0 and without Butterfly wavelets
   /// [mesh level][node in that level], every mesh level; empty below the coarsest constraint level
   std::vector<std::vector<std::uint32_t>> representatives;
   std::vector<layout::Scale> scales;  ///< [domain nodes]

@@ -60,8 +60,8 @@ void check_couplings(const CouplingsView& view, std::uint32_t value_bits, const 
 }
 
 TEST_CASE("writer: what the view shows is what was given") {
-  for (const bool lifted : {true, false}) {
-    const ModelData data = synthetic_model({.levels = 4, .coarsest_constraint_level = 1, .lifted = lifted});
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const ModelData data = synthetic_model({.levels = 4, .coarsest_constraint_level = 1, .wavelet = kind});
     ModelMutant file(encode(data));
     REQUIRE(file.verdict().ok());
     const ModelView& view = file.view();
@@ -77,6 +77,9 @@ TEST_CASE("writer: what the view shows is what was given") {
       CHECK(view.level[q].counts->field_column_error == level.counts.field_column_error);
       CHECK(same_bytes(view.level[q].nodes, level.nodes));
       if (q > 0) CHECK(same_bytes(view.level[q].refinement, level.refinement));
+      CHECK(level.stencils.empty() == (q == 0 || !layout::is_butterfly(kind)));
+      CHECK((view.level[q].stencils == nullptr) == level.stencils.empty());
+      CHECK((level.stencils.empty() || same_bytes(view.level[q].stencils, level.stencils)));
       CHECK(same_bytes(view.level[q].scales, level.scales));
       for (std::uint32_t r = 0; r < 4; ++r) {
         CHECK((view.representatives[q][r] == nullptr) == (q == 0));
@@ -163,6 +166,7 @@ TEST_CASE("writer: refuses vectors that do not fit each other, by name") {
   CHECK(names(encode_refusal([](ModelData& data) { data.levels.resize(13); }), "13 levels"));
   CHECK(names(encode_refusal([](ModelData& data) { data.base_triangles.pop_back(); }), "base_triangles"));
   CHECK(names(encode_refusal([](ModelData& data) { data.levels[1].refinement.pop_back(); }), "levels[1].refinement"));
+  CHECK(names(encode_refusal([](ModelData& data) { data.levels[1].stencils.emplace_back(); }), "levels[1].stencils"));
   CHECK(names(encode_refusal([](ModelData& data) { data.levels[1].representatives.pop_back(); }),
               "levels[1].representatives"));
   CHECK(names(encode_refusal([](ModelData& data) { data.levels[1].representatives[2].pop_back(); }),

@@ -15,6 +15,9 @@ double magnitude(double value) { return value < 0 ? -value : value; }
 
 double larger(double a, double b) { return a > b ? a : b; }
 
+// sum of the magnitudes of a prediction's weights
+double prediction_sum(const ModelView& view) { return has_stencils(view) ? 1.5 : 1; }
+
 // largest factor between coefficients and node values, intermediate sums included
 double transform_growth(const ModelView& view, const Lifting& lifting) {
   double growth = 1;
@@ -31,21 +34,23 @@ double transform_growth(const ModelView& view, const Lifting& lifting) {
       most = larger(most, sum);
     }
     // values of the level before, its averages, and the details
-    growth += 2 * (most + 1);
+    growth = prediction_sum(view) * (growth + 2 * most) + 2;
   }
   return 2 * growth;
 }
 
-// largest factor between nodal forces, whose sum no level exceeds, and force coefficients
+// largest factor between the sum of nodal forces and force coefficients
 double force_growth(const ModelView& view) {
   double most = 0;
+  double sum = 1;
   for (std::uint32_t level = 1; level < view.levels; ++level) {
+    sum *= prediction_sum(view);
     for (std::uint32_t i = 0; i < view.level[level].counts->domain_count; ++i) {
       const float* lift = view.level[level].refinement[i].lift;
       most = larger(most, magnitude(double{lift[0]}) + magnitude(double{lift[1]}));
     }
   }
-  return 1 + most;
+  return sum * (1 + most);
 }
 
 // magnitudes within a part of the scales

@@ -60,11 +60,26 @@ double averages_error(const Body& body, const Eigen::VectorXd& averages, const s
   return error;
 }
 
+// what the coarser levels say of node i of a level
+float interpolated(const LevelView& level, std::uint32_t i, const std::vector<Float4>& x) {
+  const auto at = [&](std::uint32_t node) { return float{x[node][1]}; };
+  const std::uint32_t* parent = level.refinement[i].parent;
+  float value = 0.5F * (at(parent[0]) + at(parent[1]));
+  if (level.stencils != nullptr && level.stencils[i].wing[0] != layout::none) {
+    const auto& [wing, outer] = level.stencils[i];
+    value += 0.125F * (at(wing[0]) + at(wing[1]));
+    value += -0.0625F * ((at(outer[0]) + at(outer[1])) + (at(outer[2]) + at(outer[3])));
+  }
+  return value;
+}
+
 TEST_CASE("a field cut off at a level keeps its averages there, interpolates beyond, and leaves the scratch zero") {
   const ModelData models[] = {synthetic_model({.levels = 5, .touchable_above = 0.5}),
                               synthetic_model({.levels = 5, .field_threshold = 0.01, .touchable_above = 0.5}),
                               synthetic_model({.levels = 4, .field_threshold = 0, .epsilon = 0, .quantum = 0}),
-                              synthetic_model({.levels = 4, .lifted = false})};
+                              synthetic_model({.levels = 4, .wavelet = layout::Wavelet::linear}),
+                              synthetic_model({.levels = 5, .wavelet = layout::Wavelet::lifted_butterfly}),
+                              synthetic_model({.levels = 4, .wavelet = layout::Wavelet::butterfly, .epsilon = 0})};
   for (const ModelData& data : models) {
     const TestModel model(encode(data));
     const ModelView& view = model.view();
@@ -85,8 +100,7 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
           CHECK(all_zero(x.data() + level.node_begin + level.counts->domain_count,
                          level.counts->node_count - level.counts->domain_count));
           for (std::uint32_t i = 0; q > field_level && i < level.counts->domain_count; ++i) {
-            const std::uint32_t* parent = level.refinement[i].parent;
-            CHECK(float{x[level.node_begin + i][1]} == 0.5F * (x[parent[0]][1] + x[parent[1]][1]));
+            CHECK(float{x[level.node_begin + i][1]} == interpolated(level, i, x));
           }
         }
         const Eigen::VectorXd whole = reference.field(c) * forces.dense;
@@ -99,7 +113,8 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
 
 TEST_CASE("columns hold the blocks that the thresholds keep, rounded to 8 significant bits, and no others") {
   for (const ModelData& data :
-       {synthetic_model({.levels = 4}), synthetic_model({.levels = 3, .lifted = false, .field_threshold = 0.01}),
+       {synthetic_model({.levels = 4}),
+        synthetic_model({.levels = 3, .wavelet = layout::Wavelet::linear, .field_threshold = 0.01}),
         synthetic_model({.levels = 4, .coarsest_constraint_level = 1, .field_threshold = 0}),
         synthetic_model({.levels = 4, .field_halves = 2})}) {
     const TestModel model(encode(data));

@@ -2,6 +2,7 @@
 
 #include "runtime/domain.hpp"
 #include "runtime/factor_update.hpp"
+#include "runtime/sparse_forces.hpp"
 #include "runtime/support.hpp"
 
 namespace greenloop {
@@ -17,6 +18,7 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   counts.levels = view.levels;
   counts.max_contacts = limits.max_contacts;
   counts.cached_factors = limits.cached_factors;
+  counts.butterfly = has_stencils(view);
   counts.odd_nodes = view.domain_count - view.level[0].counts->domain_count;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {

@@ -10,7 +10,7 @@ namespace greenloop {
 
 /// Sizes of a body's arrays and what bounds its work, from the model and the limits alone.
 struct BodySizes {
-  bool supported = false;  ///< limits in range, countable, and every point interpolated from at most three nodes
+  bool supported = false;  ///< limits in range, countable, and no point hanging on more than most_support nodes
   ModelCounts counts;
   std::uint32_t set_columns = 0;     ///< most columns of a contact set
   std::uint32_t longest_column = 0;  ///< most blocks in a column of a layer

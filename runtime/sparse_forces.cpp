@@ -12,6 +12,21 @@ void add(Touched& touched, std::uint32_t level, std::uint32_t place) {
   touched.mark[place] = true;
 }
 
+// calls visit(place, weight) for what predicts an odd node
+template <class Visit>
+void visit_prediction(const Refinement& refinement, std::uint32_t odd, Visit visit) {
+  for (const std::uint32_t parent : refinement.parents[odd].place) {
+    if (parent != layout::none) {
+      visit(parent, 0.5F);
+    }
+  }
+  for (std::uint32_t k = 0; refinement.stencils != nullptr && k < 6; ++k) {
+    if (refinement.stencils[odd].place[k] != layout::none) {
+      visit(refinement.stencils[odd].place[k], k < 2 ? layout::wing_weight : layout::outer_weight);
+    }
+  }
+}
+
 // calls visit(place of the odd neighbour, lift) for the neighbours in M(level) of an even node
 template <class Visit>
 void visit_neighbours(const Refinement& refinement, std::uint32_t level, std::uint32_t even, Visit visit) {
@@ -30,7 +45,26 @@ std::uint64_t neighbour_visits(const Refinement& refinement, std::uint32_t level
   return std::uint64_t{OddNeighbours::most} * (begin[1] - begin[0]);
 }
 
+void list_stencils(const ModelView& view, DomainStencil* stencils) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& at = view.level[q];
+    for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
+      for (std::uint32_t k = 0; k < 6; ++k) {
+        const std::uint32_t node = at.stencils == nullptr ? layout::none
+                                   : k < 2                ? at.stencils[i].wing[k]
+                                                          : at.stencils[i].outer[k - 2];
+        const bool stored = node != layout::none && in_domain(view, node);
+        stencils[at.domain_begin + i].place[k] = stored ? domain_place(view, node) : layout::none;
+      }
+    }
+  }
+}
+
 }  // namespace
+
+bool has_stencils(const ModelView& view) noexcept {
+  return layout::is_butterfly(static_cast<layout::Wavelet>(view.info->wavelet));
+}
 
 void RefinementTables::carve(Arena& arena, const ModelView& view) noexcept {
   for (std::uint32_t q = 1; q < view.levels; ++q) {
@@ -38,10 +72,16 @@ void RefinementTables::carve(Arena& arena, const ModelView& view) noexcept {
     neighbours_[q] = arena.take<OddNeighbours>(count_lifting(view, q).records);
   }
   parents_ = arena.take<DomainParents>(view.domain_count);
+  if (has_stencils(view)) {
+    stencils_ = arena.take<DomainStencil>(view.domain_count);
+  }
   level_ = arena.take<std::uint8_t>(view.domain_count);
 }
 
 void RefinementTables::fill(const ModelView& view) noexcept {
+  if (stencils_ != nullptr) {
+    list_stencils(view, stencils_);
+  }
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     list_odd_neighbours(view, q, begin_[q], neighbours_[q]);
   }
@@ -63,7 +103,7 @@ Refinement RefinementTables::refinement(const ModelView& view, Lifting& lifting)
     lifting.begin[q] = begin_[q];
     lifting.neighbours[q] = neighbours_[q];
   }
-  return {&view, &lifting, parents_, level_};
+  return {&view, &lifting, parents_, stencils_, level_};
 }
 
 void Touched::carve(Arena& arena, const ModelView& view) noexcept {
@@ -93,23 +133,17 @@ void touch(const Refinement& refinement, std::uint32_t c, const std::uint32_t* p
   }
   for (std::uint32_t level = c; level > 0; --level) {
     touched.forced[level] = touched.count[level];
-    touched.visits += std::uint64_t{2} * touched.forced[level];
+    touched.visits += std::uint64_t{prediction_length(refinement.stencils != nullptr)} * touched.forced[level];
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
-      for (const std::uint32_t parent : refinement.parents[touched.list[level][k]].place) {
-        if (parent != layout::none) {
-          add(touched, refinement.level[parent], parent);
-        }
-      }
+      visit_prediction(refinement, touched.list[level][k],
+                       [&](std::uint32_t even, float) { add(touched, refinement.level[even], even); });
     }
     for (std::uint32_t q = 0; q < level; ++q) {
       touched.even[level][q] = touched.count[q];
       for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
         touched.visits += neighbour_visits(refinement, level, touched.list[q][k]);
-        visit_neighbours(refinement, level, touched.list[q][k], [&](std::uint32_t odd, float lift) {
-          if (lift != 0) {
-            add(touched, level, odd);
-          }
-        });
+        visit_neighbours(refinement, level, touched.list[q][k],
+                         [&](std::uint32_t odd, float) { add(touched, level, odd); });
       }
     }
   }
@@ -129,11 +163,8 @@ void transform_forces(const Refinement& refinement, const Touched& touched, Floa
   for (std::uint32_t level = touched.constraint_level; level > 0; --level) {
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
       const std::uint32_t odd = touched.list[level][k];
-      for (const std::uint32_t parent : refinement.parents[odd].place) {
-        if (parent != layout::none) {
-          force[parent] += splat(0.5F) * force[odd];
-        }
-      }
+      visit_prediction(refinement, odd,
+                       [&](std::uint32_t even, float weight) { force[even] += splat(weight) * force[odd]; });
     }
     for (std::uint32_t q = 0; q < level; ++q) {
       for (std::uint32_t k = 0; k < touched.even[level][q]; ++k) {

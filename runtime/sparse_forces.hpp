@@ -10,7 +10,8 @@
 namespace greenloop {
 
 // The transform of sparse nodal forces into wavelet coefficients, T_l^-T for l = c..1 (docs/theory.md):
-//   g_a = f_a + 1/2 (sum of f_m over odd neighbours m),   e_m = f_m - (sum of lift(m -> a) g_a over parents a),
+//   g_a = f_a + (sum of w f_m over the odd m that a predicts with weight w),
+//   e_m = f_m - (sum of lift(m -> a) g_a over parents a),
 // in place, by place in the domain, since the places of K(l-1) come before those of M(l). With a unit force at one node
 // it gives the weights with which that node's displacement depends on every coefficient.
 
@@ -19,12 +20,19 @@ struct DomainParents {
   std::uint32_t place[2];
 };
 
+/// The Butterfly stencil of every domain node by their place: two of wing_weight, four of outer_weight; layout::none
+/// outside the domain and where prediction is linear.
+struct DomainStencil {
+  std::uint32_t place[6];
+};
+
 /// What the transform looks up, by place.
 struct Refinement {
   const ModelView* view = nullptr;
   const Lifting* lifting = nullptr;
-  const DomainParents* parents = nullptr;  ///< [domain]
-  const std::uint8_t* level = nullptr;     ///< [domain] mesh level
+  const DomainParents* parents = nullptr;   ///< [domain]
+  const DomainStencil* stencils = nullptr;  ///< [domain]; null without Butterfly wavelets
+  const std::uint8_t* level = nullptr;      ///< [domain] mesh level
 };
 
 /// The arrays of a Refinement.
@@ -43,8 +51,15 @@ class RefinementTables {
   std::uint32_t* begin_[layout::max_levels] = {};
   OddNeighbours* neighbours_[layout::max_levels] = {};
   DomainParents* parents_ = nullptr;
+  DomainStencil* stencils_ = nullptr;
   std::uint8_t* level_ = nullptr;
 };
+
+/// Whether the model has Butterfly wavelets.
+[[nodiscard]] bool has_stencils(const ModelView& view) noexcept;
+
+/// Nodes that the prediction of an odd node may read.
+constexpr std::uint32_t prediction_length(bool butterfly) { return butterfly ? 8 : 2; }
 
 /// Which coefficients the forces on some nodes of K(c) reach.
 struct Touched {

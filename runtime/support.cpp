@@ -1,34 +1,43 @@
 #include "runtime/support.hpp"
 
 #include "runtime/domain.hpp"
+#include "runtime/sparse_forces.hpp"
 #include "runtime/wavelet.hpp"
 
 namespace greenloop {
 namespace {
 
-bool add(PointSupport& support, std::uint32_t node) {
-  for (std::uint32_t i = 0; i < support.count; ++i) {
-    if (support.node[i] == node) {
-      return true;
-    }
-  }
-  if (support.count == PointSupport::most) {
-    return false;
-  }
-  support.node[support.count++] = node;
-  return true;
-}
-
 void raise(std::uint32_t& bound, std::uint32_t value) { bound = value > bound ? value : bound; }
 
-// nodes of M(level) in the support with no domain parent: nobody's neighbours
+bool add_if_stored(const ModelView& view, std::uint32_t node, PointSupport& support) {
+  return node == layout::none || !in_domain(view, node) || support.add(node);
+}
+
+// what predicts node i of M(level)
+bool add_prediction(const ModelView& view, const LevelView& at, std::uint32_t i, PointSupport& coarse) {
+  bool fits = true;
+  for (const std::uint32_t parent : at.refinement[i].parent) {
+    fits = fits && add_if_stored(view, parent, coarse);
+  }
+  if (at.stencils != nullptr) {
+    for (const std::uint32_t wing : at.stencils[i].wing) {
+      fits = fits && add_if_stored(view, wing, coarse);
+    }
+    for (const std::uint32_t outer : at.stencils[i].outer) {
+      fits = fits && add_if_stored(view, outer, coarse);
+    }
+  }
+  return fits;
+}
+
+// nodes of M(level) in the support that are lifted into no node: nobody's neighbours
 std::uint32_t orphans(const ModelView& view, std::uint32_t level, const PointSupport& support) {
   const LevelView& at = view.level[level];
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < support.count; ++i) {
-    if (support.node[i] >= at.node_begin) {
-      const std::uint32_t* parent = at.refinement[support.node[i] - at.node_begin].parent;
-      count += in_domain(view, parent[0]) || in_domain(view, parent[1]) ? 0 : 1;
+  for (std::uint32_t k = 0; k < support.count(); ++k) {
+    if (support.node(k) >= at.node_begin) {
+      const float* lift = at.refinement[support.node(k) - at.node_begin].lift;
+      count += lift[0] != 0 || lift[1] != 0 ? 0 : 1;
     }
   }
   return count;
@@ -37,38 +46,61 @@ std::uint32_t orphans(const ModelView& view, std::uint32_t level, const PointSup
 // forced: nodes of each level's mesh that a force on the node is shared among
 bool follow(const ModelView& view, std::uint32_t c, std::uint32_t node, const std::uint32_t* most_neighbours,
             std::uint32_t* forced, ReachBound& bound) {
-  PointSupport support{1, {node}};
+  PointSupport supports[2] = {PointSupport(most_support(view)), PointSupport(most_support(view))};
+  PointSupport* support = supports;
+  PointSupport* coarse = supports + 1;
+  support->add(node);
   for (std::uint32_t level = c; level > 0; --level) {
-    const std::uint32_t alone = orphans(view, level, support);
-    if (!coarsen(view, level, support)) {
+    const std::uint32_t alone = orphans(view, level, *support);
+    if (!coarsen(view, level, *support, *coarse)) {
       return false;
     }
-    raise(bound.coefficients[level], support.count * most_neighbours[level] + alone);
-    raise(forced[level - 1], support.count);
+    PointSupport* const finer = support;
+    support = coarse;
+    coarse = finer;
+    raise(bound.coefficients[level], support->count() * most_neighbours[level] + alone);
+    raise(forced[level - 1], support->count());
   }
   return true;
 }
 
 }  // namespace
 
-bool coarsen(const ModelView& view, std::uint32_t level, PointSupport& support) noexcept {
-  const LevelView& at = view.level[level];
-  PointSupport coarse;
-  for (std::uint32_t i = 0; i < support.count; ++i) {
-    const std::uint32_t node = support.node[i];
-    if (node < at.node_begin) {
-      if (!add(coarse, node)) {
-        return false;
-      }
-      continue;
+bool PointSupport::add(std::uint32_t node) {
+  std::uint32_t at = node * 0x9e3779b1U >> 23;  // of 512
+  while (slot_[at] != layout::none) {
+    if (slot_[at] == node) {
+      return true;
     }
-    for (const std::uint32_t parent : at.refinement[node - at.node_begin].parent) {
-      if (in_domain(view, parent) && !add(coarse, parent)) {
-        return false;
-      }
+    at = (at + 1) % slots;
+  }
+  if (count_ == limit_) {
+    return false;
+  }
+  slot_[at] = node;
+  node_[count_++] = node;
+  return true;
+}
+
+void PointSupport::clear() {
+  count_ = 0;
+  for (std::uint32_t& slot : slot_) {
+    slot = layout::none;
+  }
+}
+
+std::uint32_t most_support(const ModelView& view) noexcept { return has_stencils(view) ? PointSupport::most : 3; }
+
+bool coarsen(const ModelView& view, std::uint32_t level, const PointSupport& support, PointSupport& coarse) noexcept {
+  const LevelView& at = view.level[level];
+  coarse.clear();
+  for (std::uint32_t k = 0; k < support.count(); ++k) {
+    const std::uint32_t node = support.node(k);
+    const bool fits = node < at.node_begin ? coarse.add(node) : add_prediction(view, at, node - at.node_begin, coarse);
+    if (!fits) {
+      return false;
     }
   }
-  support = coarse;
   return true;
 }
 
@@ -84,11 +116,11 @@ ReachBound bound_reach(const ModelView& view, std::uint32_t c, const std::uint32
     }
   }
   bound.coefficients[0] = forced[0];
-  // the node, two parents of each force, all odd neighbours of each support
+  // the node, what predicts each force, all odd neighbours of each support
   bound.visits = 1;
   for (std::uint32_t level = c; level > 0; --level) {
     constexpr std::uint32_t slots = OddNeighbours::most;
-    bound.visits += std::uint64_t{2} * forced[level];
+    bound.visits += std::uint64_t{prediction_length(has_stencils(view))} * forced[level];
     bound.visits += std::uint64_t{forced[level - 1]} * slots * ((most_neighbours[level] + slots - 1) / slots);
   }
   bound.bounded = true;

@@ -7,21 +7,40 @@
 namespace greenloop {
 
 /// The nodes of a coarser level that a node's value is interpolated from, and that a force on it is shared among: the
-/// corners of a triangle.
-struct PointSupport {
-  static constexpr std::uint32_t most = 3;
+/// corners of a triangle; with Butterfly wavelets the nodes within about three edges.
+class PointSupport {
+ public:
+  static constexpr std::uint32_t most = 192;  ///< Butterfly: vertices of 30 edges and more
 
-  std::uint32_t count = 0;
-  std::uint32_t node[most];
+  explicit PointSupport(std::uint32_t limit) : limit_(limit) { clear(); }
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::uint32_t node(std::uint32_t i) const { return node_[i]; }
+
+  /// Adds a node unless it is there. False if there were `limit` others. Work: constant on average.
+  bool add(std::uint32_t node);
+  void clear();
+
+ private:
+  static constexpr std::uint32_t slots = 512;
+
+  std::uint32_t limit_;
+  std::uint32_t count_ = 0;
+  std::uint32_t node_[most];
+  std::uint32_t slot_[slots];  // by hash, open addressing; layout::none: empty
 };
 
-/// Replaces the nodes of M(level) in `support` by their domain parents. False if more than three nodes would be left,
-/// which no subdivided triangulation does.
-[[nodiscard]] bool coarsen(const ModelView& view, std::uint32_t level, PointSupport& support) noexcept;
+/// Nodes of a support that a model's wavelets may have: 3 or PointSupport::most.
+[[nodiscard]] std::uint32_t most_support(const ModelView& view) noexcept;
+
+/// Fills `coarse` with the domain nodes that predict the nodes of M(level) in `support`, and the other nodes in it.
+/// False if that are more than its limit, which no subdivided triangulation does.
+[[nodiscard]] bool coarsen(const ModelView& view, std::uint32_t level, const PointSupport& support,
+                           PointSupport& coarse) noexcept;
 
 /// Most coefficients that a force on one node of K(c) reaches.
 struct ReachBound {
-  bool bounded = false;  ///< no node of K(c) hangs on more than three nodes of a coarser level
+  bool bounded = false;  ///< no node of K(c) hangs on more than most_support nodes of a coarser level
   std::uint64_t visits = 0;
   std::uint32_t coefficients[layout::max_levels] = {};  ///< of each level
 };

@@ -53,6 +53,18 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   }
 }
 
+void add_stencils(const LevelView& level, Float4* x) {
+  Float4* odd = x + level.node_begin;
+  const std::uint32_t count = level.counts->domain_count;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto& [wing, outer] = level.stencils[i];
+    if (wing[0] != layout::none) {
+      odd[i] += splat(layout::wing_weight) * (x[wing[0]] + x[wing[1]]);
+      odd[i] += splat(layout::outer_weight) * ((x[outer[0]] + x[outer[1]]) + (x[outer[2]] + x[outer[3]]));
+    }
+  }
+}
+
 void add_details(const LevelView& level, SparseCoefficients& details, Float4* x) {
   Float4* odd = x + level.node_begin;
   Float4* value = details.value + level.domain_begin;
@@ -69,13 +81,13 @@ void clear_others(const LevelView& level, Float4* x) {
               sizeof(Float4) * (counts.node_count - counts.domain_count));
 }
 
-// calls visit(odd node, parent, lift) for each domain parent of each domain node of M(level), in file order
+// calls visit(odd node, parent, lift) for each parent that each domain node of M(level) is lifted into, in file order
 template <class Visit>
 void visit_pairs(const ModelView& view, std::uint32_t level, Visit visit) {
   const LevelView& at = view.level[level];
   for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
     for (std::uint32_t side = 0; side < 2; ++side) {
-      if (in_domain(view, at.refinement[i].parent[side])) {
+      if (at.refinement[i].lift[side] != 0) {
         visit(at.node_begin + i, at.refinement[i].parent[side], at.refinement[i].lift[side]);
       }
     }
@@ -161,6 +173,9 @@ void inverse_transform(const ModelView& view, const ParentOffsets* parents, std:
       undo_lifting(level, parents, coefficients, x);
     }
     predict(level, parents, x);
+    if (level.stencils != nullptr) {
+      add_stencils(level, x);
+    }
     if (q <= field_level) {
       add_details(level, coefficients, x);
     }

@@ -9,14 +9,15 @@
 
 namespace greenloop {
 
-// The lifted Linear wavelet transform of a field on the domain (James & Pai 2003, section 4; docs/theory.md).
+// The wavelet transforms of a field on the domain (James & Pai 2003, section 4; docs/theory.md).
 // Level l of the mesh adds the odd nodes M(l), midpoints m of edges (a, b) of K(l-1). The inverse, for l = 1..L:
 //   undo lifting   x_a -= lift[0] d_m,  x_b -= lift[1] d_m    for all m
 //   predict        x_m  = d_m + (x_a + x_b) / 2               for all m
+//                  x_m += (x_c + x_d) / 8 - (x_e + x_f + x_g + x_h) / 16    for m with a Butterfly stencil
 // Nodes outside the domain are 0.
 
-/// Up to six odd neighbours in M(l) of one domain node of K(l-1), in file order: lifting as a gather in fixed steps.
-/// Nodes with more (irregular ones) have several in a row. Unused places weigh nothing.
+/// Up to six odd neighbours in M(l) that are lifted into one domain node of K(l-1), in file order: lifting as a gather
+/// in fixed steps. Nodes with more (irregular ones) have several in a row. Unused places weigh nothing.
 struct alignas(64) OddNeighbours {
   static constexpr std::uint32_t most = 6;  ///< neighbours of a regular node
 
@@ -71,8 +72,9 @@ void inverse_transform(const ModelView& view, const ParentOffsets* parents, std:
                        SparseCoefficients& coefficients, Float4* x) noexcept;
 
 /// Work units of inverse_transform. odd_nodes: of the domain above level 0; touched: coefficients, at most.
-constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t touched) {
-  return nodes + 6 * odd_nodes + 12 * touched;
+constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t touched,
+                                               bool butterfly) {
+  return nodes + (butterfly ? 24 : 6) * odd_nodes + 12 * touched;
 }
 
 }  // namespace greenloop

@@ -36,7 +36,12 @@ bool all_zero(const SparseCoefficients& sums, std::uint32_t count) {
 }
 
 TEST_CASE("the inverse transform undoes the definition's forward transform") {
-  const TestModel model({.levels = 5, .touchable_above = 0.95});
+  layout::Wavelet kind{};
+  SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("linear") { kind = layout::Wavelet::linear; }
+  SUBCASE("lifted butterfly") { kind = layout::Wavelet::lifted_butterfly; }
+  SUBCASE("butterfly") { kind = layout::Wavelet::butterfly; }
+  const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.95});
   const ModelView& view = model.view();
   const PlacedBody placed(view);
   std::mt19937_64 random(2);
@@ -52,6 +57,9 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
       for (std::size_t r = 0; r < 3; ++r) {
         d[level.node_begin + i][r] -= 0.5 * (d[level.refinement[i].parent[0]][r] + d[level.refinement[i].parent[1]][r]);
+        if (level.stencils == nullptr || level.stencils[i].wing[0] == layout::none) continue;
+        for (const std::uint32_t wing : level.stencils[i].wing) d[level.node_begin + i][r] -= d[wing][r] / 8;
+        for (const std::uint32_t outer : level.stencils[i].outer) d[level.node_begin + i][r] += d[outer][r] / 16;
       }
     }
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {

@@ -79,10 +79,18 @@ DenseWavelet::DenseWavelet(const ModelData& model) {
       const bool domain = (level.nodes[i].flags & layout::node_domain) != 0;
       domain_index_.push_back(domain ? static_cast<Index>(odd_.size()) : -1);
       if (!domain) continue;
-      Odd odd{{-1, -1}, {0, 0}};
+      Odd odd{{-1, -1}, {0, 0}, {}};
+      const auto add_term = [&](std::uint32_t node, double weight) {
+        if (domain_index_[node] >= 0) odd.prediction.emplace_back(domain_index_[node], weight);
+      };
       for (std::size_t k = 0; k < 2 && !level.refinement.empty(); ++k) {
         odd.parent[k] = domain_index_[level.refinement[i].parent[k]];
         odd.lift[k] = level.refinement[i].lift[k];
+        add_term(level.refinement[i].parent[k], 0.5);
+      }
+      if (!level.stencils.empty() && level.stencils[i].wing[0] != layout::none) {
+        for (const std::uint32_t node : level.stencils[i].wing) add_term(node, 1.0 / 8);
+        for (const std::uint32_t node : level.stencils[i].outer) add_term(node, -1.0 / 16);
       }
       odd_.push_back(odd);
     }
@@ -94,9 +102,7 @@ DenseWavelet::DenseWavelet(const ModelData& model) {
 template <class Vector>
 void DenseWavelet::step_forward(std::uint32_t q, Vector at) const {
   for (Index m = begin(q); m < end(q); ++m) {
-    for (const Index parent : odd_[m].parent) {
-      if (parent >= 0) at(m) -= 0.5 * at(parent);
-    }
+    for (const auto& [from, weight] : odd_[m].prediction) at(m) -= weight * at(from);
   }
   for (Index m = begin(q); m < end(q); ++m) {
     for (std::size_t k = 0; k < 2; ++k) {
@@ -113,9 +119,7 @@ void DenseWavelet::step_inverse(std::uint32_t q, Vector at) const {
     }
   }
   for (Index m = begin(q); m < end(q); ++m) {
-    for (const Index parent : odd_[m].parent) {
-      if (parent >= 0) at(m) += 0.5 * at(parent);
-    }
+    for (const auto& [from, weight] : odd_[m].prediction) at(m) += weight * at(from);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "formats/writer.hpp"
@@ -16,7 +17,7 @@ namespace greenloop {
 /// node, coarse to fine. For tests only: plain and slow, to compare others with.
 class DenseWavelet {
  public:
-  /// Of the nodes and the refinement of `model`.
+  /// Of the nodes, the refinement and the stencils of `model`.
   explicit DenseWavelet(const ModelData& model);
 
   /// L + 1.
@@ -41,6 +42,7 @@ class DenseWavelet {
   struct Odd {
     std::array<Eigen::Index, 2> parent;  // in the domain; -1 outside
     std::array<double, 2> lift;
+    std::vector<std::pair<Eigen::Index, double>> prediction;  // from the domain: place, weight
   };
   template <class Vector>
   void step_forward(std::uint32_t q, Vector at) const;

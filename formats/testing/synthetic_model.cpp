@@ -213,18 +213,23 @@ std::vector<std::vector<std::uint32_t>> representatives(const Sphere& sphere, st
   return result;
 }
 
-LevelData make_level(const Sphere& sphere, std::uint32_t q, bool lifted) {
+LevelData make_level(const Sphere& sphere, std::uint32_t q, layout::Wavelet wavelet) {
+  constexpr layout::StencilRecord none{{layout::none, layout::none},
+                                       {layout::none, layout::none, layout::none, layout::none}};
   LevelData level;
-  const auto lift = lifting_weights(sphere);
+  const bool butterfly = layout::is_butterfly(wavelet);
+  const auto lift = lifting_weights(sphere, butterfly);
   for (std::uint32_t i = sphere.begin[q]; i < sphere.begin[q + 1]; ++i) {
     const Sphere::Point& x = sphere.positions[i];
     level.nodes.push_back({{static_cast<float>(x[0]), static_cast<float>(x[1]), static_cast<float>(x[2])},
                            static_cast<float>(sphere.areas[i]),
                            sphere.flags[i]});
     if (q == 0) continue;
-    const double weight = lifted ? 1 : 0;
+    const double weight = layout::is_lifted(wavelet) ? 1 : 0;
     level.refinement.push_back({{sphere.parents[i][0], sphere.parents[i][1]},
                                 {static_cast<float>(weight * lift[i][0]), static_cast<float>(weight * lift[i][1])}});
+    if (!butterfly || !sphere.has(i, layout::node_domain)) continue;
+    level.stencils.push_back(uses_stencil(sphere, i) ? sphere.stencils[i] : none);
   }
   return level;
 }
@@ -241,8 +246,7 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   const Sphere sphere = make_sphere(options.levels, options.touchable_above);
   ModelData model;
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
-  model.info.wavelet =
-      static_cast<std::uint32_t>(options.lifted ? layout::Wavelet::lifted_linear : layout::Wavelet::linear);
+  model.info.wavelet = static_cast<std::uint32_t>(options.wavelet);
   model.info.components = 3;
   model.info.young = 1e5;
   model.info.poisson = 0.4;
@@ -257,7 +261,7 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   model.provenance = R"({"generator": "synthetic sphere"})";
   for (const auto& t : sphere.base) model.base_triangles.insert(model.base_triangles.end(), t.begin(), t.end());
   for (std::uint32_t q = 0; q < sphere.levels(); ++q) {
-    model.levels.push_back(make_level(sphere, q, options.lifted));
+    model.levels.push_back(make_level(sphere, q, options.wavelet));
     if (q >= options.coarsest_constraint_level) model.levels.back().representatives = representatives(sphere, q);
   }
   Compression compression(model, options);

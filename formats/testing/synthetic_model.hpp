@@ -11,13 +11,13 @@ namespace greenloop {
 struct SyntheticOptions {
   std::uint32_t levels = 3;                     ///< 1..6 mesh levels: 6, 18, 66, 258, 1026, 4098 nodes
   std::uint32_t coarsest_constraint_level = 0;  ///< < levels
-  bool lifted = true;                           ///< else the plain Linear wavelet
-  double field_threshold = 0.002;               ///< Info::field_threshold
-  double field_peak_threshold = 0.05;           ///< Info::field_peak_threshold
-  std::uint32_t field_halves = 1;               ///< Info::field_halves
-  double epsilon = 0.005;                       ///< scaled blocks of smaller norm over root 3 are dropped; 0 keeps all
-  double quantum = 0.002;                       ///< of the 8-bit layer; that of 4 bits differs
-  double touchable_above = 0;                   ///< nodes with z >= this times the radius may be contacts; at most 1
+  layout::Wavelet wavelet = layout::Wavelet::lifted_linear;
+  double field_threshold = 0.002;      ///< Info::field_threshold
+  double field_peak_threshold = 0.05;  ///< Info::field_peak_threshold
+  std::uint32_t field_halves = 1;      ///< Info::field_halves
+  double epsilon = 0.005;              ///< scaled blocks of smaller norm over root 3 are dropped; 0 keeps all
+  double quantum = 0.002;              ///< of the 8-bit layer; that of 4 bits differs
+  double touchable_above = 0;          ///< nodes with z >= this times the radius may be contacts; at most 1
 };
 
 /// The exact compliance of that body between points x and y (m): 1e-3 m/N exp(-|x - y| / 0.05 m) Q(x) C Q(y)^T with a
@@ -27,8 +27,9 @@ struct SyntheticOptions {
 
 /// A valid model of that body: scaled, thresholded, quantised; the compliance it stands for is positive definite too.
 /// The errors in Level are measured, but patch_force_error and Info::lambda_min stay 0. On the finest of several levels
-/// the free nodes below z = -0.02 m are outside the domain. A node is represented by the nearest touchable node.
-/// Work and memory: quadratic in the nodes. Offline only, for tests and fuzzing.
+/// the free nodes below z = -0.02 m are outside the domain; Butterfly wavelets predict linearly below z = -0.03 m. A
+/// node is represented by the nearest touchable node. Work and memory: quadratic in the nodes. Offline only, for tests
+/// and fuzzing.
 [[nodiscard]] ModelData synthetic_model(const SyntheticOptions& options);
 
 /// Makes room for any field columns: for models whose numbers were changed.

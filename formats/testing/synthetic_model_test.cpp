@@ -52,7 +52,10 @@ TEST_CASE("dense wavelet: back undoes forward, on rows and on columns") {
 }
 
 TEST_CASE("dense wavelet: the lifted details leave the mean of a displacement alone") {
-  const ModelData model = synthetic_model({.levels = 3});
+  layout::Wavelet kind{};
+  SUBCASE("linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("butterfly") { kind = layout::Wavelet::lifted_butterfly; }
+  const ModelData model = synthetic_model({.levels = 3, .wavelet = kind});
   const DenseWavelet wavelet(model);
   // the highest detail: all its neighbours are in the domain
   Index m = 0;
@@ -93,8 +96,8 @@ TEST_CASE("synthetic model: the wavelet form of its compliance, restored, is the
 }
 
 TEST_CASE("synthetic model: with all couplings in 16 bits every scaled value is right to half a quantum") {
-  for (const bool lifted : {true, false}) {
-    const ModelData model = synthetic_model({.levels = 4, .lifted = lifted, .epsilon = 0, .quantum = 1e-9});
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const ModelData model = synthetic_model({.levels = 4, .wavelet = kind, .epsilon = 0, .quantum = 1e-9});
     std::vector<Eigen::Matrix3d> inverse;
     for (const LevelData& level : model.levels) {
       for (const auto& scale : level.scales) inverse.emplace_back(symmetric_matrix(scale.root).inverse());
@@ -120,8 +123,8 @@ TEST_CASE("synthetic model: with all couplings in 16 bits every scaled value is 
 }
 
 TEST_CASE("synthetic model: positive definite on every level, and as wrong as it says") {
-  for (const bool lifted : {true, false}) {
-    const ModelData model = synthetic_model({.levels = 3, .lifted = lifted});
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const ModelData model = synthetic_model({.levels = 3, .wavelet = kind});
     const MatrixXd exact = exact_compliance(model);
     const double exact_least = least_eigenvalue(exact);
     for (std::uint32_t q = 0; q < 3; ++q) {
@@ -145,11 +148,11 @@ TEST_CASE("synthetic model: fields lack small blocks, and their errors say so") 
 }
 
 TEST_CASE("synthetic model: every layer holds couplings, each of another quantum, and uses its bits") {
-  for (const bool lifted : {true, false}) {
-    const ModelData model = synthetic_model({.levels = 3, .lifted = lifted});
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const ModelData model = synthetic_model({.levels = 4, .wavelet = kind});
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       CAPTURE(layer);
-      const CouplingsData& data = model.levels[2].couplings[layer];
+      const CouplingsData& data = model.levels[3].couplings[layer];
       CHECK(data.index.size() > 10);
       const int largest = std::abs(*std::max_element(data.value.begin(), data.value.end(),
                                                      [](int a, int b) { return std::abs(a) < std::abs(b); }));

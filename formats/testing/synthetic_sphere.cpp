@@ -14,6 +14,7 @@ using Triangle = Sphere::Triangle;
 
 constexpr double fixed_below = -0.5;  // in radii, as is the next
 constexpr double unneeded_below = -0.2;
+constexpr double linear_below = -0.3;
 
 std::uint32_t flags_at(double height, bool finest_of_several, double touchable_above) {
   if (height < fixed_below) return layout::node_fixed;
@@ -39,6 +40,29 @@ std::vector<std::uint32_t> add_level(Sphere& sphere, const std::vector<Point>& p
   return index;
 }
 
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+// the third corners of the triangles at every edge
+std::map<Edge, std::vector<std::uint32_t>> opposite_corners(const std::vector<Triangle>& triangles) {
+  std::map<Edge, std::vector<std::uint32_t>> corners;
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) corners[std::minmax(t[k], t[(k + 1) % 3])].push_back(t[(k + 2) % 3]);
+  }
+  return corners;
+}
+
+// of a new node on the edge (a, b) of `triangles`
+layout::StencilRecord stencil_of(std::map<Edge, std::vector<std::uint32_t>>& corners, std::uint32_t a,
+                                 std::uint32_t b) {
+  const auto across = [&](std::uint32_t from, std::uint32_t wing, std::uint32_t other) {
+    const auto& both = corners[std::minmax(from, wing)];
+    return both[both[0] == other ? 1 : 0];
+  };
+  const auto& wing = corners[std::minmax(a, b)];
+  return {{wing[0], wing[1]},
+          {across(a, wing[0], b), across(b, wing[0], a), across(a, wing[1], b), across(b, wing[1], a)}};
+}
+
 void split(Sphere& sphere, bool finest, double touchable_above) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> odd;
   std::vector<Point> points;
@@ -61,7 +85,12 @@ void split(Sphere& sphere, bool finest, double touchable_above) {
   }
   const auto index = add_level(sphere, points, finest, touchable_above);
   sphere.parents.resize(sphere.positions.size());
-  for (std::size_t i = 0; i < ends.size(); ++i) sphere.parents[index[i]] = ends[i];
+  sphere.stencils.resize(sphere.positions.size());
+  auto corners = opposite_corners(sphere.finest);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    sphere.parents[index[i]] = ends[i];
+    sphere.stencils[index[i]] = stencil_of(corners, ends[i][0], ends[i][1]);
+  }
   std::vector<Triangle> children;
   for (std::size_t i = 0; i < middles.size(); ++i) {
     const auto [a, b, c] = sphere.finest[i];
@@ -102,13 +131,20 @@ Sphere make_sphere(std::uint32_t levels, double touchable_above) {
   return sphere;
 }
 
+bool uses_stencil(const Sphere& sphere, std::uint32_t node) {
+  return sphere.positions[node][2] >= linear_below * Sphere::radius;
+}
+
 // The lifting weight of every node towards its parents.
-std::vector<std::array<double, 2>> lifting_weights(const Sphere& sphere) {
+std::vector<std::array<double, 2>> lifting_weights(const Sphere& sphere, bool butterfly) {
   std::vector<double> integral = sphere.areas;
   std::vector<std::array<double, 2>> lift(sphere.count());
   for (std::uint32_t q = sphere.levels() - 1; q > 0; --q) {
     for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
       for (const std::uint32_t parent : sphere.parents[m]) integral[parent] += integral[m] / 2;
+      if (!butterfly || !uses_stencil(sphere, m)) continue;
+      for (const std::uint32_t wing : sphere.stencils[m].wing) integral[wing] += integral[m] / 8;
+      for (const std::uint32_t outer : sphere.stencils[m].outer) integral[outer] -= integral[m] / 16;
     }
     for (std::uint32_t m = sphere.begin[q]; m < sphere.begin[q + 1]; ++m) {
       for (std::size_t k = 0; k < 2; ++k) {

@@ -17,7 +17,8 @@ struct SyntheticSphere {
 
   std::vector<Point> positions;
   std::vector<std::array<std::uint32_t, 2>> parents;
-  std::vector<std::uint32_t> begin = {0};  // of each level, then the number of nodes
+  std::vector<layout::StencilRecord> stencils;  // of every node, the Butterfly scheme's; meaningless on level 0
+  std::vector<std::uint32_t> begin = {0};       // of each level, then the number of nodes
   std::vector<Triangle> base, finest;
   std::vector<std::uint32_t> flags;
   std::vector<double> areas;
@@ -32,8 +33,12 @@ struct SyntheticSphere {
 
 [[nodiscard]] double distance(const SyntheticSphere::Point& x, const SyntheticSphere::Point& y);
 
+/// Whether the Butterfly stencil of a node is used: it is not on the lowest third of the sphere, so that there are
+/// both.
+[[nodiscard]] bool uses_stencil(const SyntheticSphere& sphere, std::uint32_t node);
+
 /// The lifting weight of every node towards its parents: docs/theory.md. Zero towards, and of, nodes outside the
-/// domain.
-[[nodiscard]] std::vector<std::array<double, 2>> lifting_weights(const SyntheticSphere& sphere);
+/// domain. `butterfly`: prediction by stencils where they are used.
+[[nodiscard]] std::vector<std::array<double, 2>> lifting_weights(const SyntheticSphere& sphere, bool butterfly);
 
 }  // namespace greenloop

@@ -112,6 +112,8 @@ void PacketModel::code_section(BitCoder& coder, std::uint32_t q, PacketSection& 
   const auto holds = [&](std::size_t record) { return bytes.size() % record == 0; };
   if (kind == SectionKind::refinement && a == q && holds(sizeof(layout::RefinementRecord))) {
     mesh_.code_refinement(coder, q, bytes);
+  } else if (kind == SectionKind::stencils && holds(sizeof(layout::StencilRecord))) {
+    mesh_.code_words(coder, sizeof(layout::StencilRecord) / sizeof(std::uint32_t), bytes);
   } else if (kind == SectionKind::nodes && a == q && holds(sizeof(layout::NodeRecord))) {
     mesh_.code_nodes(coder, q, bytes);
   } else if (kind == SectionKind::representatives && a <= q && b <= q && holds(sizeof(std::uint32_t))) {

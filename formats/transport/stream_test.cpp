@@ -57,7 +57,9 @@ TEST_CASE("transport: the smallest model and synthetic ones come back, and all t
   for (std::uint32_t levels = 1; levels <= 4; ++levels) check_round_trip(encode(synthetic_model({.levels = levels})));
   check_round_trip(encode(synthetic_model({.levels = 3, .coarsest_constraint_level = 1})));
   check_round_trip(encode(synthetic_model({.levels = 3, .quantum = 1e-6})));
-  check_round_trip(encode(synthetic_model({.levels = 3, .lifted = false, .epsilon = 0, .touchable_above = 0.5})));
+  for (const layout::Wavelet kind : layout::wavelets) {
+    check_round_trip(encode(synthetic_model({.levels = 3, .wavelet = kind, .epsilon = 0, .touchable_above = 0.5})));
+  }
 }
 
 // every number that may be anything is random

@@ -62,10 +62,6 @@ Json provenance_of(const ModelView& view) {
   return parsed.is_discarded() ? Json(text) : parsed;
 }
 
-std::string_view wavelet_name(std::uint32_t wavelet) {
-  return wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
-}
-
 // couplings by the bits of their values
 Json bits_of(const ModelView& view) {
   std::map<std::uint32_t, std::uint64_t> blocks;
@@ -78,11 +74,11 @@ Json bits_of(const ModelView& view) {
   return bits;
 }
 
-// what the build tried, if the model is its work
-Json frontier_of(const ModelView& view) {
+// what the build tried, "frontier" or "wavelets", if the model is its work
+Json tried(const ModelView& view, const char* what) {
   const Json provenance = provenance_of(view);
-  const bool has_it = provenance.is_object() && provenance.contains("frontier");
-  return has_it ? provenance["frontier"] : Json::array();
+  const bool has_it = provenance.is_object() && provenance.contains(what);
+  return has_it ? provenance[what] : Json::array();
 }
 
 Json inspection_of(const ModelFile& model) {
@@ -109,9 +105,10 @@ Json inspection_of(const ModelFile& model) {
       {"lambda_min", info.lambda_min},
       {"certificate", info.lambda_min > 0},
       {"wavelet", wavelet_name(info.wavelet)},
+      {"wavelets", tried(view, "wavelets")},
       {"bits", bits_of(view)},
       {"threshold", info.threshold},
-      {"frontier", frontier_of(view)},
+      {"frontier", tried(view, "frontier")},
       {"store_asymmetry", info.store_asymmetry},
       {"material", {{"young", info.young}, {"poisson", info.poisson}}},
       {"box", {{"min", info.box_min}, {"max", info.box_max}}},

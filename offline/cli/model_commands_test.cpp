@@ -107,7 +107,7 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
 
 TEST_CASE("inspect --json: wavelet, bits, certificate and frontier are the file's own") {
   const Folder folder("inspect_own");
-  ModelData data = synthetic_model({.levels = 3, .lifted = false});
+  ModelData data = synthetic_model({.levels = 3, .wavelet = layout::Wavelet::linear});
   data.info.lambda_min = 2.5e-6;
   data.provenance = R"({"frontier": [{"threshold": 0.5}]})";
   std::uint64_t blocks[17] = {};

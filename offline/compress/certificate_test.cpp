@@ -24,7 +24,8 @@ struct Case {
 };
 
 const ModelData& model() {
-  static const ModelData value = test::model_of(test::make_body(2), true, {.threshold = 0.004, .quantum = 0.002});
+  static const ModelData value =
+      test::model_of(test::make_body(2), layout::Wavelet::lifted_linear, {.threshold = 0.004, .quantum = 0.002});
   return value;
 }
 

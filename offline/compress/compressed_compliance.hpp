@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/view.hpp"
-#include "offline/compress/linear_wavelet.hpp"
+#include "offline/compress/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 
@@ -19,7 +19,7 @@ class CompressedCompliance {
 
   [[nodiscard]] std::size_t finest() const { return wavelet_.finest(); }
   [[nodiscard]] std::size_t rows(std::size_t level) const { return wavelet_.row_end(level); }  ///< domain nodes of K
-  [[nodiscard]] const LinearWavelet& wavelet() const { return wavelet_; }
+  [[nodiscard]] const SurfaceWavelet& wavelet() const { return wavelet_; }
 
   /// x = U^_level f: `columns` displacement fields (m) for as many force patterns (N) on the averages of `level` (on
   /// the nodes, if it is the finest). f, x: rows(level) * columns * 3 numbers, by row, then by column. Zero forces are
@@ -43,7 +43,7 @@ class CompressedCompliance {
   [[nodiscard]] std::vector<Ends> load_couplings(const ModelView& view);
   void link(const std::vector<Ends>& ends);
 
-  LinearWavelet wavelet_;
+  SurfaceWavelet wavelet_;
   std::vector<float> root_, diagonal_;   // [coefficient] 9 numbers
   std::vector<float> block_;             // [coupling] 9 numbers
   std::vector<std::size_t> link_begin_;  // [coefficient + 1]

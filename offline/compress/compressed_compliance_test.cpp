@@ -18,11 +18,15 @@ const test::Body& body() {
 }
 
 // most layers carry something
-const test::File& file(bool lifted) {
+const test::File& file(layout::Wavelet kind) {
   constexpr Encoding encoding{.threshold = 0.004, .quantum = 0.002};
-  static const test::File with(test::model_of(body(), true, encoding));
-  static const test::File without(test::model_of(body(), false, encoding));
-  return lifted ? with : without;
+  static const test::File files[] = {
+      test::File(test::model_of(body(), layout::wavelets[0], encoding)),
+      test::File(test::model_of(body(), layout::wavelets[1], encoding)),
+      test::File(test::model_of(body(), layout::wavelets[2], encoding)),
+      test::File(test::model_of(body(), layout::wavelets[3], encoding)),
+  };
+  return files[static_cast<std::uint32_t>(kind) - 1];
 }
 
 Eigen::MatrixXd all_columns(const CompressedCompliance& compressed, std::size_t level) {
@@ -47,10 +51,10 @@ std::vector<double> noise(std::size_t count, std::uint64_t seed) {
 }
 
 TEST_CASE("every level is the wavelet form evaluated densely") {
-  for (const bool lifted : {true, false}) {
-    CAPTURE(lifted);
-    const auto expected = test::dense_compliances(file(lifted).view);
-    const CompressedCompliance compressed(file(lifted).view);
+  for (const layout::Wavelet kind : layout::wavelets) {
+    CAPTURE(kind);
+    const auto expected = test::dense_compliances(file(kind).view);
+    const CompressedCompliance compressed(file(kind).view);
     REQUIRE(compressed.finest() == 3);
     for (std::size_t level = 0; level < 4; ++level) {
       CAPTURE(level);
@@ -60,15 +64,15 @@ TEST_CASE("every level is the wavelet form evaluated densely") {
       CHECK((found - found.transpose()).cwiseAbs().maxCoeff() < 1e-12 * largest);
     }
     for (std::uint32_t layer = 1; layer < layout::layers; ++layer) {
-      CHECK(block_count(file(lifted).view, layer, layer + 1) > 10);
+      CHECK(block_count(file(kind).view, layer, layer + 1) > 10);
     }
   }
 }
 
 TEST_CASE("all layers come near the exact compliance, on every level") {
-  const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
+  const SurfaceWavelet wavelet(body().mesh, body().flags, body().area, layout::Wavelet::lifted_linear);
   const auto exact = test::level_compliances(wavelet, body().compliance);
-  const CompressedCompliance compressed(file(true).view);
+  const CompressedCompliance compressed(file(layout::Wavelet::lifted_linear).view);
   for (std::size_t level = 0; level < 4; ++level) {
     CAPTURE(level);
     CHECK((all_columns(compressed, level) - exact[level]).norm() < 0.02 * exact[level].norm());
@@ -76,7 +80,7 @@ TEST_CASE("all layers come near the exact compliance, on every level") {
 }
 
 TEST_CASE("several force patterns at once are the same as one after the other") {
-  const CompressedCompliance compressed(file(true).view);
+  const CompressedCompliance compressed(file(layout::Wavelet::lifted_linear).view);
   for (std::size_t level = 0; level < 4; ++level) {
     const std::size_t rows = compressed.rows(level);
     const auto f = noise(9 * rows, 5);
@@ -102,7 +106,7 @@ TEST_CASE("several force patterns at once are the same as one after the other") 
 }
 
 TEST_CASE("a file cut off after a level stands for the same compliance there") {
-  const auto& whole = file(true);
+  const auto& whole = file(layout::Wavelet::lifted_linear);
   const CompressedCompliance compressed(whole.view);
   for (std::uint32_t q = 0; q < 3; ++q) {
     CAPTURE(q);
@@ -118,7 +122,7 @@ TEST_CASE("a file cut off after a level stands for the same compliance there") {
 
 TEST_CASE("a body of one level") {
   const auto small = test::make_body(0);
-  const test::File model(test::model_of(small, true, {.threshold = 1e-5, .quantum = 1e-5}));
+  const test::File model(test::model_of(small, layout::Wavelet::lifted_linear, {.threshold = 1e-5, .quantum = 1e-5}));
   const Eigen::MatrixXd found = all_columns(CompressedCompliance(model.view), 0);
   CHECK((found - small.compliance).norm() < 1e-4 * small.compliance.norm());
 }

@@ -14,7 +14,7 @@ namespace {
 
 struct Case {
   test::Body body = test::make_body(3);
-  test::File file{test::model_of(body, true, {.threshold = 0.004, .quantum = 0.002})};
+  test::File file{test::model_of(body, layout::Wavelet::lifted_linear, {.threshold = 0.004, .quantum = 0.002})};
   CompressedCompliance compressed{file.view};
   std::vector<Eigen::MatrixXd> dense = test::dense_compliances(file.view);  // what the file stands for
 };
@@ -116,7 +116,7 @@ TEST_CASE("no more patches than nodes, no more nodes than there are") {
 }
 
 TEST_CASE("a patch that is not positive definite has an infinite error") {
-  auto model = test::model_of(given().body, true, {.threshold = 0.004, .quantum = 0.002});
+  auto model = test::model_of(given().body, layout::Wavelet::lifted_linear, {.threshold = 0.004, .quantum = 0.002});
   for (float& quantum : model.info.quantum) quantum *= 20;
   const test::File file(model);
   const CompressedCompliance indefinite(file.view);

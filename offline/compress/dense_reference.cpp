@@ -25,16 +25,18 @@ Eigen::Matrix3d symmetric(const float (&six)[6]) {
 struct Factors {
   Sparse predict, lift;
 };
-Factors factors(const LinearWavelet& wavelet, std::size_t level, double sign) {
+Factors factors(const SurfaceWavelet& wavelet, std::size_t level, double sign) {
   const Eigen::Index size = at(wavelet.row_end(level));
   Factors result{Sparse(size, size), Sparse(size, size)};
   result.predict.setIdentity();
   result.lift.setIdentity();
   for (const auto& odd : wavelet.odds(level)) {
+    for (const auto& [row, weight] : odd.prediction()) {
+      for (Eigen::Index k = 0; k < 3; ++k) result.predict.coeffRef(at(odd.row) + k, at(row) + k) -= sign * weight;
+    }
     for (int side = 0; side < 2; ++side) {
-      if (odd.parent[side] == LinearWavelet::no_row) continue;
+      if (odd.parent[side] == SurfaceWavelet::no_row) continue;
       for (Eigen::Index k = 0; k < 3; ++k) {
-        result.predict.coeffRef(at(odd.row) + k, at(odd.parent[side]) + k) = -0.5 * sign;
         result.lift.coeffRef(at(odd.parent[side]) + k, at(odd.row) + k) = sign * static_cast<double>(odd.lift[side]);
       }
     }
@@ -95,17 +97,17 @@ Eigen::MatrixXd stored_form(const ModelView& view) {
 
 }  // namespace
 
-Sparse forward_step(const LinearWavelet& wavelet, std::size_t level) {
+Sparse forward_step(const SurfaceWavelet& wavelet, std::size_t level) {
   const auto [predict, lift] = factors(wavelet, level, 1);
   return lift * predict;
 }
 
-Sparse backward_step(const LinearWavelet& wavelet, std::size_t level) {
+Sparse backward_step(const SurfaceWavelet& wavelet, std::size_t level) {
   const auto [predict, lift] = factors(wavelet, level, -1);
   return predict * lift;
 }
 
-Sparse forward_transform(const LinearWavelet& wavelet, std::size_t level) {
+Sparse forward_transform(const SurfaceWavelet& wavelet, std::size_t level) {
   const Eigen::Index size = at(wavelet.row_end(level));
   Sparse all(size, size);
   all.setIdentity();
@@ -121,7 +123,7 @@ Sparse forward_transform(const LinearWavelet& wavelet, std::size_t level) {
   return all;
 }
 
-std::vector<Eigen::MatrixXd> level_compliances(const LinearWavelet& wavelet, const Eigen::MatrixXd& compliance) {
+std::vector<Eigen::MatrixXd> level_compliances(const SurfaceWavelet& wavelet, const Eigen::MatrixXd& compliance) {
   std::vector<Eigen::MatrixXd> levels(wavelet.finest() + 1);
   levels.back() = compliance;
   for (std::size_t level = wavelet.finest(); level > 0; --level) {
@@ -133,7 +135,7 @@ std::vector<Eigen::MatrixXd> level_compliances(const LinearWavelet& wavelet, con
 }
 
 std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view) {
-  const LinearWavelet wavelet(view);
+  const SurfaceWavelet wavelet(view);
   const Eigen::MatrixXd form = stored_form(view);
   std::vector<Eigen::MatrixXd> result;
   for (std::size_t level = 0; level < view.levels; ++level) {
@@ -156,8 +158,8 @@ ColumnSource columns_of(const Eigen::MatrixXd& compliance) {
   };
 }
 
-ModelData model_of(const Body& body, bool lifted, const Encoding& encoding) {
-  const LinearWavelet wavelet(body.mesh, body.flags, body.area, lifted);
+ModelData model_of(const Body& body, layout::Wavelet kind, const Encoding& encoding) {
+  const SurfaceWavelet wavelet(body.mesh, body.flags, body.area, kind);
   ModelData model = describe_mesh(body.mesh, body.flags, body.area, wavelet, facts());
   add_representatives(body.mesh, body.flags, model);
   encode_couplings(transform_compliance(wavelet, columns_of(body.compliance), 0.25 * encoding.threshold, {}), encoding,

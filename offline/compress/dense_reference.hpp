@@ -11,7 +11,7 @@
 #include "formats/writer.hpp"
 #include "offline/compress/column_source.hpp"
 #include "offline/compress/coupling_coder.hpp"
-#include "offline/compress/linear_wavelet.hpp"
+#include "offline/compress/surface_wavelet.hpp"
 #include "offline/compress/test_body.hpp"
 
 namespace greenloop::offline::test {
@@ -19,16 +19,16 @@ namespace greenloop::offline::test {
 using Sparse = Eigen::SparseMatrix<double>;
 
 /// T_l as a matrix, 3 numbers per row of K(level), from the wavelet's odd nodes by the definition.
-[[nodiscard]] Sparse forward_step(const LinearWavelet& wavelet, std::size_t level);
+[[nodiscard]] Sparse forward_step(const SurfaceWavelet& wavelet, std::size_t level);
 
 /// T_l^-1.
-[[nodiscard]] Sparse backward_step(const LinearWavelet& wavelet, std::size_t level);
+[[nodiscard]] Sparse backward_step(const SurfaceWavelet& wavelet, std::size_t level);
 
 /// W on the rows of K(level), 3 numbers per row: T_1 .. T_level.
-[[nodiscard]] Sparse forward_transform(const LinearWavelet& wavelet, std::size_t level);
+[[nodiscard]] Sparse forward_transform(const SurfaceWavelet& wavelet, std::size_t level);
 
 /// [level] the exact compliance between the averages of that level, m/N.
-[[nodiscard]] std::vector<Eigen::MatrixXd> level_compliances(const LinearWavelet& wavelet,
+[[nodiscard]] std::vector<Eigen::MatrixXd> level_compliances(const SurfaceWavelet& wavelet,
                                                              const Eigen::MatrixXd& compliance);
 
 /// [level] what a model file stands for when cut off after that level, by dense products.
@@ -38,7 +38,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 [[nodiscard]] ColumnSource columns_of(const Eigen::MatrixXd& compliance);
 
 /// A body's model before encoding, its couplings coded from candidates down to a quarter of what `encoding` keeps.
-[[nodiscard]] ModelData model_of(const Body& body, bool lifted, const Encoding& encoding);
+[[nodiscard]] ModelData model_of(const Body& body, layout::Wavelet kind, const Encoding& encoding);
 
 /// A verified model file.
 struct File {

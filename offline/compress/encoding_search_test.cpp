@@ -16,9 +16,9 @@ constexpr Accuracy asked{.rms = 0.02, .worst_column = 0.1, .patch_force = 0.2};
 
 struct Bench {
   test::Body body = test::make_body(2);
-  LinearWavelet wavelet{body.mesh, body.flags, body.area, true};
+  SurfaceWavelet wavelet{body.mesh, body.flags, body.area, layout::Wavelet::lifted_linear};
   WaveletCompliance compliance = transform_compliance(wavelet, test::columns_of(body.compliance), candidate_floor, {});
-  ModelData tables = test::model_of(body, true, {.threshold = 0.1, .quantum = 0.05});
+  ModelData tables = test::model_of(body, layout::Wavelet::lifted_linear, {.threshold = 0.1, .quantum = 0.05});
   ExactSample sample{body.mesh, wavelet, body.area};
   Bench() { sample.add(body.compliance, 0); }
   [[nodiscard]] TrialBench get() const { return {compliance, tables, sample.columns(), asked, {}}; }
@@ -34,7 +34,7 @@ TEST_CASE("a trial says what its file is") {
   auto with_work = bench().get();
   with_work.step_work = [](std::span<const std::byte> bytes) { return std::uint64_t{bytes.size() + 7}; };
   const auto trial = try_encoding(with_work, bench().sample.patches(), encoding);
-  const test::File file(test::model_of(bench().body, true, encoding));
+  const test::File file(test::model_of(bench().body, layout::Wavelet::lifted_linear, encoding));
   CHECK(std::abs(static_cast<double>(trial.bytes) / static_cast<double>(file.bytes.size()) - 1) < 0.02);
   CHECK(trial.step_work == trial.bytes + 7);
   const CompressedCompliance compressed(file.view);
@@ -74,7 +74,8 @@ TEST_CASE("the worst patches are those with the largest errors") {
   const auto& patches = bench().sample.patches();
   const auto worst = worst_patches(bench().get(), patches, 5, 0.005);
   REQUIRE(worst.size() == 5);
-  const test::File file(test::model_of(bench().body, true, {.threshold = 0.005, .quantum = 0.0025}));
+  const test::File file(
+      test::model_of(bench().body, layout::Wavelet::lifted_linear, {.threshold = 0.005, .quantum = 0.0025}));
   const CompressedCompliance compressed(file.view);
   std::vector<double> errors;
   errors.reserve(patches.size());

@@ -4,7 +4,7 @@
 
 namespace greenloop::offline {
 
-std::vector<Eigen::Vector3d> row_positions(const SemiRegularMesh& mesh, const LinearWavelet& wavelet,
+std::vector<Eigen::Vector3d> row_positions(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,
                                            std::size_t level) {
   std::vector<Eigen::Vector3d> result;
   result.reserve(wavelet.row_end(level));
@@ -22,7 +22,7 @@ std::vector<double> blocks_of(const Eigen::MatrixXd& columns, std::size_t j) {
   return blocks;
 }
 
-ExactSample::ExactSample(const SemiRegularMesh& mesh, const LinearWavelet& wavelet, const std::vector<double>& area)
+ExactSample::ExactSample(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet, const std::vector<double>& area)
     : patches_(row_positions(mesh, wavelet, wavelet.finest()), most_patches) {
   const std::size_t count = std::min(most_columns, wavelet.rows());
   for (std::size_t i = 0; i < count; ++i) {

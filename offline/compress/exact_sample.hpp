@@ -7,12 +7,12 @@
 #include "formats/exchange/semi_regular_mesh.hpp"
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/encoding_search.hpp"
-#include "offline/compress/linear_wavelet.hpp"
+#include "offline/compress/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 
 /// Positions of the domain rows of K(level) [m].
-[[nodiscard]] std::vector<Eigen::Vector3d> row_positions(const SemiRegularMesh& mesh, const LinearWavelet& wavelet,
+[[nodiscard]] std::vector<Eigen::Vector3d> row_positions(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,
                                                          std::size_t level);
 
 /// Column j of `columns` as rows blocks of 9, 3 c + r.
@@ -25,7 +25,7 @@ class ExactSample {
   static constexpr std::size_t most_columns = 64;  ///< evenly spaced
 
   /// `area` [m^2] per node of the mesh.
-  ExactSample(const SemiRegularMesh& mesh, const LinearWavelet& wavelet, const std::vector<double>& area);
+  ExactSample(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet, const std::vector<double>& area);
 
   /// Exact columns from `first` on, m/N.
   void add(const Eigen::MatrixXd& block, std::size_t first);

@@ -46,7 +46,7 @@ class FieldSample {
     std::vector<double> coefficients;  // 9 per row
     double spread_norm = 0, own = 0;
   };
-  const LinearWavelet& wavelet_;
+  const SurfaceWavelet& wavelet_;
   const std::vector<SampleColumn>& exact_;
   std::vector<double> level_weight_;  // by row: 2^-level
   std::vector<Column> columns_;

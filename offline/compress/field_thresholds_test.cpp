@@ -12,7 +12,7 @@ namespace {
 
 struct Case {
   test::Body body = test::make_body(3);
-  ModelData model = test::model_of(body, true, {.threshold = 0.004, .quantum = 0.002});
+  ModelData model = test::model_of(body, layout::Wavelet::lifted_linear, {.threshold = 0.004, .quantum = 0.002});
   test::File file{model};
   CompressedCompliance compliance{file.view};
   ExactSample sample{body.mesh, compliance.wavelet(), body.area};

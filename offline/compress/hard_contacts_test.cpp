@@ -311,7 +311,7 @@ TEST_CASE("random contacts on mixed levels: the capacitance matrix is positive d
   Random random(4);
   double least = 1e30;
   for (const auto& one : cases()) {
-    const LinearWavelet wavelet(one.model.view());
+    const SurfaceWavelet wavelet(one.model.view());
     // [level] the averages of that level, of displacements of the domain
     std::vector<MatrixXd> averages(wavelet.finest() + 1);
     averages.back() = MatrixXd::Identity(one.compliance.back().rows(), one.compliance.back().rows());

@@ -17,7 +17,7 @@ MeasuredModel measure_model(const Body& body) {
                               body.column_nodes,
                               columns_of(body.compliance),
                               default_accuracy,
-                              true,
+                              layout::Wavelet::lifted_linear,
                               facts(),
                               "{}",
                               {}},

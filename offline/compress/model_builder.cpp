@@ -28,7 +28,7 @@ constexpr int rounds = 6;                  // of search and measurement per tran
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
 
-void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
+void require_fit(const CompressionInput& input, const SurfaceWavelet& wavelet) {
   if (input.mesh.vertex_end.size() > layout::max_levels) {
     throw std::invalid_argument("compression: the mesh has " + std::to_string(input.mesh.vertex_end.size()) +
                                 " levels; a model holds at most " + std::to_string(layout::max_levels));
@@ -47,7 +47,7 @@ void require_fit(const CompressionInput& input, const LinearWavelet& wavelet) {
 }
 
 // errors of one level, cut off after it, against its exact compliance
-ConstraintLevelReport measure_coarse(const CompressionInput& input, const LinearWavelet& wavelet,
+ConstraintLevelReport measure_coarse(const CompressionInput& input, const SurfaceWavelet& wavelet,
                                      const WaveletCompliance& exact, const ModelView& cut, std::size_t level) {
   const CompressedCompliance compressed(cut);
   const ModelField fields(cut);
@@ -138,7 +138,7 @@ class Build {
   Build(const CompressionInput& input, const Progress& progress)
       : input_(input),
         progress_(progress),
-        wavelet_(input.mesh, input.flags, input.area, input.lifted),
+        wavelet_(input.mesh, input.flags, input.area, input.wavelet),
         sample_(checked(input, wavelet_).mesh, wavelet_, input.area) {
     model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
     model_.provenance = input.provenance;
@@ -159,7 +159,7 @@ class Build {
   }
 
  private:
-  static const CompressionInput& checked(const CompressionInput& input, const LinearWavelet& wavelet) {
+  static const CompressionInput& checked(const CompressionInput& input, const SurfaceWavelet& wavelet) {
     require_fit(input, wavelet);
     return input;
   }
@@ -302,7 +302,7 @@ class Build {
 
   const CompressionInput& input_;
   const Progress& progress_;
-  LinearWavelet wavelet_;
+  SurfaceWavelet wavelet_;
   ExactSample sample_;
   ModelData model_;
   CompressionReport report_;

@@ -20,7 +20,7 @@ struct CompressionInput {
   const std::vector<std::size_t>& column_nodes;  ///< nodes with an exact column: the domain nodes, increasing
   ColumnSource columns;                          ///< their columns; rows are the domain nodes in node order
   Accuracy accuracy;
-  bool lifted = true;      ///< lifted or unlifted Linear wavelets
+  layout::Wavelet wavelet = layout::Wavelet::lifted_linear;
   layout::Info facts{};    ///< from scene and solver: young, poisson, store_asymmetry, rate, max_contacts, step_work,
                            ///< coarsest_constraint_level; the rest is filled in
   std::string provenance;  ///< JSON text
@@ -37,6 +37,13 @@ struct ConstraintLevelReport {
   std::uint32_t longest_field_column = 0;              ///< blocks
 };
 
+/// What a wavelet made of a body or a sample of it.
+struct WaveletTrial {
+  layout::Wavelet wavelet = layout::Wavelet::lifted_linear;
+  std::size_t nodes = 0;  ///< it was measured on
+  Trial trial;            ///< the model; of 0 bytes if none meets the accuracy
+};
+
 struct CompressionReport {
   Encoding encoding;
   FieldThresholds field;
@@ -44,6 +51,7 @@ struct CompressionReport {
   std::size_t patches = 0;                    ///< patches that patch_force_error was measured on
   std::vector<ConstraintLevelReport> levels;  ///< coarse to fine
   std::vector<Trial> trials;                  ///< every encoding that was tried, coarse first
+  std::vector<WaveletTrial> wavelets;         ///< compared to choose one; empty if it was given
   std::size_t dense_bytes = 0;                ///< float32, 36 bytes per pair of domain nodes
 };
 

@@ -22,8 +22,16 @@ namespace {
 constexpr Accuracy accuracy{.rms = 0.01, .worst_column = 0.03, .patch_force = 0.05};
 
 CompressionInput input_of(const test::Body& body, const Accuracy& wanted) {
-  return {body.mesh,     body.flags, body.area, body.column_nodes, test::columns_of(body.compliance), wanted, true,
-          test::facts(), "{}",       {}};
+  return {body.mesh,
+          body.flags,
+          body.area,
+          body.column_nodes,
+          test::columns_of(body.compliance),
+          wanted,
+          layout::Wavelet::lifted_linear,
+          test::facts(),
+          "{}",
+          {}};
 }
 
 const test::Body& body() {
@@ -70,7 +78,7 @@ Errors dense_errors(const Eigen::MatrixXd& found, const Eigen::MatrixXd& exact, 
 }
 
 TEST_CASE("the model meets the accuracies, measured on a dense evaluation of its bytes") {
-  const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
+  const SurfaceWavelet wavelet(body().mesh, body().flags, body().area, layout::Wavelet::lifted_linear);
   const auto exact = test::level_compliances(wavelet, body().compliance);
   const auto found = test::dense_compliances(file().view);
   REQUIRE(built().report.levels.size() == 4);
@@ -90,7 +98,7 @@ TEST_CASE("the model meets the accuracies, measured on a dense evaluation of its
 }
 
 TEST_CASE("fields of every level meet the accuracy, measured on a body's columns, and the file says their number") {
-  const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
+  const SurfaceWavelet wavelet(body().mesh, body().flags, body().area, layout::Wavelet::lifted_linear);
   const auto exact = test::level_compliances(wavelet, body().compliance);
   for (const auto& level : built().report.levels) {
     CAPTURE(level.level);
@@ -98,7 +106,7 @@ TEST_CASE("fields of every level meet the accuracy, measured on a body's columns
     ModelView view;
     REQUIRE(verify(bytes.span(), view).ok());
     const ModelField fields(view);
-    const LinearWavelet cut(view);
+    const SurfaceWavelet cut(view);
     Eigen::MatrixXd found = exact[level.level];
     for (std::size_t j = 0; j < level.nodes; ++j) {
       REQUIRE(fields.has_column(level.level, j));
@@ -122,7 +130,7 @@ TEST_CASE("fields of every level meet the accuracy, measured on a body's columns
 }
 
 TEST_CASE("forces of all patches meet their accuracy, and it is used up") {
-  const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
+  const SurfaceWavelet wavelet(body().mesh, body().flags, body().area, layout::Wavelet::lifted_linear);
   ContactPatches patches(row_positions(body().mesh, wavelet, 3), ExactSample::most_patches);
   patches.add(body().compliance, 0);
   const double error = patches.worst_force_error(CompressedCompliance(file().view), 3);
@@ -142,7 +150,7 @@ TEST_CASE("the certified bound lies below the least eigenvalue") {
 }
 
 TEST_CASE("cut off after any level it is a valid model, as accurate as reported") {
-  const LinearWavelet wavelet(body().mesh, body().flags, body().area, true);
+  const SurfaceWavelet wavelet(body().mesh, body().flags, body().area, layout::Wavelet::lifted_linear);
   const auto exact = test::level_compliances(wavelet, body().compliance);
   for (std::uint32_t q = 0; q < 3; ++q) {
     CAPTURE(q);
@@ -267,7 +275,8 @@ TEST_CASE("input that does not fit together is refused") {
       return block;
     };
   }
-  const CompressionInput input{b.mesh, flags, b.area, columns, source, wanted, true, info, "", {}};
+  const CompressionInput input{b.mesh, flags, b.area, columns, source, wanted, layout::Wavelet::lifted_linear,
+                               info,   "",    {}};
   CHECK_THROWS_AS((void)build_model(input, {}), std::invalid_argument);
 }
 

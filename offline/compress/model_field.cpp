@@ -31,7 +31,7 @@ ModelField::ModelField(const ModelView& view) : view_(view) {
   columns_ = tables.maker.columns();
 }
 
-std::vector<double> ModelField::column(const LinearWavelet& wavelet, std::size_t level, std::size_t j) const {
+std::vector<double> ModelField::column(const SurfaceWavelet& wavelet, std::size_t level, std::size_t j) const {
   std::vector<double> x(9 * wavelet.rows(), 0.0);
   const std::uint32_t* begin = columns_.begin[level] + j * columns_.levels;
   for (std::uint32_t b = begin[0]; b < begin[columns_.levels]; ++b) {

@@ -5,7 +5,7 @@
 
 #include "formats/aligned_bytes.hpp"
 #include "formats/view.hpp"
-#include "offline/compress/linear_wavelet.hpp"
+#include "offline/compress/surface_wavelet.hpp"
 #include "runtime/field_columns.hpp"
 
 namespace greenloop::offline {
@@ -26,7 +26,7 @@ class ModelField {
   }
 
   /// Displacements by a unit force on its node: domain rows blocks of 9, 3 c + r, m/N. `wavelet`: the model's.
-  [[nodiscard]] std::vector<double> column(const LinearWavelet& wavelet, std::size_t level, std::size_t j) const;
+  [[nodiscard]] std::vector<double> column(const SurfaceWavelet& wavelet, std::size_t level, std::size_t j) const;
 
  private:
   struct Tables {

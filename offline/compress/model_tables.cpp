@@ -22,7 +22,7 @@ std::vector<layout::NodeRecord> node_records(const SemiRegularMesh& mesh, const 
   return records;
 }
 
-std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& mesh, const LinearWavelet& wavelet,
+std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,
                                                          std::size_t level) {
   std::vector<layout::RefinementRecord> records;
   for (std::size_t node = mesh.vertex_end[level - 1]; node < mesh.vertex_end[level]; ++node) {
@@ -38,12 +38,11 @@ std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& 
 }  // namespace
 
 ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
-                        const std::vector<double>& area, const LinearWavelet& wavelet, const layout::Info& facts) {
+                        const std::vector<double>& area, const SurfaceWavelet& wavelet, const layout::Info& facts) {
   ModelData model;
   model.info = facts;
   model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
-  model.info.wavelet =
-      static_cast<std::uint32_t>(wavelet.lifted() ? layout::Wavelet::lifted_linear : layout::Wavelet::linear);
+  model.info.wavelet = static_cast<std::uint32_t>(wavelet.kind());
   model.info.components = 3;
   for (const auto& triangle : mesh.base_triangles) {
     for (const int corner : triangle) model.base_triangles.push_back(static_cast<std::uint32_t>(corner));
@@ -51,7 +50,11 @@ ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint
   for (std::size_t q = 0; q <= wavelet.finest(); ++q) {
     LevelData level;
     level.nodes = node_records(mesh, flags, area, q == 0 ? 0 : mesh.vertex_end[q - 1], mesh.vertex_end[q]);
-    if (q > 0) level.refinement = refinement_records(mesh, wavelet, q);
+    if (q > 0) {
+      level.refinement = refinement_records(mesh, wavelet, q);
+      const auto stencils = wavelet.stencils(q);
+      level.stencils.assign(stencils.begin(), stencils.end());
+    }
     model.levels.push_back(std::move(level));
   }
   return model;

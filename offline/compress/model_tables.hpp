@@ -6,7 +6,7 @@
 #include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
 #include "formats/writer.hpp"
-#include "offline/compress/linear_wavelet.hpp"
+#include "offline/compress/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 
@@ -14,7 +14,7 @@ namespace greenloop::offline {
 /// refinement. encode fills in the counts. `flags` and `area` per node; a fixed node is not touchable in the model.
 /// Work: linear in the nodes. Offline only.
 [[nodiscard]] ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
-                                      const std::vector<double>& area, const LinearWavelet& wavelet,
+                                      const std::vector<double>& area, const SurfaceWavelet& wavelet,
                                       const layout::Info& facts);
 
 /// Adds the representatives of every constraint level from model.info.coarsest_constraint_level on, and moves that up

@@ -54,18 +54,17 @@ Eigen::Matrix3d block_of(const double* x, std::size_t row) {
 
 Eigen::Matrix3d symmetric(const Eigen::Matrix3d& block) { return 0.5 * (block + block.transpose()); }
 
-// x -= half of the columns of the parents
+// x -= the prediction from the columns of even rows
 template <class Column>
-void predict(const LinearWavelet::Odd& odd, std::size_t count, Column column, double* x) {
-  for (const std::uint32_t parent : odd.parent) {
-    if (parent == LinearWavelet::no_row) continue;
-    const float* from = column(parent);
-    for (std::size_t k = 0; k < count; ++k) x[k] -= 0.5 * static_cast<double>(from[k]);
+void predict(const SurfaceWavelet::Odd& odd, std::size_t count, Column column, double* x) {
+  for (const auto& [row, weight] : odd.prediction()) {
+    const float* from = column(row);
+    for (std::size_t k = 0; k < count; ++k) x[k] -= weight * static_cast<double>(from[k]);
   }
 }
 
 // the columns of the parents += their shares of the detail's
-void lift(const LinearWavelet::Odd& odd, const double* detail, BlockMatrix& columns) {
+void lift(const SurfaceWavelet::Odd& odd, const double* detail, BlockMatrix& columns) {
   for (int side = 0; side < 2; ++side) {
     if (odd.lift[side] == 0) continue;
     float* to = columns.column(odd.parent[side]);
@@ -75,7 +74,7 @@ void lift(const LinearWavelet::Odd& odd, const double* detail, BlockMatrix& colu
 }
 
 // V W^T in place, of levels `finest` and coarser
-void transform_columns(const LinearWavelet& wavelet, std::size_t finest, BlockMatrix& matrix) {
+void transform_columns(const SurfaceWavelet& wavelet, std::size_t finest, BlockMatrix& matrix) {
   Values detail(width * matrix.rows());
   for (std::size_t level = finest; level > 0; --level) {
     // predict all before any is lifted
@@ -83,7 +82,7 @@ void transform_columns(const LinearWavelet& wavelet, std::size_t finest, BlockMa
       float* own = matrix.column(odd.row);
       std::copy_n(own, detail.size(), detail.begin());
       predict(
-          odd, detail.size(), [&](std::uint32_t parent) { return matrix.column(parent); }, detail.data());
+          odd, detail.size(), [&](std::uint32_t row) { return matrix.column(row); }, detail.data());
       std::transform(detail.begin(), detail.end(), own, [](double x) { return static_cast<float>(x); });
     }
     for (const auto& odd : wavelet.odds(level)) {
@@ -103,7 +102,7 @@ double rough_inverse_root(const Eigen::Matrix3d& block) {
 
 class Transform {
  public:
-  Transform(const LinearWavelet& wavelet, double floor)
+  Transform(const SurfaceWavelet& wavelet, double floor)
       : wavelet_(&wavelet), floor_(floor), rows_(wavelet.rows()), diagonal_(rows_), inverse_root_(rows_) {
     result_.couplings.resize(wavelet.finest() + 1);
   }
@@ -147,9 +146,9 @@ class Transform {
     copy_evens(evens);  // what details are lifted into
   }
 
-  void add_finest_detail(const LinearWavelet::Odd& odd, Values& x) {
+  void add_finest_detail(const SurfaceWavelet::Odd& odd, Values& x) {
     predict(
-        odd, x.size(), [&](std::uint32_t parent) { return even_columns_[parent].data(); }, x.data());
+        odd, x.size(), [&](std::uint32_t row) { return even_columns_[row].data(); }, x.data());
     lift(odd, x.data(), result_.coarse);
     add_column(wavelet_->finest(), odd.row, [&](std::size_t i) { return block_of(x.data(), i); });
   }
@@ -199,7 +198,7 @@ class Transform {
     }
   }
 
-  const LinearWavelet* wavelet_;
+  const SurfaceWavelet* wavelet_;
   double floor_;
   std::size_t rows_;
   std::vector<std::vector<float>> even_columns_;  // transformed by rows, not by columns
@@ -210,12 +209,12 @@ class Transform {
 
 }  // namespace
 
-WaveletCompliance transform_compliance(const LinearWavelet& wavelet, const ColumnSource& columns, double floor,
+WaveletCompliance transform_compliance(const SurfaceWavelet& wavelet, const ColumnSource& columns, double floor,
                                        const Progress& progress) {
   return Transform(wavelet, floor).run(columns, progress);
 }
 
-std::vector<double> exact_column(const LinearWavelet& wavelet, const WaveletCompliance& compliance, std::size_t level,
+std::vector<double> exact_column(const SurfaceWavelet& wavelet, const WaveletCompliance& compliance, std::size_t level,
                                  std::size_t j) {
   const std::size_t size = width * wavelet.row_end(level);
   Values f(size, 0.0), x(size, 0.0);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "offline/compress/column_source.hpp"
-#include "offline/compress/linear_wavelet.hpp"
 #include "offline/compress/scale.hpp"
+#include "offline/compress/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 
@@ -47,12 +47,12 @@ struct WaveletCompliance {
 /// relative to the coefficients' own diagonal blocks. Memory: the columns of K(L-1) in single precision, a quarter of
 /// the dense matrix, and `coarse`, a sixteenth, besides the result. Throws std::invalid_argument if columns are not
 /// finite or the compliance is not positive definite. Offline only.
-[[nodiscard]] WaveletCompliance transform_compliance(const LinearWavelet& wavelet, const ColumnSource& columns,
+[[nodiscard]] WaveletCompliance transform_compliance(const SurfaceWavelet& wavelet, const ColumnSource& columns,
                                                      double floor, const Progress& progress);
 
 /// Block column j of the exact compliance between the averages of `level` < L (or of level 0 if L = 0): row_end(level)
 /// blocks of 9 numbers, 3 c + r, m/N. Work: a column of `coarse` for each coefficient that node j reaches.
-[[nodiscard]] std::vector<double> exact_column(const LinearWavelet& wavelet, const WaveletCompliance& compliance,
+[[nodiscard]] std::vector<double> exact_column(const SurfaceWavelet& wavelet, const WaveletCompliance& compliance,
                                                std::size_t level, std::size_t j);
 
 }  // namespace greenloop::offline

@@ -18,10 +18,10 @@ const test::Body& body() {
   return value;
 }
 
-LinearWavelet wavelet_of(const test::Body& b, bool lifted) { return {b.mesh, b.flags, b.area, lifted}; }
+SurfaceWavelet wavelet_of(const test::Body& b, layout::Wavelet kind) { return {b.mesh, b.flags, b.area, kind}; }
 
-WaveletCompliance transformed(bool lifted, double floor) {
-  return transform_compliance(wavelet_of(body(), lifted), test::columns_of(body().compliance), floor, {});
+WaveletCompliance transformed(layout::Wavelet kind, double floor) {
+  return transform_compliance(wavelet_of(body(), kind), test::columns_of(body().compliance), floor, {});
 }
 
 Eigen::Matrix3d block(const Eigen::MatrixXd& matrix, std::size_t i, std::size_t j) {
@@ -59,12 +59,12 @@ Eigen::MatrixXd unscaled(const WaveletCompliance& compliance) {
 }
 
 TEST_CASE("with nothing left out it is W U W^T") {
-  for (const bool lifted : {true, false}) {
-    CAPTURE(lifted);
-    const auto wavelet = wavelet_of(body(), lifted);
+  for (const layout::Wavelet kind : layout::wavelets) {
+    CAPTURE(kind);
+    const auto wavelet = wavelet_of(body(), kind);
     const auto step = test::forward_transform(wavelet, 3);
     const Eigen::MatrixXd exact = step * body().compliance * step.transpose();
-    const auto found = transformed(lifted, 0.0);
+    const auto found = transformed(kind, 0.0);
     REQUIRE(found.couplings.size() == 4);
     REQUIRE(found.scales.size() == wavelet.rows());
     const double tolerance = 2e-6 * body().compliance.cwiseAbs().maxCoeff();  // columns are held in single precision
@@ -81,10 +81,10 @@ TEST_CASE("with nothing left out it is W U W^T") {
 }
 
 TEST_CASE("exact columns of coarse levels") {
-  for (const bool lifted : {true, false}) {
-    const auto wavelet = wavelet_of(body(), lifted);
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const auto wavelet = wavelet_of(body(), kind);
     const auto exact = test::level_compliances(wavelet, body().compliance);
-    const auto found = transformed(lifted, 0.1);
+    const auto found = transformed(kind, 0.1);
     for (std::size_t level = 0; level < 3; ++level) {
       CAPTURE(level);
       double worst = 0;
@@ -102,9 +102,9 @@ TEST_CASE("exact columns of coarse levels") {
 }
 
 TEST_CASE("scales lie between the diagonal block and what is left when all others are held") {
-  const auto step = test::forward_transform(wavelet_of(body(), true), 3);
+  const auto step = test::forward_transform(wavelet_of(body(), layout::Wavelet::lifted_linear), 3);
   const Eigen::MatrixXd exact = step * body().compliance * step.transpose(), inverse = exact.inverse();
-  const auto found = transformed(true, 1e-4);
+  const auto found = transformed(layout::Wavelet::lifted_linear, 1e-4);
   double closest = 1;
   for (std::size_t i = 0; i < found.scales.size(); ++i) {
     const double conditional = (found.scales[i].root() * found.scales[i].root()).trace();
@@ -117,7 +117,8 @@ TEST_CASE("scales lie between the diagonal block and what is left when all other
 }
 
 TEST_CASE("a floor leaves out couplings, and only small ones") {
-  const auto all = transformed(true, 0.0), some = transformed(true, 0.02);
+  const auto all = transformed(layout::Wavelet::lifted_linear, 0.0),
+             some = transformed(layout::Wavelet::lifted_linear, 0.02);
   for (std::size_t level = 0; level < 4; ++level) {
     CAPTURE(level);
     const auto &a = all.couplings[level], &s = some.couplings[level];
@@ -140,7 +141,7 @@ TEST_CASE("a floor leaves out couplings, and only small ones") {
 }
 
 TEST_CASE("the exact columns are read once and in order") {
-  const auto wavelet = wavelet_of(body(), true);
+  const auto wavelet = wavelet_of(body(), layout::Wavelet::lifted_linear);
   std::size_t next = 0;
   const auto columns = test::columns_of(body().compliance);
   double last = 0;
@@ -162,7 +163,7 @@ TEST_CASE("the exact columns are read once and in order") {
 
 TEST_CASE("a mesh of one level has averages only") {
   const auto b = test::make_body(0);
-  const auto wavelet = wavelet_of(b, true);
+  const auto wavelet = wavelet_of(b, layout::Wavelet::lifted_linear);
   const auto found = transform_compliance(wavelet, test::columns_of(b.compliance), 0.0, {});
   REQUIRE(found.couplings.size() == 1);
   CHECK((unscaled(found) - b.compliance).cwiseAbs().maxCoeff() < 1e-6 * b.compliance.cwiseAbs().maxCoeff());
@@ -174,7 +175,7 @@ TEST_CASE("a mesh of one level has averages only") {
 TEST_CASE("columns that are not those of an elastic body are refused") {
   auto b = test::make_body(2);
   const auto build = [&](const ColumnSource& columns) {
-    return transform_compliance(wavelet_of(b, true), columns, 0.01, {});
+    return transform_compliance(wavelet_of(b, layout::Wavelet::lifted_linear), columns, 0.01, {});
   };
   SUBCASE("not a number") {
     b.compliance(5, 200) = std::numeric_limits<double>::quiet_NaN();

@@ -13,11 +13,13 @@
 #include <string>
 #include <utility>
 
+#include "formats/describe.hpp"
 #include "formats/exchange/green_store.hpp"
 #include "formats/layout.hpp"
 #include "formats/model_file.hpp"
 #include "formats/writer.hpp"
 #include "offline/compress/model_builder.hpp"
+#include "offline/compress/wavelet_choice.hpp"
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
@@ -44,7 +46,7 @@ std::string read_text(const std::filesystem::path& path) {
 std::string column_fingerprint(Scene scene, const std::string& mesh) {
   scene.coarsest_constraints = 0;
   scene.accuracy = {};
-  scene.wavelet = {};
+  scene.wavelet = layout::Wavelet::lifted_linear;
   scene.budget = {};
   scene.store.reset();
   scene.store_name.clear();
@@ -154,6 +156,18 @@ json frontier(const CompressionReport& report) {
   return points;
 }
 
+/// What each wavelet would have cost, if they were compared.
+json wavelet_comparison(const CompressionReport& report) {
+  json wavelets = json::array();
+  for (const auto& [wavelet, nodes, trial] : report.wavelets) {
+    json record = {
+        {"wavelet", wavelet_name(static_cast<std::uint32_t>(wavelet))}, {"nodes", nodes}, {"meets", trial.bytes > 0}};
+    if (trial.bytes > 0) record.update(trial_record(trial));
+    wavelets.push_back(record);
+  }
+  return wavelets;
+}
+
 json compression_record(const CompressionReport& report) {
   json levels = json::array();
   for (const auto& level : report.levels) {
@@ -169,15 +183,11 @@ json compression_record(const CompressionReport& report) {
                       {"field_blocks", level.field_blocks},
                       {"longest_field_column", level.longest_field_column}});
   }
-  return {{"threshold", report.encoding.threshold},
-          {"quantum", report.encoding.quantum},
-          {"field_threshold", report.field.spread},
-          {"field_peak_threshold", report.field.peak},
-          {"lambda_min", report.lambda_min},
-          {"patches", report.patches},
-          {"dense_bytes", report.dense_bytes},
-          {"frontier", frontier(report)},
-          {"constraint_levels", levels}};
+  return {{"threshold", report.encoding.threshold}, {"quantum", report.encoding.quantum},
+          {"field_threshold", report.field.spread}, {"field_peak_threshold", report.field.peak},
+          {"lambda_min", report.lambda_min},        {"patches", report.patches},
+          {"dense_bytes", report.dense_bytes},      {"frontier", frontier(report)},
+          {"wavelets", wavelet_comparison(report)}, {"constraint_levels", levels}};
 }
 
 /// Work units of a step at the finest level: all contacts of the scene, with a fresh factor and the whole field.
@@ -219,16 +229,18 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, const json& sol
                                .accuracy = {.rms = scene.accuracy.rms,
                                             .worst_column = scene.accuracy.worst_column,
                                             .patch_force = scene.accuracy.patch_force},
-                               .lifted = scene.wavelet == WaveletChoice::lifted_linear,
+                               .wavelet = scene.wavelet.value_or(layout::Wavelet::lifted_linear),
                                .facts = scene_facts(scene, solve),
                                .provenance = provenance,
                                .step_work =
                                    [&](std::span<const std::byte> bytes) {
                                      return finest_step_work(bytes, static_cast<std::uint32_t>(scene.budget.contacts));
                                    }};
-  auto built = build_model(input, [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
+  const Progress update = [&](double fraction, std::string_view stage) { progress.update(fraction, stage); };
+  auto built = scene.wavelet ? build_model(input, update) : build_with_best_wavelet(input, update);
   const auto& finest = built.report.levels.back();
-  progress.end(fmt::format("{:.1f} times fewer blocks, field {:.2f} % RMS, worst patch force {:.1f} %",
+  progress.end(fmt::format("{} wavelets, {:.1f} times fewer blocks, field {:.2f} % RMS, worst patch force {:.1f} %",
+                           wavelet_name(built.model.info.wavelet),
                            static_cast<double>(finest.dense_blocks) / static_cast<double>(finest.kept_blocks),
                            100 * finest.field_rms_error, 100 * finest.patch_force_error));
   return built;
@@ -285,6 +297,7 @@ json build_model_file(const BuildRequest& asked, ProgressBar& progress) {
   provenance["solve"].erase("columns_solved");
   auto built = compress(scene, store, record["solve"], provenance.dump(), progress);
   provenance["frontier"] = frontier(built.report);
+  provenance["wavelets"] = wavelet_comparison(built.report);
   provenance["patches"] = built.report.patches;
   built.model.provenance = provenance.dump();
   settle_step_work(scene, built.model);
@@ -292,6 +305,7 @@ json build_model_file(const BuildRequest& asked, ProgressBar& progress) {
   write_file(request.model, bytes);
 
   record["compression"] = compression_record(built.report);
+  record["compression"]["wavelet"] = wavelet_name(built.model.info.wavelet);
   record["bytes"] = bytes.size();
   record["step_work"] = built.model.info.step_work;
   for (const auto& stage : progress.stages()) {

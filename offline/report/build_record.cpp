@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "offline/report/axis.hpp"
 
@@ -155,6 +156,31 @@ void keep_one_per_threshold(std::vector<FrontierPoint>& frontier) {
   frontier.erase(std::unique(frontier.begin(), frontier.end(), same), frontier.end());
 }
 
+/// "1.2 MB, 31,000 blocks, 800,000 units"; what the record does not say is left out.
+std::string wavelet_cost(const Reader& reader, const json& wavelet) {
+  const auto bytes = positive(reader, wavelet, "bytes");
+  if (!bytes) return "cannot meet the errors asked for";
+  std::string text = readable_bytes(*bytes);
+  for (const auto& [key, unit] : {std::pair("kept_blocks", " blocks"), {"step_work", " units per step"}}) {
+    const auto count = positive(reader, wavelet, key);
+    if (count) text += ", " + readable_count(static_cast<unsigned long long>(*count)) + unit;
+  }
+  return text;
+}
+
+void read_wavelets(const Reader& reader, const json& compression, BuildRecord& record) {
+  const json* wavelets = reader.array(compression, "wavelets");
+  if (wavelets == nullptr || wavelets->empty()) return;
+  FactGroup group{"Wavelets compared", {}};
+  for (const json& wavelet : *wavelets) {
+    reader.check_object(wavelet, "wavelets");
+    const auto nodes = positive(reader, wavelet, "nodes");
+    const std::string on = nodes ? " on " + readable_count(static_cast<unsigned long long>(*nodes)) + " nodes" : "";
+    group.facts.push_back({reader.text(wavelet, "wavelet") + on, wavelet_cost(reader, wavelet)});
+  }
+  merge_facts(record.groups, {group});
+}
+
 void read_compression(const Reader& reader, const json& root, BuildRecord& record) {
   const json* compression = reader.object(root, "compression");
   if (compression == nullptr) return;
@@ -168,6 +194,7 @@ void read_compression(const Reader& reader, const json& root, BuildRecord& recor
     }
   }
   keep_one_per_threshold(record.frontier);
+  read_wavelets(reader, *compression, record);
 }
 
 }  // namespace

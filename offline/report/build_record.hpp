@@ -40,7 +40,8 @@ struct FrontierPoint {
 struct BuildRecord {
   std::string scene;
   std::vector<StageTime> stages;
-  std::vector<FactGroup> groups;              ///< of every other object in the record: "remesh", "solve", ...
+  std::vector<FactGroup>
+      groups;  ///< of every other object in the record, "remesh", "solve", ..., and of wavelets compared
   std::optional<double> threshold;            ///< the chosen one
   std::optional<unsigned long long> patches;  ///< that the chosen one's forces were measured on
   std::vector<FrontierPoint> frontier;        ///< by increasing threshold, one point each

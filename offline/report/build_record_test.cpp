@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "offline/report/axis.hpp"
 #include "offline/report/temporary_file.hpp"
 
 namespace greenloop::offline {
@@ -40,6 +41,21 @@ TEST_CASE("a complete build record") {
   CHECK_FALSE(record.frontier[0].step_work);
   CHECK(record.frontier[1].step_work == 10);
   CHECK(record.frontier[1].worst_patch_force_error == 0.3);
+}
+
+TEST_CASE("wavelets that were compared are facts") {
+  const TemporaryFolder folder("build_record_test");
+  const auto record = load_build_record(folder.write("b.json", R"({"compression": {"wavelets": [
+      {"wavelet": "linear", "nodes": 558, "meets": true, "bytes": 100000, "kept_blocks": 5000, "step_work": 70000},
+      {"wavelet": "butterfly", "nodes": 558, "meets": false}]}})"));
+  REQUIRE(record.groups.size() == 1);
+  const auto& [title, facts] = record.groups[0];
+  CHECK(title == "Wavelets compared");
+  REQUIRE(facts.size() == 2);
+  CHECK(facts[0].name == "linear on 558 nodes");
+  CHECK(facts[0].value ==
+        readable_bytes(100000) + ", " + readable_count(5000) + " blocks, " + readable_count(70000) + " units per step");
+  CHECK(facts[1].value == "cannot meet the errors asked for");
 }
 
 TEST_CASE("every part of a build record may be missing") {

@@ -52,10 +52,6 @@ std::uint64_t compliance_bytes(const ModelView& model, std::uint32_t q) {
   return bytes;
 }
 
-std::string wavelet_name(const ModelView& model) {
-  return model.info->wavelet == static_cast<std::uint32_t>(layout::Wavelet::linear) ? "linear" : "lifted linear";
-}
-
 /// The couplings by the bits of their values, e.g. "32: 9, 16: 12 905, 8: 112 433".
 std::string coupling_bits(const ModelView& model) {
   std::map<std::uint32_t, std::uint64_t, std::greater<>> blocks;
@@ -115,7 +111,7 @@ FactGroup compression_facts(const ModelView& model) {
        {"blocks kept",
         fmt::format("{} of {}", readable_count(finest.kept_blocks), readable_count(finest.dense_blocks))},
        {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
-       {"wavelet", wavelet_name(model)},
+       {"wavelet", std::string(wavelet_name(model.info->wavelet))},
        {"couplings by bits per value", coupling_bits(model)},
        {"RMS error", readable_percent(finest.rms_error)},
        {"worst column's error", readable_percent(finest.worst_column_error)},

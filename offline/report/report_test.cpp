@@ -244,7 +244,7 @@ TEST_CASE("facts say wavelet, bits, layers and certificate") {
     }
     return std::string();
   };
-  ModelData data = synthetic_model({.lifted = false});
+  ModelData data = synthetic_model({.wavelet = layout::Wavelet::linear});
   CHECK(fact(data, "wavelet") == "linear");
   std::size_t nibbles = 0;
   for (const LevelData& level : data.levels) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/exchange/material.hpp"
+#include "formats/layout.hpp"
 #include "offline/scene/region.hpp"
 
 namespace greenloop::offline {
@@ -50,8 +51,6 @@ struct AccuracyGoal {
   double patch_force = 0.05;  ///< largest relative error of the nodal forces that hold a 64-node patch, 0..10
 };
 
-enum class WaveletChoice { lifted_linear, linear };
-
 struct StepBudget {
   double rate = 1000;                ///< steps per second [Hz]
   std::optional<std::int64_t> work;  ///< work units per step; the build chooses if not set
@@ -68,7 +67,7 @@ struct Scene {
   std::vector<Region> read;      ///< none: everything that is not fixed
   int coarsest_constraints = 0;  ///< coarsest level offered for contacts, 0..remesh.levels
   AccuracyGoal accuracy;
-  WaveletChoice wavelet = WaveletChoice::lifted_linear;
+  std::optional<layout::Wavelet> wavelet;  ///< none: the best, by measurement
   StepBudget budget;
   std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory
   std::string store_name;                      ///< as the scene says

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <utility>
 
+#include "formats/describe.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/scene/toml_table.hpp"
 
@@ -188,17 +189,22 @@ void read_accuracy(const Table& scene, AccuracyGoal& accuracy) {
   }
 }
 
-void read_compression(const Table& scene, WaveletChoice& wavelet) {
+void read_compression(const Table& scene, std::optional<layout::Wavelet>& wavelet) {
   const auto table = section(scene, "compression", {"wavelet"});
   const auto name = table ? table->string("wavelet") : std::nullopt;
-  if (!name) {
+  if (!name || *name == "auto") {
     return;
   }
-  if (*name == "linear") {
-    wavelet = WaveletChoice::linear;
-  } else if (*name != "lifted linear") {
-    table->refuse("wavelet", "\"" + *name + "\" is no wavelet; there are \"lifted linear\" and \"linear\"");
+  std::string names = "\"auto\"";
+  for (const layout::Wavelet known : layout::wavelets) {
+    const std::string known_name(wavelet_name(static_cast<std::uint32_t>(known)));
+    if (*name == known_name) {
+      wavelet = known;
+      return;
+    }
+    names += ", \"" + known_name + "\"";
   }
+  table->refuse("wavelet", "\"" + *name + "\" is no wavelet; there are " + names);
 }
 
 void read_budget(const Table& scene, StepBudget& budget) {

@@ -66,7 +66,7 @@ TEST_CASE("the smallest scene gets the documented defaults") {
   CHECK(scene.accuracy.rms == 0.02);
   CHECK(scene.accuracy.worst_column == 0.1);
   CHECK(scene.accuracy.patch_force == 0.05);
-  CHECK(scene.wavelet == WaveletChoice::lifted_linear);
+  CHECK_FALSE(scene.wavelet);
   CHECK(scene.budget.rate == 1000);
   CHECK_FALSE(scene.budget.work);
   CHECK(scene.budget.contacts == 16);
@@ -130,7 +130,7 @@ TEST_CASE("every key is read") {
   CHECK(scene.accuracy.rms == 0.01);
   CHECK(scene.accuracy.worst_column == 0.1);
   CHECK(scene.accuracy.patch_force == 0.2);
-  CHECK(scene.wavelet == WaveletChoice::linear);
+  CHECK(scene.wavelet == greenloop::layout::Wavelet::linear);
   CHECK(scene.budget.rate == 500);
   CHECK(scene.budget.work == 123456);
   CHECK(scene.budget.contacts == 64);
@@ -405,13 +405,25 @@ TEST_CASE("a patch force may be off by more than itself, but neither not at all 
   check_refused(smallest + "[accuracy]\npatch_force = 10\n", {"accuracy.patch_force: 10 is out of range"});
 }
 
+TEST_CASE("every wavelet can be asked for by name, or the best") {
+  for (const auto& [name, wavelet] : {std::pair("lifted linear", greenloop::layout::Wavelet::lifted_linear),
+                                      {"linear", greenloop::layout::Wavelet::linear},
+                                      {"lifted butterfly", greenloop::layout::Wavelet::lifted_butterfly},
+                                      {"butterfly", greenloop::layout::Wavelet::butterfly}}) {
+    CHECK(parse_scene(smallest + "[compression]\nwavelet = \"" + name + "\"\n", "s.toml").wavelet == wavelet);
+  }
+  CHECK_FALSE(parse_scene(smallest + "[compression]\nwavelet = \"auto\"\n", "s.toml").wavelet);
+}
+
 TEST_CASE("refused: a wavelet that is none") {
-  check_refused(smallest + "[compression]\nwavelet = \"haar\"\n", {"compression.wavelet: \"haar\" is no wavelet"});
+  check_refused(smallest + "[compression]\nwavelet = \"haar\"\n",
+                {"compression.wavelet: \"haar\" is no wavelet", "\"auto\"", "\"lifted butterfly\""});
   check_refused(smallest + "[compression]\nwavelt = \"linear\"\n", {"did you mean \"wavelet\"?"});
 }
 
 TEST_CASE("patch force and wavelet are part of the canonical text") {
-  for (const char* key : {"[accuracy]\npatch_force = 0.2\n", "[compression]\nwavelet = \"linear\"\n"}) {
+  for (const char* key : {"[accuracy]\npatch_force = 0.2\n", "[compression]\nwavelet = \"linear\"\n",
+                          "[compression]\nwavelet = \"lifted butterfly\"\n"}) {
     CAPTURE(key);
     const auto canonical = canonical_text(parse_scene(smallest + key, "s.toml"));
     CHECK(canonical != canonical_text(parse_scene(smallest, "s.toml")));

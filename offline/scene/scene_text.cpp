@@ -2,6 +2,7 @@
 #include <charconv>
 #include <string>
 
+#include "formats/describe.hpp"
 #include "offline/scene/scene.hpp"
 
 namespace greenloop::offline {
@@ -82,9 +83,9 @@ std::string accuracy_text(const AccuracyGoal& accuracy) {
          "\npatch_force = " + number(accuracy.patch_force) + "\n";
 }
 
-std::string compression_text(WaveletChoice wavelet) {
-  return std::string("\n[compression]\nwavelet = \"") +
-         (wavelet == WaveletChoice::linear ? "linear" : "lifted linear") + "\"\n";
+std::string compression_text(std::optional<layout::Wavelet> wavelet) {
+  const std::string name(wavelet ? wavelet_name(static_cast<std::uint32_t>(*wavelet)) : "auto");
+  return "\n[compression]\nwavelet = \"" + name + "\"\n";
 }
 
 std::string budget_text(const StepBudget& budget) {

@@ -71,9 +71,11 @@ class Mutator {
 
 TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
   MESSAGE("seed ", seed, ", ", mutations, " mutations");
-  Mutator mutator({encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
-                   encode(synthetic_model({.levels = 3, .epsilon = 0.008})),
-                   encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .lifted = false}))});
+  Mutator mutator(
+      {encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
+       encode(synthetic_model({.levels = 3, .epsilon = 0.008})),
+       encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .wavelet = layout::Wavelet::linear})),
+       encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly}))});
   int accepted = 0;
   std::array<int, 64> refused{};
   for (int i = 0; i < mutations; ++i) {
@@ -94,6 +96,19 @@ TEST_CASE("verify survives random changes of valid files, and what it accepts is
     CAPTURE(rule_name(rule));
     CHECK(refused[static_cast<std::size_t>(rule)] > 0);
   }
+}
+
+TEST_CASE("walk_view sees stencils that verify must prevent") {
+  ModelMutant mutant(SyntheticOptions{.levels = 2, .wavelet = layout::Wavelet::butterfly});
+  REQUIRE(mutant.verdict().ok());
+  CHECK(walk_view(mutant.bytes(), mutant.view()));
+  auto* stencils = mutant.records<layout::StencilRecord>(layout::SectionKind::stencils, 1);
+  const std::uint32_t wing = std::exchange(stencils[0].wing[1], 6);
+  CHECK_FALSE(walk_view(mutant.bytes(), mutant.view()));
+  stencils[0].wing[1] = layout::none;
+  CHECK_FALSE(walk_view(mutant.bytes(), mutant.view()));
+  stencils[0].wing[1] = wing;
+  CHECK(walk_view(mutant.bytes(), mutant.view()));
 }
 
 TEST_CASE("walk_view sees what verify must prevent") {

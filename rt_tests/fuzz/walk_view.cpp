@@ -62,6 +62,15 @@ class Walk {
     const auto coarser = [&](const layout::RefinementRecord& record) {
       return record.parent[0] < level.node_begin && record.parent[1] < level.node_begin;
     };
+    const auto known = [&](const layout::StencilRecord& stencil) {
+      const auto right = [&](std::uint32_t node) {
+        return (node == layout::none) == (stencil.wing[0] == layout::none) &&
+               (node == layout::none || node < level.node_begin);
+      };
+      return std::all_of(stencil.wing, stencil.wing + 2, right) && std::all_of(stencil.outer, stencil.outer + 4, right);
+    };
+    const std::uint32_t stencils = level.stencils == nullptr ? 0 : level.counts->domain_count;
+    if (!array(level.stencils, stencils) || !all(level.stencils, stencils, known)) return false;
     return all(level.nodes, count(q), [](const auto& node) { return std::isfinite(node.position[2] + node.area); }) &&
            (q == 0 || all(level.refinement, count(q), coarser)) && scales(q) && all_couplings(q);
   }

@@ -25,12 +25,21 @@ Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q)
   std::vector<Eigen::Triplet<double>> predict;
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     const Index odd = level.domain_begin + i;
+    const auto add_prediction = [&](std::uint32_t node, double weight) {
+      for (Index r = 0; node != layout::none && in_domain(view, node) && r < 3; ++r) {
+        predict.emplace_back(3 * odd + r, Index{3} * domain_place(view, node) + r, weight);
+      }
+    };
+    for (std::uint32_t k = 0; level.stencils != nullptr && k < 4; ++k) {
+      add_prediction(level.stencils[i].outer[k], -1.0 / 16);
+      add_prediction(k < 2 ? level.stencils[i].wing[k] : layout::none, 1.0 / 8);
+    }
     for (std::uint32_t side = 0; side < 2; ++side) {
       const std::uint32_t parent = level.refinement[i].parent[side];
+      add_prediction(parent, 0.5);
       for (Index r = 0; in_domain(view, parent) && r < 3; ++r) {
         const Index even = Index{3} * domain_place(view, parent) + r;
         lift.emplace_back(even, 3 * odd + r, -double{level.refinement[i].lift[side]});
-        predict.emplace_back(3 * odd + r, even, 0.5);
       }
     }
   }
