@@ -49,7 +49,7 @@ TEST_CASE("the loop's forces and fields from a built model are the exact complia
                                   body.column_nodes,
                                   test::columns_of(body.compliance),
                                   accuracy,
-                                  true,
+                                  layout::Wavelet::lifted_linear,
                                   test::facts(),
                                   "{}",
                                   {}},

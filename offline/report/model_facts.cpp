@@ -9,6 +9,7 @@
 #include <map>
 #include <span>
 
+#include "formats/describe.hpp"
 #include "formats/stored_blocks.hpp"
 #include "offline/report/axis.hpp"
 
