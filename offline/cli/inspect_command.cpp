@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "formats/describe.hpp"
 #include "formats/model_file.hpp"
@@ -78,11 +79,10 @@ Json bits_of(const ModelView& view) {
   return bits;
 }
 
-// what the build tried, if the model is its work
-Json frontier_of(const ModelView& view) {
+// what the build recorded of its search, if the model is its work
+Json recorded(const ModelView& view, const std::string& key, Json otherwise) {
   const Json provenance = provenance_of(view);
-  const bool has_it = provenance.is_object() && provenance.contains("frontier");
-  return has_it ? provenance["frontier"] : Json::array();
+  return provenance.is_object() && provenance.contains(key) ? provenance[key] : std::move(otherwise);
 }
 
 Json inspection_of(const ModelFile& model) {
@@ -111,7 +111,8 @@ Json inspection_of(const ModelFile& model) {
       {"wavelet", wavelet_name(info.wavelet)},
       {"bits", bits_of(view)},
       {"threshold", info.threshold},
-      {"frontier", frontier_of(view)},
+      {"frontier", recorded(view, "frontier", Json::array())},
+      {"frontier_contacts", recorded(view, "frontier_contacts", nullptr)},
       {"store_asymmetry", info.store_asymmetry},
       {"material", {{"young", info.young}, {"poisson", info.poisson}}},
       {"box", {{"min", info.box_min}, {"max", info.box_max}}},
