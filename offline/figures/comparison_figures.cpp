@@ -109,7 +109,7 @@ std::vector<Curve> level_curves(const std::vector<LevelRates>& levels, RateQuant
 
 Panel cost_panel(const BodyComparison& body, const std::string& label, const std::string& unit,
                  double SummationPoint::*cost, const LineFit& fit) {
-  Panel panel{.x = "blocks in field columns",
+  Panel panel{.x = "blocks summed",
               .x_unit = "blocks",
               .y = label,
               .y_unit = unit,
@@ -151,7 +151,7 @@ Figure level_errors_over_ratio(const BodyComparison& body) {
 
 Figure summation_cost(const BodyComparison& body) {
   const SummationFit fit = fit_summation(body.summation);
-  return panels_figure(body.name + "_summation", fmt::format("Cost of a step against blocks kept, {}", body.name),
+  return panels_figure(body.name + "_summation", fmt::format("Cost of a step against blocks summed, {}", body.name),
                        fmt::format("Forces held and the whole field summed, one model per threshold of its field "
                                    "columns. The line explains {:.2f} % of the "
                                    "variance of the work and {:.2f} % of that of the processor time.",

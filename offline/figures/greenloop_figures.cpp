@@ -197,7 +197,7 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Measures the one-sided compression of James and Pai 2003 beside Greenloop's on exact Green's functions: errors "
       "against compression and threshold with each wavelet on each constraint level, quanta, the cost of a step "
-      "against blocks kept, and, of several bodies, the growth of compression with their size.",
+      "against blocks summed, and, of several bodies, the growth of compression with their size.",
       "greenloop-figures");
   Arguments arguments;
   app.add_option("stores", arguments.stores, "HDF5 stores that `greenloop build` wrote, one per body")

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "offline/compress/encoding_search.hpp"
+#include "offline/compress/model_field.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {
@@ -20,25 +21,39 @@ double thread_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-std::vector<std::uint32_t> touchable_nodes(const ModelView& view) {
-  std::vector<std::uint32_t> nodes;
+struct TouchableNode {
+  std::uint32_t node = 0, row = 0;  // in the file, in the domain
+};
+
+std::vector<TouchableNode> touchable_nodes(const ModelView& view) {
+  std::vector<TouchableNode> nodes;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      if ((level.nodes[i].flags & layout::node_touchable) != 0) nodes.push_back(level.node_begin + i);
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      if ((level.nodes[i].flags & layout::node_touchable) != 0) {
+        nodes.push_back({level.node_begin + i, level.domain_begin + i});
+      }
     }
   }
   return nodes;
 }
 
-// pressed by a thousandth of the body's height
-std::vector<std::vector<Contact>> spread_contacts(const ModelView& view, std::size_t contacts) {
+// Sets that are pressed by a thousandth of the body's height.
+struct SpreadContacts {
+  std::vector<std::vector<Contact>> sets;
+  double blocks = 0;  // of their field columns, mean
+};
+
+SpreadContacts spread_contacts(const ModelView& view, std::size_t contacts) {
   const auto nodes = touchable_nodes(view);
   if (nodes.size() < contacts * sets) throw std::runtime_error("summation: the body has too few touchable nodes");
   const float depth = 0.001F * (view.info->box_max[2] - view.info->box_min[2]);
-  std::vector<std::vector<Contact>> all(sets);
+  const ModelField field(view);
+  SpreadContacts all{.sets = std::vector<std::vector<Contact>>(sets)};
   for (std::size_t i = 0; i < contacts * sets; ++i) {
-    all[i % sets].push_back({.node = nodes[i * nodes.size() / (contacts * sets)], .displacement = {0, 0, -depth}});
+    const auto [node, row] = nodes[i * nodes.size() / (contacts * sets)];
+    all.sets[i % sets].push_back({.node = node, .displacement = {0, 0, -depth}});
+    all.blocks += static_cast<double>(field.length(view.levels - 1, row)) / sets;
   }
   return all;
 }
@@ -96,12 +111,10 @@ SummationPoint time_summation(const ModelData& model, std::size_t contacts, std:
   const EncodedModel encoded(model);
   const auto opened = Model::open(encoded.bytes.span());
   if (!opened) throw std::runtime_error("summation: the model is refused");
-  const auto all = spread_contacts(encoded.view, contacts);
+  const SpreadContacts all = spread_contacts(encoded.view, contacts);
   Stepper stepper(opened.model, contacts);
-  const double work = mean_work(stepper, all);
-  return {.blocks = static_cast<double>(encoded.view.level[encoded.view.levels - 1].counts->field_blocks),
-          .work = work,
-          .seconds = median_seconds(stepper, all, rounds)};
+  const double work = mean_work(stepper, all.sets);
+  return {.blocks = all.blocks, .work = work, .seconds = median_seconds(stepper, all.sets, rounds)};
 }
 
 SummationFit fit_summation(const std::vector<SummationPoint>& points) {
