@@ -10,6 +10,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "formats/describe.hpp"
 #include "formats/model_file.hpp"
@@ -74,11 +75,10 @@ Json bits_of(const ModelView& view) {
   return bits;
 }
 
-// what the build tried, "frontier" or "wavelets", if the model is its work
-Json tried(const ModelView& view, const char* what) {
+// what the build recorded of its search, if the model is its work
+Json recorded(const ModelView& view, const std::string& key, Json otherwise) {
   const Json provenance = provenance_of(view);
-  const bool has_it = provenance.is_object() && provenance.contains(what);
-  return has_it ? provenance[what] : Json::array();
+  return provenance.is_object() && provenance.contains(key) ? provenance[key] : std::move(otherwise);
 }
 
 Json inspection_of(const ModelFile& model) {
@@ -105,10 +105,11 @@ Json inspection_of(const ModelFile& model) {
       {"lambda_min", info.lambda_min},
       {"certificate", info.lambda_min > 0},
       {"wavelet", wavelet_name(info.wavelet)},
-      {"wavelets", tried(view, "wavelets")},
+      {"wavelets", recorded(view, "wavelets", Json::array())},
       {"bits", bits_of(view)},
       {"threshold", info.threshold},
-      {"frontier", tried(view, "frontier")},
+      {"frontier", recorded(view, "frontier", Json::array())},
+      {"frontier_contacts", recorded(view, "frontier_contacts", nullptr)},
       {"store_asymmetry", info.store_asymmetry},
       {"material", {{"young", info.young}, {"poisson", info.poisson}}},
       {"box", {{"min", info.box_min}, {"max", info.box_max}}},

@@ -44,6 +44,13 @@ Eigen::MatrixXd holding_forces(const Eigen::MatrixXd& compliance) {
   return factor.solve(Eigen::Matrix3d::Identity().replicate(compliance.rows() / 3, 1));
 }
 
+// relative, the worst of the three displacements; infinite if `found` is not positive definite
+double holding_force_error(const Eigen::MatrixXd& exact, const Eigen::MatrixXd& found) {
+  const Eigen::MatrixXd wanted = holding_forces(exact), forces = holding_forces(found);
+  if (forces.size() == 0) return std::numeric_limits<double>::infinity();
+  return ((forces - wanted).colwise().norm().array() / wanted.colwise().norm().array()).maxCoeff();
+}
+
 }  // namespace
 
 ContactPatches::ContactPatches(const std::vector<Eigen::Vector3d>& positions, std::size_t count) {
@@ -53,6 +60,14 @@ ContactPatches::ContactPatches(const std::vector<Eigen::Vector3d>& positions, st
     patch.compliance = Eigen::MatrixXd::Zero(size, size);
     patches_.push_back(std::move(patch));
   }
+}
+
+std::vector<std::size_t> ContactPatches::rows() const {
+  std::vector<std::size_t> all;
+  for (const auto& patch : patches_) all.insert(all.end(), patch.rows.begin(), patch.rows.end());
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
 }
 
 void ContactPatches::add(const Eigen::MatrixXd& block, std::size_t first) {
@@ -80,10 +95,7 @@ double ContactPatches::force_error(const CompressedCompliance& compressed, std::
           Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * patch.rows[a]);
     }
   }
-  const Eigen::MatrixXd exact = holding_forces(patch.compliance);
-  const Eigen::MatrixXd found = holding_forces(compliance);
-  if (found.size() == 0) return std::numeric_limits<double>::infinity();
-  return ((found - exact).colwise().norm().array() / exact.colwise().norm().array()).maxCoeff();
+  return holding_force_error(patch.compliance, compliance);
 }
 
 std::vector<ContactPatches::Error> ContactPatches::force_errors(const CompressedCompliance& compressed,
@@ -98,6 +110,15 @@ std::vector<ContactPatches::Error> ContactPatches::force_errors(const Compressed
 
 double ContactPatches::worst_force_error(const CompressedCompliance& compressed, std::size_t level) const {
   return patches_.empty() ? 0 : force_errors(compressed, level).front().force;
+}
+
+double ContactPatches::worst_force_error(const ContactPatches& found) const {
+  double worst = 0;
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const Eigen::MatrixXd& columns = found.patches_[p].compliance;
+    worst = std::max(worst, holding_force_error(patches_[p].compliance, 0.5 * (columns + columns.transpose())));
+  }
+  return worst;
 }
 
 ContactPatches ContactPatches::choose(const std::vector<std::size_t>& patches) const {

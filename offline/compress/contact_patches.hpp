@@ -23,6 +23,9 @@ class ContactPatches {
 
   [[nodiscard]] std::size_t size() const { return patches_.size(); }
 
+  /// The rows of all patches, increasing.
+  [[nodiscard]] std::vector<std::size_t> rows() const;
+
   /// Relative error ||f^ - f|| / ||f|| of the nodal forces that hold a patch displaced as a whole along x, y or z (so
   /// pressed and sheared), the worst of the three, with the compliance of `level`; infinite if the compressed patch is
   /// not positive definite. Work: 64 columns.
@@ -37,6 +40,10 @@ class ContactPatches {
 
   /// The worst over all patches.
   [[nodiscard]] double worst_force_error(const CompressedCompliance& compressed, std::size_t level) const;
+
+  /// The worst over all patches, with the symmetric part of a compliance whose columns were added to `found`, which has
+  /// the same patches.
+  [[nodiscard]] double worst_force_error(const ContactPatches& found) const;
 
   /// Some of the patches, by number.
   [[nodiscard]] ContactPatches choose(const std::vector<std::size_t>& patches) const;

@@ -17,16 +17,6 @@ constexpr double quantum_per_threshold = 0.5;
 constexpr int bisections = 9;
 constexpr double field_safety = 0.95;  // of the field's RMS error, chosen on a sample
 
-Encoding encoding_at(double threshold) {
-  return {.threshold = threshold, .quantum = quantum_per_threshold * threshold};
-}
-
-ModelData encoded(const TrialBench& bench, const Encoding& encoding) {
-  ModelData model = bench.tables;
-  encode_couplings(bench.compliance, encoding, model);
-  return model;
-}
-
 FieldError column_error(const TrialBench& bench, const CompressedCompliance& compressed) {
   FieldError error;
   for (const auto& column : bench.columns) {
@@ -37,6 +27,16 @@ FieldError column_error(const TrialBench& bench, const CompressedCompliance& com
 
 }  // namespace
 
+Encoding encoding_at(double threshold) {
+  return {.threshold = threshold, .quantum = quantum_per_threshold * threshold};
+}
+
+ModelData encoded_model(const TrialBench& bench, const Encoding& encoding) {
+  ModelData model = bench.tables;
+  encode_couplings(bench.compliance, encoding, model);
+  return model;
+}
+
 EncodedModel::EncodedModel(const ModelData& model) : bytes(encode(model)) {
   if (const auto result = verify(bytes.span(), view); !result.ok()) {
     throw std::logic_error(std::string("compression: an encoded model does not verify: ") + result.field);
@@ -44,7 +44,7 @@ EncodedModel::EncodedModel(const ModelData& model) : bytes(encode(model)) {
 }
 
 Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
-  ModelData data = encoded(bench, encoding);
+  ModelData data = encoded_model(bench, encoding);
   const EncodedModel model(data);
   const CompressedCompliance compressed(model.view);
   Trial trial{.encoding = encoding, .field = {}, .bytes = model.bytes.size()};
@@ -60,13 +60,13 @@ Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const
   } else {
     data.levels.back().counts.longest_field_column = static_cast<std::uint32_t>(compressed.rows(compressed.finest()));
   }
-  if (bench.step_work) trial.step_work = bench.step_work(EncodedModel(data).bytes.span());
+  if (bench.step_work) trial.step_work = bench.step_work(EncodedModel(data).bytes.span()).back();
   return trial;
 }
 
 std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPatches& patches, std::size_t count,
                                        double threshold) {
-  const EncodedModel model(encoded(bench, encoding_at(threshold)));
+  const EncodedModel model(encoded_model(bench, encoding_at(threshold)));
   const CompressedCompliance compressed(model.view);
   std::vector<std::size_t> worst;
   for (const auto& error : patches.force_errors(compressed, compressed.finest())) {

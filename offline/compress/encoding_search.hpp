@@ -22,27 +22,45 @@ struct Accuracy {
   double patch_force = 0;   ///< ContactPatches::worst_force_error
 };
 
+/// What an encoding comes to on one constraint level.
+struct LevelTrial {
+  std::uint32_t level = 0;
+  std::size_t bytes = 0, blocks = 0;  ///< of the model cut off after the level
+  double rms = 0, worst_column = 0, patch_force = 0;
+  std::uint64_t step_work = 0;  ///< units, of a step resolved at the level
+};
+
 /// One way to encode a model, and what came of it on a sample of patches and columns.
 struct Trial {
   Encoding encoding;
   FieldThresholds field;
   std::size_t bytes = 0, blocks = 0;
   double rms = 0, worst_column = 0, patch_force = 0;
-  std::uint64_t step_work = 0;  ///< units
+  std::uint64_t step_work = 0;       ///< units
+  std::vector<LevelTrial> levels{};  ///< coarse to fine; empty until measure_frontier
 
   [[nodiscard]] bool meets(const Accuracy& accuracy) const {
     return rms <= accuracy.rms && worst_column <= accuracy.worst_column && patch_force <= accuracy.patch_force;
   }
 };
 
+/// Work [units] of a step that is resolved at each level of an encoded model.
+using LevelWork = std::function<std::vector<std::uint64_t>(std::span<const std::byte>)>;
+
 /// What trials are made and measured with. The referenced objects must outlive the search.
 struct TrialBench {
   const WaveletCompliance& compliance;
   const ModelData& tables;  ///< the model without scales and couplings
   const std::vector<SampleColumn>& columns;
-  Accuracy accuracy;  ///< asked for: fields are made as coarse as it lets them
-  std::function<std::uint64_t(std::span<const std::byte>)> step_work;  ///< of an encoded model; may be empty
+  Accuracy accuracy;    ///< asked for: fields are made as coarse as it lets them
+  LevelWork step_work;  ///< may be empty
 };
+
+/// The encoding that is tried with a threshold: its quantum is half of that.
+[[nodiscard]] Encoding encoding_at(double threshold);
+
+/// The bench's model with its couplings.
+[[nodiscard]] ModelData encoded_model(const TrialBench& bench, const Encoding& encoding);
 
 /// Encodes and measures one trial, and chooses its fields' thresholds. Work: two encodings, 64 columns a patch, the
 /// sample's columns and some inverse transforms of them.

@@ -32,7 +32,9 @@ const Bench& bench() {
 TEST_CASE("a trial says what its file is") {
   const Encoding encoding{.threshold = 0.01, .quantum = 0.005};
   auto with_work = bench().get();
-  with_work.step_work = [](std::span<const std::byte> bytes) { return std::uint64_t{bytes.size() + 7}; };
+  with_work.step_work = [](std::span<const std::byte> bytes) {
+    return std::vector<std::uint64_t>{0, bytes.size() + 7};
+  };
   const auto trial = try_encoding(with_work, bench().sample.patches(), encoding);
   const test::File file(test::model_of(bench().body, layout::Wavelet::lifted_linear, encoding));
   CHECK(std::abs(static_cast<double>(trial.bytes) / static_cast<double>(file.bytes.size()) - 1) < 0.02);

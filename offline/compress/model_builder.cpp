@@ -11,6 +11,7 @@
 #include "offline/compress/certificate.hpp"
 #include "offline/compress/exact_sample.hpp"
 #include "offline/compress/field_error.hpp"
+#include "offline/compress/frontier.hpp"
 #include "offline/compress/model_field.hpp"
 #include "offline/compress/model_tables.hpp"
 
@@ -153,7 +154,6 @@ class Build {
     for (double floor = first_floor; !meets_with(floor); floor /= 4) {
       if (floor <= least_floor) unreachable_accuracy(input_.accuracy, closest_);
     }
-    store_errors(report_, model_);
     if (progress_) progress_(1.0, "done");
     return {std::move(model_), std::move(report_)};
   }
@@ -198,6 +198,7 @@ class Build {
       if (measured.trial.meets(input_.accuracy) && meets(measured.field) && measured.least_eigenvalue > 0) {
         describe(measured);
         describe_levels(compliance, measured);
+        describe_frontier(bench, sample_.patches().choose(searched), floor);
         return true;
       }
       closest_ = measured.trial;
@@ -298,6 +299,25 @@ class Build {
       level.dense_blocks = encoded.view.level[level.level].counts->dense_blocks;
     }
     report_.trials.back().bytes = encoded.bytes.size();
+  }
+
+  // the chosen point with the errors measured on everything
+  void describe_frontier(const TrialBench& bench, const ContactPatches& patches, double floor) {
+    store_errors(report_, model_);
+    const auto costs = level_costs(EncodedModel(model_), input_.step_work);
+    const auto samples = sample_levels(input_.mesh, wavelet_, bench.compliance, model_.info.coarsest_constraint_level);
+    std::vector<Trial> trials = report_.trials;
+    fill_gaps(bench, patches, report_.encoding.threshold, floor, trials);
+    report_.frontier = measure_frontier(bench, samples, report_.field, trials);
+    for (Trial& point : report_.frontier) {
+      if (point.encoding.threshold != report_.encoding.threshold) continue;
+      point.levels = costs;
+      for (std::size_t i = 0; i < point.levels.size(); ++i) {
+        point.levels[i].rms = report_.levels[i].rms_error;
+        point.levels[i].worst_column = report_.levels[i].worst_column_error;
+        point.levels[i].patch_force = report_.levels[i].patch_force_error;
+      }
+    }
   }
 
   const CompressionInput& input_;

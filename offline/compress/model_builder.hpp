@@ -24,7 +24,7 @@ struct CompressionInput {
   layout::Info facts{};    ///< from scene and solver: young, poisson, store_asymmetry, rate, max_contacts, step_work,
                            ///< coarsest_constraint_level; the rest is filled in
   std::string provenance;  ///< JSON text
-  std::function<std::uint64_t(std::span<const std::byte>)> step_work;  ///< of an encoded model; may be empty
+  LevelWork step_work;     ///< may be empty
 };
 
 /// One constraint level: the model cut off after it.
@@ -50,7 +50,8 @@ struct CompressionReport {
   double lambda_min = 0;                      ///< m/N, certified
   std::size_t patches = 0;                    ///< patches that patch_force_error was measured on
   std::vector<ConstraintLevelReport> levels;  ///< coarse to fine
-  std::vector<Trial> trials;                  ///< every encoding that was tried, coarse first
+  std::vector<Trial> trials;                  ///< every encoding that was tried, the chosen one last
+  std::vector<Trial> frontier;                ///< by decreasing threshold, one each, on every level
   std::vector<WaveletTrial> wavelets;         ///< compared to choose one; empty if it was given
   std::size_t dense_bytes = 0;                ///< float32, 36 bytes per pair of domain nodes
 };

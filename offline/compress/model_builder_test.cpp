@@ -180,6 +180,25 @@ TEST_CASE("the report counts what is in the file") {
   CHECK(file().view.info->threshold == report.encoding.threshold);
 }
 
+TEST_CASE("the frontier's chosen point has the model's own figures on every level") {
+  const auto& report = built().report;
+  REQUIRE(report.frontier.size() > 2);
+  const auto chosen = std::find_if(report.frontier.begin(), report.frontier.end(), [&](const Trial& point) {
+    return point.encoding.threshold == report.encoding.threshold;
+  });
+  REQUIRE(chosen != report.frontier.end());
+  REQUIRE(chosen->levels.size() == report.levels.size());
+  for (std::size_t i = 0; i < report.levels.size(); ++i) {
+    const LevelTrial& level = chosen->levels[i];
+    CHECK(level.level == report.levels[i].level);
+    CHECK(level.blocks == report.levels[i].kept_blocks);
+    CHECK(level.rms == report.levels[i].rms_error);
+    CHECK(level.worst_column == report.levels[i].worst_column_error);
+    CHECK(level.patch_force == report.levels[i].patch_force_error);
+    CHECK(level.bytes == truncate_to_level(encode(built().model), level.level).size());
+  }
+}
+
 TEST_CASE("the same input gives the same bytes; progress runs forward to 1") {
   double last = 0;
   bool forward = true;

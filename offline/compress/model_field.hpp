@@ -19,11 +19,12 @@ class ModelField {
 
   [[nodiscard]] const FieldColumnMaker::Counts& counts() const { return counts_; }
 
-  /// Whether row j of K(level) stands for a touchable node, and a force on it moves anything.
-  [[nodiscard]] bool has_column(std::size_t level, std::size_t j) const {
+  /// Blocks of the column of row j of K(level); 0 if that stands for no touchable node or a force on it moves nothing.
+  [[nodiscard]] std::uint64_t length(std::size_t level, std::size_t j) const {
     return column_blocks(columns_, static_cast<std::uint32_t>(level), static_cast<std::uint32_t>(j),
-                         columns_.levels - 1) > 0;
+                         columns_.levels - 1);
   }
+  [[nodiscard]] bool has_column(std::size_t level, std::size_t j) const { return length(level, j) > 0; }
 
   /// Displacements by a unit force on its node: domain rows blocks of 9, 3 c + r, m/N. `wavelet`: the model's.
   [[nodiscard]] std::vector<double> column(const SurfaceWavelet& wavelet, std::size_t level, std::size_t j) const;

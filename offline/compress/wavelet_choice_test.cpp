@@ -96,7 +96,8 @@ TEST_CASE("where a budget of work is given, the product of bytes and work decide
   input.step_work = [&](std::span<const std::byte> bytes) {
     ModelView view;
     REQUIRE(verify(bytes, view).ok());
-    return static_cast<Wavelet>(view.info->wavelet) == smallest ? std::uint64_t{1000} : std::uint64_t{10};
+    const bool dear = static_cast<Wavelet>(view.info->wavelet) == smallest;
+    return std::vector<std::uint64_t>(view.levels, dear ? 1000 : 10);
   };
   CHECK(wavelet_of(build_with_best_wavelet(input, {}, 30).model) == smallest);
   input.facts.step_work = 1000;

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <functional>
 #include <iterator>
-#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -137,22 +135,37 @@ json solve_missing_columns(GreenStore& store, ProgressBar& progress) {
           {"largest_asymmetry", report.largest_asymmetry}};
 }
 
-json trial_record(const Trial& trial) {
-  return {{"threshold", trial.encoding.threshold},
-          {"bytes", trial.bytes},
-          {"kept_blocks", trial.blocks},
-          {"rms_error", trial.rms},
-          {"worst_column_error", trial.worst_column},
-          {"worst_patch_force_error", std::min(trial.patch_force, 1e9)},
-          {"step_work", trial.step_work}};
+/// Enough digits for a picture; records stand in model files.
+double rounded(double error) { return std::stod(fmt::format("{:.4g}", std::min(error, 1e9))); }
+
+/// What `of` comes to: bytes, errors and work.
+template <class Tried>
+json trial_record(const Tried& of, std::uint64_t step_work) {
+  return {{"bytes", of.bytes},
+          {"kept_blocks", of.blocks},
+          {"rms_error", rounded(of.rms)},
+          {"worst_column_error", rounded(of.worst_column)},
+          {"worst_patch_force_error", rounded(of.patch_force)},
+          {"step_work", step_work}};
 }
 
-/// What was tried, from fewer bytes to more; of an encoding tried twice the later trial, measured on more patches.
+/// What was tried, from fewer bytes to more, with the figures of every constraint level; those of trials that were not
+/// chosen are measured on a sample of patches and columns.
 json frontier(const CompressionReport& report) {
-  std::map<double, Trial, std::greater<>> trials;
-  for (const auto& trial : report.trials) trials[trial.encoding.threshold] = trial;
   json points = json::array();
-  for (const auto& [threshold, trial] : trials) points.push_back(trial_record(trial));
+  for (const auto& trial : report.frontier) {
+    json point = trial_record(trial, trial.levels.back().step_work);
+    const bool chosen = trial.encoding.threshold == report.encoding.threshold;
+    point.update({{"threshold", trial.encoding.threshold},
+                  {"quantum", trial.encoding.quantum},
+                  {"chosen", chosen},
+                  {"sampled", !chosen}});
+    for (const auto& level : trial.levels) {
+      point["levels"].push_back(trial_record(level, level.step_work));
+      point["levels"].back()["level"] = level.level;
+    }
+    points.push_back(std::move(point));
+  }
   return points;
 }
 
@@ -162,13 +175,13 @@ json wavelet_comparison(const CompressionReport& report) {
   for (const auto& [wavelet, nodes, trial] : report.wavelets) {
     json record = {
         {"wavelet", wavelet_name(static_cast<std::uint32_t>(wavelet))}, {"nodes", nodes}, {"meets", trial.bytes > 0}};
-    if (trial.bytes > 0) record.update(trial_record(trial));
+    if (trial.bytes > 0) record.update(trial_record(trial, trial.step_work));
     wavelets.push_back(record);
   }
   return wavelets;
 }
 
-json compression_record(const CompressionReport& report) {
+json compression_record(const CompressionReport& report, std::uint32_t contacts) {
   json levels = json::array();
   for (const auto& level : report.levels) {
     levels.push_back({{"level", level.level},
@@ -187,16 +200,18 @@ json compression_record(const CompressionReport& report) {
           {"field_threshold", report.field.spread}, {"field_peak_threshold", report.field.peak},
           {"lambda_min", report.lambda_min},        {"patches", report.patches},
           {"dense_bytes", report.dense_bytes},      {"frontier", frontier(report)},
-          {"wavelets", wavelet_comparison(report)}, {"constraint_levels", levels}};
+          {"frontier_contacts", contacts},          {"wavelets", wavelet_comparison(report)},
+          {"constraint_levels", levels}};
 }
 
-/// Work units of a step at the finest level: all contacts of the scene, with a fresh factor and the whole field.
-std::uint64_t finest_step_work(std::span<const std::byte> bytes, std::uint32_t contacts) {
+/// Work units of a step resolved at each level: all contacts of the scene, with a fresh factor and the whole field.
+std::vector<std::uint64_t> worst_step_work(std::span<const std::byte> bytes, std::uint32_t contacts) {
   const auto opened = Model::open(bytes);
   if (!opened) {
     throw std::logic_error("compression: an encoded model does not open");
   }
-  return Elastostatic::required(opened.model, {.max_contacts = contacts}).worst_work[opened.model.level_count() - 1];
+  const auto need = Elastostatic::required(opened.model, {.max_contacts = contacts});
+  return {need.worst_work, need.worst_work + opened.model.level_count()};
 }
 
 layout::Info scene_facts(const Scene& scene, const json& solve) {
@@ -234,7 +249,7 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, const json& sol
                                .provenance = provenance,
                                .step_work =
                                    [&](std::span<const std::byte> bytes) {
-                                     return finest_step_work(bytes, static_cast<std::uint32_t>(scene.budget.contacts));
+                                     return worst_step_work(bytes, static_cast<std::uint32_t>(scene.budget.contacts));
                                    }};
   const Progress update = [&](double fraction, std::string_view stage) { progress.update(fraction, stage); };
   auto built = scene.wavelet ? build_model(input, update) : build_with_best_wavelet(input, update);
@@ -298,13 +313,14 @@ json build_model_file(const BuildRequest& asked, ProgressBar& progress) {
   auto built = compress(scene, store, record["solve"], provenance.dump(), progress);
   provenance["frontier"] = frontier(built.report);
   provenance["wavelets"] = wavelet_comparison(built.report);
+  provenance["frontier_contacts"] = built.model.info.max_contacts;
   provenance["patches"] = built.report.patches;
   built.model.provenance = provenance.dump();
   settle_step_work(scene, built.model);
   const auto bytes = encode(built.model);
   write_file(request.model, bytes);
 
-  record["compression"] = compression_record(built.report);
+  record["compression"] = compression_record(built.report, built.model.info.max_contacts);
   record["compression"]["wavelet"] = wavelet_name(built.model.info.wavelet);
   record["bytes"] = bytes.size();
   record["step_work"] = built.model.info.step_work;

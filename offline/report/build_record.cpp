@@ -134,6 +134,24 @@ std::optional<double> positive(const Reader& reader, const json& point, const st
   return value && *value > 0 && (key != "worst_patch_force_error" || *value < no_answer) ? value : std::nullopt;
 }
 
+std::vector<LevelFrontierPoint> level_points(const Reader& reader, const json& point) {
+  std::vector<LevelFrontierPoint> levels;
+  const json* array = reader.array(point, "levels");
+  if (array == nullptr) return levels;
+  for (const json& level : *array) {
+    reader.check_object(level, "levels");
+    const auto number = reader.number(level, "level");
+    if (!number || *number < 0 || *number > 31) continue;
+    levels.push_back({.level = static_cast<unsigned>(*number),
+                      .rms_error = positive(reader, level, "rms_error"),
+                      .worst_column_error = positive(reader, level, "worst_column_error"),
+                      .worst_patch_force_error = positive(reader, level, "worst_patch_force_error"),
+                      .bytes = positive(reader, level, "bytes"),
+                      .step_work = positive(reader, level, "step_work")});
+  }
+  return levels;
+}
+
 std::optional<FrontierPoint> frontier_point(const Reader& reader, const json& point) {
   const auto threshold = reader.number(point, "threshold");
   if (!threshold) return std::nullopt;
@@ -143,7 +161,8 @@ std::optional<FrontierPoint> frontier_point(const Reader& reader, const json& po
                        .worst_patch_force_error = positive(reader, point, "worst_patch_force_error"),
                        .kept_blocks = positive(reader, point, "kept_blocks"),
                        .bytes = positive(reader, point, "bytes"),
-                       .step_work = positive(reader, point, "step_work")};
+                       .step_work = positive(reader, point, "step_work"),
+                       .levels = level_points(reader, point)};
 }
 
 void keep_one_per_threshold(std::vector<FrontierPoint>& frontier) {
@@ -187,6 +206,8 @@ void read_compression(const Reader& reader, const json& root, BuildRecord& recor
   record.threshold = reader.number(*compression, "threshold");
   const auto patches = reader.number(*compression, "patches");
   if (patches && *patches >= 0) record.patches = static_cast<unsigned long long>(*patches);
+  const auto contacts = reader.number(*compression, "frontier_contacts");
+  if (contacts && *contacts >= 1) record.contacts = static_cast<unsigned long long>(*contacts);
   if (const json* frontier = reader.array(*compression, "frontier")) {
     for (const json& point : *frontier) {
       reader.check_object(point, "frontier");

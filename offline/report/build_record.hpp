@@ -24,6 +24,16 @@ struct FactGroup {
   std::vector<Fact> facts;
 };
 
+/// One compression on one constraint level; empty as in FrontierPoint.
+struct LevelFrontierPoint {
+  unsigned level = 0;
+  std::optional<double> rms_error;
+  std::optional<double> worst_column_error;
+  std::optional<double> worst_patch_force_error;
+  std::optional<double> bytes;      ///< of the model cut off after the level
+  std::optional<double> step_work;  ///< units, of a step resolved at the level
+};
+
 /// One compression of the same Green's functions that the build tried; what the record does not say, or what is no
 /// positive number, is empty.
 struct FrontierPoint {
@@ -34,17 +44,18 @@ struct FrontierPoint {
   std::optional<double> kept_blocks;
   std::optional<double> bytes;
   std::optional<double> step_work;  ///< units
+  std::vector<LevelFrontierPoint> levels;
 };
 
 /// What `greenloop build` recorded about itself. Every part may be missing.
 struct BuildRecord {
   std::string scene;
   std::vector<StageTime> stages;
-  std::vector<FactGroup>
-      groups;  ///< of every other object in the record, "remesh", "solve", ..., and of wavelets compared
-  std::optional<double> threshold;            ///< the chosen one
-  std::optional<unsigned long long> patches;  ///< that the chosen one's forces were measured on
-  std::vector<FrontierPoint> frontier;        ///< by increasing threshold, one point each
+  std::vector<FactGroup> groups;               ///< of every other object, "remesh", "solve", ..., and of wavelets compared
+  std::optional<double> threshold;             ///< the chosen one
+  std::optional<unsigned long long> patches;   ///< that the chosen one's forces were measured on
+  std::optional<unsigned long long> contacts;  ///< that step_work is for
+  std::vector<FrontierPoint> frontier;         ///< by increasing threshold, one point each
 };
 
 /// Reads the JSON file. Throws std::runtime_error naming file and key if it is no JSON or a present part has the wrong

@@ -18,9 +18,10 @@ TEST_CASE("a complete build record") {
     "scene": "bear.toml", "stages": [{"name": "remesh", "seconds": 2.5}],
     "remesh": {"base_vertices": 42, "smallest_angle_degrees": 21.5, "hausdorff_relative": 0.004},
     "solve": {"columns": 2100, "seconds": 33.25, "asymmetry": 1e-9},
-    "compression": {"threshold": 0.02, "patches": 64, "frontier": [
+    "compression": {"threshold": 0.02, "patches": 64, "frontier_contacts": 16, "frontier": [
       {"threshold": 0.1, "rms_error": 0.05, "bytes": 100, "step_work": 10, "worst_patch_force_error": 0.3},
-      {"threshold": 0.02, "rms_error": 0.01, "bytes": 300, "kept_blocks": 5, "worst_column_error": 0.04}]}})"));
+      {"threshold": 0.02, "rms_error": 0.01, "bytes": 300, "kept_blocks": 5, "worst_column_error": 0.04,
+       "levels": [{"level": 0, "bytes": 30, "worst_patch_force_error": 1e9}, {"rms_error": 1}]}]}})"));
   CHECK(record.scene == "bear.toml");
   REQUIRE(record.stages.size() == 1);
   CHECK(record.stages[0].seconds == 2.5);
@@ -39,6 +40,11 @@ TEST_CASE("a complete build record") {
   CHECK(record.frontier[0].worst_column_error == 0.04);
   CHECK(record.frontier[0].kept_blocks == 5);
   CHECK_FALSE(record.frontier[0].step_work);
+  CHECK(record.contacts == 16);
+  REQUIRE(record.frontier[0].levels.size() == 1);
+  CHECK(record.frontier[0].levels[0].bytes == 30);
+  CHECK_FALSE(record.frontier[0].levels[0].worst_patch_force_error);
+  CHECK(record.frontier[1].levels.empty());
   CHECK(record.frontier[1].step_work == 10);
   CHECK(record.frontier[1].worst_patch_force_error == 0.3);
 }
@@ -98,6 +104,8 @@ TEST_CASE("a wrong build record is refused with file and key") {
   CHECK(mentions(refusal(R"({"stages": [3]})"), "an element of 'stages' is number"));
   CHECK(mentions(refusal(R"({"compression": {"threshold": "x"}})"), "'threshold' is string, expected a number"));
   CHECK(mentions(refusal(R"({"compression": {"frontier": [1]}})"), "an element of 'frontier' is number"));
+  CHECK(mentions(refusal(R"({"compression": {"frontier": [{"threshold": 1, "levels": [1]}]}})"),
+                 "an element of 'levels' is number"));
 }
 
 TEST_CASE("provenance becomes groups of facts; what is no object becomes none") {

@@ -9,6 +9,7 @@
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
 #include "offline/report/build_record.hpp"
+#include "offline/report/level_frontiers.hpp"
 #include "offline/report/loop_figures.hpp"
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
@@ -104,6 +105,9 @@ void add_figure(Figure figure, HtmlPage& page, std::vector<Figure>& figures) {
 
 void add_model(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
   if (material.build && has_frontier(*material.build)) add_figure(frontier_figure(*material.build), page, figures);
+  if (material.build && has_level_frontiers(*material.build)) {
+    add_figure(level_frontiers_figure(*material.build), page, figures);
+  }
   page.heading("Constraint levels");
   page.table(
       level_table(material.model, material.summary),

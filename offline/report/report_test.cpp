@@ -13,6 +13,7 @@
 #include "formats/testing/synthetic_model.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
+#include "offline/report/level_frontiers.hpp"
 #include "offline/report/loop_figures.hpp"
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
@@ -66,8 +67,10 @@ struct Sample {
   [[nodiscard]] std::filesystem::path build() const {
     return folder.write("build.json", R"({"scene": "ball & <co>", "stages": [{"name": "solve", "seconds": 2}],
       "compression": {"threshold": 0.02, "frontier": [
-      {"threshold": 0.01, "rms_error": 0.01, "worst_patch_force_error": 0.03, "bytes": 2000, "step_work": 900},
-      {"threshold": 0.02, "rms_error": 0.02, "worst_patch_force_error": 0.05, "bytes": 1000, "step_work": 500}]}})");
+      {"threshold": 0.01, "rms_error": 0.01, "worst_patch_force_error": 0.03, "bytes": 2000, "step_work": 900,
+       "levels": [{"level": 1, "rms_error": 0.01, "bytes": 400, "step_work": 90}]},
+      {"threshold": 0.02, "rms_error": 0.02, "worst_patch_force_error": 0.05, "bytes": 1000, "step_work": 500,
+       "levels": [{"level": 1, "rms_error": 0.02, "bytes": 300, "step_work": 50}]}]}})");
   }
   [[nodiscard]] Report report(bool complete) const {
     ReportInputs inputs{.model = model, .trace = {}, .snapshot = {}, .build = {}};
@@ -98,8 +101,8 @@ TEST_CASE("the command writes the complete report and every figure, the same as 
     CHECK(svg.starts_with("<?xml"));
     CHECK_FALSE(has(svg, "var("));
   }
-  CHECK(names == std::vector<std::string>{"body", "force", "work", "levels", "meshes", "frontier", "level_errors",
-                                          "bytes", "stages"});
+  CHECK(names == std::vector<std::string>{"body", "force", "work", "levels", "meshes", "frontier", "level_frontiers",
+                                          "level_errors", "bytes", "stages"});
   CHECK(report.missing.empty());
   CHECK(report.html.size() < 2'000'000);
   const std::string text = without_pictures(report.html);
@@ -284,6 +287,34 @@ TEST_CASE("the frontier has a panel for every pair of figures that two points ha
   const Figure all = frontier_figure(record);
   CHECK(has(all.svg, "work of a step"));
   CHECK(has(all.svg, ">chosen<"));
+}
+
+TEST_CASE("every constraint level with two points has a row of size and of speed against its errors") {
+  BuildRecord record;
+  record.frontier.resize(2);
+  CHECK_FALSE(has_level_frontiers(record));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double size = 1 + static_cast<double>(i);
+    record.frontier[i].threshold = 0.1 * size;
+    LevelFrontierPoint point;
+    point.rms_error = 0.01 * size;
+    point.bytes = point.step_work = 90 / size;
+    for (point.level = 1; point.level <= (i == 0 ? 3U : 2U); ++point.level) record.frontier[i].levels.push_back(point);
+  }
+  REQUIRE(has_level_frontiers(record));
+  Figure figure = level_frontiers_figure(record);
+  CHECK(has(figure.svg, "constraint level 1"));
+  CHECK(has(figure.svg, "constraint level 2"));
+  CHECK_FALSE(has(figure.svg, "constraint level 3"));
+  const std::string ring = "fill=\"none\" stroke=\"var(--ink)\"";
+  CHECK_FALSE(has(figure.svg, ring));
+  CHECK_FALSE(has(figure.caption, "Work"));
+  record.threshold = 0.2;
+  record.contacts = 16;
+  figure = level_frontiers_figure(record);
+  CHECK(has(figure.svg, ring));
+  CHECK(has(figure.caption, "Work: 16 contacts"));
+  CHECK_FALSE(has(figure.svg, "nan"));
 }
 
 TEST_CASE("level errors of zero have no place in the figure") {

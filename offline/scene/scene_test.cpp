@@ -453,8 +453,10 @@ TEST_CASE("refused: a scene file that is not there") {
                        SceneError);
 }
 
-TEST_CASE("the examples are accepted: the file, and the one in the documentation") {
+TEST_CASE("the examples are accepted: the files, and the one in the documentation") {
   CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/bear.toml").mesh.name == "bear_bis.off");
+  CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/bunny.toml").mesh.name == "bunny.obj");
+  CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/blob.toml").mesh.name == "blob.off");
   std::ifstream stream(GREENLOOP_SOURCE "/docs/scene.md");
   const std::string page(std::istreambuf_iterator<char>(stream), {});
   const auto begin = page.find("```toml\n");

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "formats/exchange/semi_regular_mesh.hpp"
+#include "offline/compress/contact_patches.hpp"
+#include "offline/compress/encoding_search.hpp"
+#include "offline/compress/surface_wavelet.hpp"
+#include "offline/compress/wavelet_compliance.hpp"
+
+namespace greenloop::offline {
+
+/// Patches and columns of the exact compliance of a coarse constraint level, to measure encodings with.
+struct LevelSample {
+  static constexpr std::size_t most_patches = 16;
+  static constexpr std::size_t most_columns = 64;  ///< evenly spaced
+
+  std::size_t level = 0;
+  ContactPatches patches;
+  std::vector<SampleColumn> columns;
+};
+
+/// Samples of the constraint levels from `coarsest` up to, not including, the finest. Work: at most 1088 times
+/// exact_column per level.
+[[nodiscard]] std::vector<LevelSample> sample_levels(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,
+                                                     const WaveletCompliance& exact, std::size_t coarsest);
+
+/// Bytes, blocks and, unless `work` is empty, work of an encoded model cut off after each constraint level; errors 0.
+[[nodiscard]] std::vector<LevelTrial> level_costs(const EncodedModel& model, const LevelWork& work);
+
+/// Tries thresholds at powers of two of the chosen one, from half of it to 16 times as much, where nothing near was
+/// tried yet and the couplings at hand reach. Work: at most five trials.
+void fill_gaps(const TrialBench& bench, const ContactPatches& patches, double chosen, double floor,
+               std::vector<Trial>& trials);
+
+/// What was tried, by decreasing threshold, one trial each (the latest), on every constraint level: errors of coarse
+/// levels on the samples, those of the finest as tried. Fields leave out the same everywhere, so that work compares; it
+/// is counted only if the bench has a step_work. Work: an encoding, the samples' columns and the field columns per
+/// threshold.
+[[nodiscard]] std::vector<Trial> measure_frontier(const TrialBench& bench, const std::vector<LevelSample>& samples,
+                                                  const FieldThresholds& field, const std::vector<Trial>& trials);
+
+/// Says in `model` what its fields leave out, and how many blocks its field columns then have. Work: that of
+/// ModelField.
+void set_field(const FieldThresholds& field, ModelData& model);
+
+}  // namespace greenloop::offline

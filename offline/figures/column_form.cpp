@@ -1,0 +1,230 @@
+#include "offline/figures/column_form.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "offline/compress/contact_patches.hpp"
+#include "offline/compress/exact_sample.hpp"
+#include "offline/compress/surface_wavelet.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+constexpr std::size_t width = 9;
+constexpr std::size_t stream_columns = 64;  // read at a time
+
+using Values = std::vector<double>;
+
+double block_norm(const Values& x, std::size_t row) {
+  return Eigen::Map<const Eigen::Matrix3d>(x.data() + width * row).norm();
+}
+
+double largest_block(const Values& x) {
+  double most = 0;
+  for (std::size_t row = 0; row < x.size() / width; ++row) most = std::max(most, block_norm(x, row));
+  return most;
+}
+
+double energy(const Values& x) { return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size()).squaredNorm(); }
+
+// Compresses columns and sums up their errors, for every threshold.
+class ColumnCompression {
+ public:
+  ColumnCompression(const SurfaceWavelet& wavelet, const std::vector<double>& thresholds)
+      : wavelet_(&wavelet), thresholds_(&thresholds), sums_(thresholds.size()) {
+    std::size_t level = 0;
+    for (std::size_t row = 0; row < wavelet.rows(); ++row) {
+      while (row >= wavelet.row_end(level)) ++level;
+      const int coarser = static_cast<int>(level) - static_cast<int>(wavelet.finest());
+      level_share_.push_back(level == 0 ? 0 : std::ldexp(1.0, coarser));
+    }
+  }
+
+  // `take(threshold's number, error of the compressed column)`
+  template <class Take>
+  void add(const Values& x, Take take) {
+    const std::size_t finest = wavelet_->finest();
+    const double peak = largest_block(x);
+    Values coefficients = x;
+    for (std::size_t level = finest; level > 0; --level) wavelet_->split(level, width, coefficients.data());
+    exact_energy_ += energy(x);
+    ++columns_;
+    for (std::size_t t = 0; t < sums_.size(); ++t) {
+      Values error = dropped(coefficients, (*thresholds_)[t] * peak, sums_[t].kept);
+      for (std::size_t level = 1; level <= finest; ++level) wavelet_->merge(level, width, error.data());
+      sums_[t].error_energy += energy(error);
+      sums_[t].worst = std::max(sums_[t].worst, largest_block(error) / peak);
+      take(t, error);
+    }
+  }
+
+  [[nodiscard]] LevelRates rates(std::size_t level) const {
+    LevelRates result{.level = level, .columns = columns_, .points = {}};
+    const auto dense = static_cast<double>(columns_ * wavelet_->rows());
+    for (std::size_t t = 0; t < sums_.size(); ++t) {
+      RatePoint point;
+      point.threshold = (*thresholds_)[t];
+      point.ratio = dense / static_cast<double>(sums_[t].kept);
+      point.rms = std::sqrt(sums_[t].error_energy / exact_energy_);
+      point.worst_column = sums_[t].worst;
+      result.points.push_back(point);
+    }
+    return result;
+  }
+
+ private:
+  struct Sum {
+    std::size_t kept = 0;
+    double error_energy = 0, worst = 0;
+  };
+
+  [[nodiscard]] Values dropped(const Values& coefficients, double threshold, std::size_t& kept) const {
+    Values drop(coefficients.size(), 0.0);
+    for (std::size_t row = 0; row < level_share_.size(); ++row) {
+      if (block_norm(coefficients, row) >= level_share_[row] * threshold) {
+        ++kept;
+      } else {
+        std::copy_n(coefficients.begin() + static_cast<std::ptrdiff_t>(width * row), width,
+                    drop.begin() + static_cast<std::ptrdiff_t>(width * row));
+      }
+    }
+    return drop;
+  }
+
+  const SurfaceWavelet* wavelet_;
+  const std::vector<double>* thresholds_;
+  std::vector<double> level_share_;  // [row] of epsilon
+  std::vector<Sum> sums_;            // [threshold]
+  double exact_energy_ = 0;
+  std::size_t columns_ = 0;
+};
+
+// Green's functions of a coarse level's scaling functions, summed from the columns of nodes.
+class CoarseColumns {
+ public:
+  CoarseColumns(const SurfaceWavelet& wavelet, std::size_t level) : count_(wavelet.row_end(level)) {
+    values_.resize(count_, std::vector<float>(width * wavelet.rows(), 0.0F));
+    scaling_.assign(wavelet.rows() * count_, 0.0);
+    for (std::size_t k = 0; k < count_; ++k) scaling_[k * count_ + k] = 1;
+    for (std::size_t l = level + 1; l <= wavelet.finest(); ++l) wavelet.merge(l, count_, scaling_.data());
+  }
+
+  void add(std::size_t node, const Values& x) {
+    for (std::size_t k = 0; k < count_; ++k) {
+      const double weight = scaling_[node * count_ + k];
+      if (weight == 0) continue;
+      for (std::size_t i = 0; i < x.size(); ++i) values_[k][i] += static_cast<float>(weight * x[i]);
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] Values column(std::size_t k) const { return {values_[k].begin(), values_[k].end()}; }
+
+ private:
+  std::size_t count_;
+  Values scaling_;  // [row][scaling function] its value there
+  std::vector<std::vector<float>> values_;
+};
+
+// The finest level's compressed patches beside the exact ones.
+class PatchForces {
+ public:
+  PatchForces(const std::vector<Eigen::Vector3d>& positions, std::size_t thresholds)
+      : exact_(positions, figure_patches), found_(thresholds, exact_), rows_(exact_.rows()) {}
+
+  [[nodiscard]] bool touch(std::size_t j) const { return std::binary_search(rows_.begin(), rows_.end(), j); }
+  void add_exact(std::size_t j, const Values& x, double area) { exact_.add(block(x, area), j); }
+  void add(std::size_t threshold, std::size_t j, const Values& x, double area) {
+    found_[threshold].add(block(x, area), j);
+  }
+  [[nodiscard]] double worst_error(std::size_t threshold) const { return exact_.worst_force_error(found_[threshold]); }
+
+ private:
+  static Eigen::MatrixXd block(const Values& x, double area) {
+    Eigen::MatrixXd columns(x.size() / 3, 3);
+    for (std::size_t i = 0; i < x.size() / width; ++i) {
+      columns.middleRows<3>(static_cast<Eigen::Index>(3 * i)) =
+          Eigen::Map<const Eigen::Matrix3d>(x.data() + width * i) / area;
+    }
+    return columns;
+  }
+
+  ContactPatches exact_;
+  std::vector<ContactPatches> found_;  // [threshold]
+  std::vector<std::size_t> rows_;
+};
+
+Values scaled(Values values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+class ColumnFormStudy {
+ public:
+  ColumnFormStudy(const ExactBody& body, const WaveletKind& kind, const std::vector<double>& thresholds)
+      : body_(body),
+        wavelet_(body.mesh, body.flags, body.area, kind.wavelet),
+        thresholds_(thresholds),
+        patches_(row_positions(body.mesh, wavelet_, wavelet_.finest()), thresholds.size()),
+        finest_(wavelet_, thresholds) {
+    for (std::size_t level = 0; level < wavelet_.finest(); ++level) coarse_.emplace_back(wavelet_, level);
+  }
+
+  [[nodiscard]] std::vector<LevelRates> run(const Progress& progress) {
+    const std::size_t rows = wavelet_.rows();
+    for (std::size_t first = 0; first < rows; first += stream_columns) {
+      const std::size_t count = std::min(stream_columns, rows - first);
+      const Eigen::MatrixXd block = body_.columns(first, count);
+      for (std::size_t j = 0; j < count; ++j) add(first + j, blocks_of(block, j));
+      if (progress) progress(static_cast<double>(first + count) / static_cast<double>(rows), "one-sided columns");
+    }
+    return rates();
+  }
+
+ private:
+  void add(std::size_t j, const Values& column) {
+    const double area = body_.area[wavelet_.nodes()[j]];
+    const Values x = scaled(column, area);
+    for (CoarseColumns& level : coarse_) level.add(j, x);
+    const bool in_patch = patches_.touch(j);
+    if (in_patch) patches_.add_exact(j, x, area);
+    finest_.add(x, [&](std::size_t threshold, const Values& error) {
+      if (!in_patch) return;
+      Values found = x;
+      for (std::size_t i = 0; i < x.size(); ++i) found[i] -= error[i];
+      patches_.add(threshold, j, found, area);
+    });
+  }
+
+  [[nodiscard]] std::vector<LevelRates> rates() const {
+    std::vector<LevelRates> levels;
+    for (std::size_t level = 0; level < coarse_.size(); ++level) {
+      ColumnCompression compression(wavelet_, thresholds_);
+      for (std::size_t k = 0; k < coarse_[level].size(); ++k) {
+        compression.add(coarse_[level].column(k), [](std::size_t, const Values&) {});
+      }
+      levels.push_back(compression.rates(level));
+    }
+    levels.push_back(finest_.rates(wavelet_.finest()));
+    for (std::size_t t = 0; t < thresholds_.size(); ++t) levels.back().points[t].patch_force = patches_.worst_error(t);
+    return levels;
+  }
+
+  const ExactBody& body_;
+  SurfaceWavelet wavelet_;
+  const std::vector<double>& thresholds_;
+  PatchForces patches_;
+  ColumnCompression finest_;
+  std::vector<CoarseColumns> coarse_;
+};
+
+}  // namespace
+
+std::vector<LevelRates> column_form_rates(const ExactBody& body, const WaveletKind& kind,
+                                          const std::vector<double>& thresholds, const Progress& progress) {
+  return ColumnFormStudy(body, kind, thresholds).run(progress);
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,130 @@
+#include "offline/figures/summation.hpp"
+
+#include <ctime>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "offline/compress/encoding_search.hpp"
+#include "offline/compress/model_field.hpp"
+#include "runtime/elastostatic.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+constexpr std::size_t sets = 8;  // take turns
+
+double thread_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+struct TouchableNode {
+  std::uint32_t node = 0, row = 0;  // in the file, in the domain
+};
+
+std::vector<TouchableNode> touchable_nodes(const ModelView& view) {
+  std::vector<TouchableNode> nodes;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      if ((level.nodes[i].flags & layout::node_touchable) != 0) {
+        nodes.push_back({level.node_begin + i, level.domain_begin + i});
+      }
+    }
+  }
+  return nodes;
+}
+
+// Sets that are pressed by a thousandth of the body's height.
+struct SpreadContacts {
+  std::vector<std::vector<Contact>> sets;
+  double blocks = 0;  // of their field columns, mean
+};
+
+SpreadContacts spread_contacts(const ModelView& view, std::size_t contacts) {
+  const auto nodes = touchable_nodes(view);
+  if (nodes.size() < contacts * sets) throw std::runtime_error("summation: the body has too few touchable nodes");
+  const float depth = 0.001F * (view.info->box_max[2] - view.info->box_min[2]);
+  const ModelField field(view);
+  SpreadContacts all{.sets = std::vector<std::vector<Contact>>(sets)};
+  for (std::size_t i = 0; i < contacts * sets; ++i) {
+    const auto [node, row] = nodes[i * nodes.size() / (contacts * sets)];
+    all.sets[i % sets].push_back({.node = node, .displacement = {0, 0, -depth}});
+    all.blocks += static_cast<double>(field.length(view.levels - 1, row)) / sets;
+  }
+  return all;
+}
+
+// A body with the memory it works in.
+class Stepper {
+ public:
+  Stepper(const Model& model, std::size_t contacts)
+      : force_(3 * contacts), displacement_(4 * sizeof(float) * std::size_t{model.node_count()}) {
+    const Limits limits{static_cast<std::uint32_t>(contacts), static_cast<std::uint32_t>(sets)};
+    memory_ = AlignedBytes(Elastostatic::required(model, limits).bytes);
+    auto created = Elastostatic::create(model, limits, {memory_.data(), memory_.size()});
+    if (!created) throw std::runtime_error("summation: the model is refused");
+    body_ = created.body;
+  }
+
+  std::uint64_t step(const std::vector<Contact>& set) {
+    auto* field = reinterpret_cast<float*>(displacement_.data());
+    const auto report = body_.step(set, {std::numeric_limits<std::uint64_t>::max()},
+                                   {force_, {field, displacement_.size() / sizeof(float)}});
+    if (report.status != Status::ok) {
+      throw std::runtime_error("summation: a step ends with status " + std::to_string(static_cast<int>(report.status)));
+    }
+    return report.work;
+  }
+
+ private:
+  std::vector<float> force_;
+  AlignedBytes memory_, displacement_;
+  Elastostatic body_;
+};
+
+double mean_work(Stepper& stepper, const std::vector<std::vector<Contact>>& all) {
+  double work = 0;
+  for (const auto& set : all) stepper.step(set);
+  for (const auto& set : all) work += static_cast<double>(stepper.step(set));
+  return work / static_cast<double>(all.size());
+}
+
+double median_seconds(Stepper& stepper, const std::vector<std::vector<Contact>>& all, std::size_t rounds) {
+  std::vector<double> times;
+  for (std::size_t round = 0; round < rounds; ++round) {
+    const double start = thread_seconds();
+    for (const auto& set : all) stepper.step(set);
+    times.push_back((thread_seconds() - start) / static_cast<double>(all.size()));
+  }
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+  std::nth_element(times.begin(), middle, times.end());
+  return *middle;
+}
+
+}  // namespace
+
+SummationPoint time_summation(const ModelData& model, std::size_t contacts, std::size_t rounds) {
+  const EncodedModel encoded(model);
+  const auto opened = Model::open(encoded.bytes.span());
+  if (!opened) throw std::runtime_error("summation: the model is refused");
+  const SpreadContacts all = spread_contacts(encoded.view, contacts);
+  Stepper stepper(opened.model, contacts);
+  const double work = mean_work(stepper, all.sets);
+  return {.blocks = all.blocks, .work = work, .seconds = median_seconds(stepper, all.sets, rounds)};
+}
+
+SummationFit fit_summation(const std::vector<SummationPoint>& points) {
+  std::vector<double> blocks, work, seconds;
+  for (const SummationPoint& point : points) {
+    blocks.push_back(point.blocks);
+    work.push_back(point.work);
+    seconds.push_back(point.seconds);
+  }
+  return {fit_line(blocks, work), fit_line(blocks, seconds)};
+}
+
+}  // namespace greenloop::offline
