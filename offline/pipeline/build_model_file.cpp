@@ -196,11 +196,16 @@ json compression_record(const CompressionReport& report, std::uint32_t contacts)
                       {"field_blocks", level.field_blocks},
                       {"longest_field_column", level.longest_field_column}});
   }
-  return {{"threshold", report.encoding.threshold}, {"quantum", report.encoding.quantum},
-          {"field_threshold", report.field.spread}, {"field_peak_threshold", report.field.peak},
-          {"lambda_min", report.lambda_min},        {"patches", report.patches},
-          {"dense_bytes", report.dense_bytes},      {"frontier", frontier(report)},
-          {"frontier_contacts", contacts},          {"wavelets", wavelet_comparison(report)},
+  return {{"threshold", report.encoding.threshold},
+          {"quantum", report.encoding.quantum},
+          {"field_threshold", report.field.spread},
+          {"field_peak_threshold", report.field.peak},
+          {"lambda_min", report.lambda_min},
+          {"patches", report.patches},
+          {"dense_bytes", report.dense_bytes},
+          {"frontier", frontier(report)},
+          {"frontier_contacts", contacts},
+          {"wavelets", wavelet_comparison(report)},
           {"constraint_levels", levels}};
 }
 

@@ -51,8 +51,8 @@ struct FrontierPoint {
 struct BuildRecord {
   std::string scene;
   std::vector<StageTime> stages;
-  std::vector<FactGroup> groups;               ///< of every other object, "remesh", "solve", ..., and of wavelets compared
-  std::optional<double> threshold;             ///< the chosen one
+  std::vector<FactGroup> groups;    ///< of every other object, "remesh", "solve", ..., and of wavelets compared
+  std::optional<double> threshold;  ///< the chosen one
   std::optional<unsigned long long> patches;   ///< that the chosen one's forces were measured on
   std::optional<unsigned long long> contacts;  ///< that step_work is for
   std::vector<FrontierPoint> frontier;         ///< by increasing threshold, one point each
