@@ -89,7 +89,7 @@ TEST_CASE("micrometres of 1 Pa and kilometres of 100 GPa answer as metres of 100
     MESSAGE("length ", units.length, " m: forces differ by ", force, ", fields by ", field);
     CHECK(force < 1e-4);
     CHECK(difference(scaled.compliance, metres.compliance) < 4e-4);
-    // round-off of the units decides which of two equally good sets of couplings makes the field
+    // round-off of the units decides which blocks near its threshold a field column keeps
     CHECK(field < 2 * test::default_accuracy.worst_column);
   }
 }
