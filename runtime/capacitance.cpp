@@ -8,17 +8,8 @@
 namespace greenloop {
 namespace {
 
-Block times(Float4 factor, const Block& block) {
+Block scaled(Float4 factor, const Block& block) {
   return {{factor * block.column[0], factor * block.column[1], factor * block.column[2]}};
-}
-
-Block times(const Block& a, const Block& b) {
-  Block result;
-  for (std::uint32_t c = 0; c < 3; ++c) {
-    const Float4 splats[3] = {splat(b.column[c][0]), splat(b.column[c][1]), splat(b.column[c][2])};
-    result.column[c] = product(a, splats);
-  }
-  return result;
 }
 
 // gives every coefficient that the set touches a slot; returns their number
@@ -129,7 +120,7 @@ void add_diagonal(const LevelView& level, const std::uint32_t* list, std::uint32
   for (std::uint32_t k = 0; k < count; ++k) {
     const std::uint32_t slot = scratch.slot[list[k]];
     const Block diagonal = symmetric_block(level.scales[list[k] - level.domain_begin].diagonal);
-    add_block(batch, times(scratch.root[slot], times(diagonal, scratch.root[slot])), slot, slot, scratch);
+    add_block(batch, product(scratch.root[slot], product(diagonal, scratch.root[slot])), slot, slot, scratch);
   }
 }
 
@@ -140,10 +131,10 @@ void add_couplings(const LevelView& level, std::uint32_t layer, float factor, co
     const std::uint32_t slot = scratch.slot[list[k]];
     const std::uint32_t blocks = load_slotted(level.couplings[layer], layer, list[k] - level.domain_begin, scratch.slot,
                                               scratch.places, scratch.blocks);
-    const Block root = times(splat(factor), scratch.root[slot]);
+    const Block root = scaled(splat(factor), scratch.root[slot]);
     for (std::uint32_t n = 0; n < blocks; ++n) {
       const std::uint32_t row = scratch.places[n].target;
-      const Block block = times(scratch.root[row], times(scratch.blocks[n], root));
+      const Block block = product(scratch.root[row], product(scratch.blocks[n], root));
       add_block(batch, block, slot, row, scratch);
       add_block(batch, transposed(block), row, slot, scratch);
     }

@@ -65,14 +65,6 @@ std::uint16_t upper_half(float value) {
   return static_cast<std::uint16_t>((bits + (0x7fff + (bits >> 16 & 1))) >> 16);
 }
 
-Block times(const Block& a, const Block& b) {
-  Block result;
-  for (std::uint32_t c = 0; c < 3; ++c) {
-    result.column[c] = product(a, b.column[c]);
-  }
-  return result;
-}
-
 void add(const Block& block, Block& sum) {
   for (std::uint32_t c = 0; c < 3; ++c) {
     sum.column[c] += block.column[c];
@@ -221,7 +213,7 @@ void FieldColumnMaker::add_couplings(std::uint32_t coefficient, std::uint32_t le
     const CouplingsView& couplings = own.couplings[layer];
     visit_rows(couplings, coefficient - own.domain_begin, 0, coefficient,
                [&](std::uint32_t row, std::uint32_t position) {
-                 add(times(stored_block(couplings, layout::value_bits[layer], position), scaled[layer]), sum_[row]);
+                 add(product(stored_block(couplings, layout::value_bits[layer], position), scaled[layer]), sum_[row]);
                });
   }
   std::uint32_t q = level;  // of the block's column: they come level by level in each layer
@@ -235,7 +227,7 @@ void FieldColumnMaker::add_couplings(std::uint32_t coefficient, std::uint32_t le
     }
     const Block stored =
         stored_block(view.level[q].couplings[block.layer()], layout::value_bits[block.layer()], block.position());
-    add(times(transposed(stored), scaled[block.layer()]), sum_[block.column]);
+    add(product(transposed(stored), scaled[block.layer()]), sum_[block.column]);
   }
 }
 
@@ -254,12 +246,12 @@ double FieldColumnMaker::sum_column(const Refinement& refinement, std::uint32_t 
       const std::uint32_t i = touched.list[q][k];
       Block scaled{};
       add(force[i][0], symmetric_block(scale(i, q).root), scaled);
-      add(times(symmetric_block(scale(i, q).diagonal), scaled), sum_[i]);
+      add(product(symmetric_block(scale(i, q).diagonal), scaled), sum_[i]);
       add_couplings(i, q, scaled);
     }
   }
   for (std::uint32_t i = 0; i < view.domain_count; ++i) {
-    sum_[i] = times(symmetric_block(scale(i, refinement.level[i]).root), sum_[i]);
+    sum_[i] = product(symmetric_block(scale(i, refinement.level[i]).root), sum_[i]);
   }
   Block own{};
   for (std::uint32_t q = 0; q <= c; ++q) {

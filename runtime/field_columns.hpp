@@ -11,7 +11,7 @@ namespace greenloop {
 
 // What a unit force on a touchable node of a constraint level moves, in wavelet coefficients: the columns that fields
 // are sums of (James & Pai 2003, section 5.4). Made of all couplings at start-up and thresholded as layout.hpp says, so
-// that a step reads a tenth of what the two-sided form would make it read. Values are upper halves of floats, which
+// that a step reads a fraction of what the two-sided form would make it read. Values are upper halves of floats, which
 // load without conversion.
 
 /// A block of a column, m/N.

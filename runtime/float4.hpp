@@ -102,6 +102,11 @@ inline Float4 product(const Block& m, Float4 x) {
   return product(m, splats);
 }
 
+/// Product of two blocks: fourth lanes are 0 if those of `a` are.
+inline Block product(const Block& a, const Block& b) {
+  return {{product(a, b.column[0]), product(a, b.column[1]), product(a, b.column[2])}};
+}
+
 // A stored value is moved to the top bits of a 32-bit lane, which needs no sign extension; the power of two that this
 // multiplies by is undone, exactly, in the factor that the block is multiplied with.
 
