@@ -12,6 +12,7 @@ namespace greenloop::offline {
 namespace {
 
 constexpr double left = 66, right = 16, top = 62, gap = 70, height = 230, bottom = 48;
+constexpr double legend_top = 20, legend_row = 20;
 constexpr const char* series_colours[] = {paint::blue,   paint::vermilion, paint::green,
                                           paint::orange, paint::purple,    paint::sky};
 
@@ -59,21 +60,39 @@ void draw_panel(SvgCanvas& canvas, const Rectangle& area, const Panel& panel) {
   }
 }
 
+struct LegendPlace {
+  double x, y;
+};
+
+// in as many rows as the curves' names take
+std::vector<LegendPlace> place_legend(const std::vector<Curve>& curves) {
+  std::vector<LegendPlace> places;
+  LegendPlace next{left, legend_top};
+  for (const Curve& curve : curves) {
+    const double width = 46 + text_width(curve.name, 12);
+    if (next.x > left && next.x + width > figure_width) next = {left, next.y + legend_row};
+    places.push_back(next);
+    next.x += width;
+  }
+  return places;
+}
+
 // one legend over all panels: they have the same curves
 Figure panels_figure(const std::string& name, const std::string& title, const std::string& caption,
                      const std::vector<Panel>& panels) {
   const auto count = static_cast<double>(panels.size());
   const double width = (figure_width - left - right - gap * (count - 1)) / count;
-  SvgCanvas canvas(figure_width, top + height + bottom, title, caption);
-  double x = left;
-  for (const Curve& curve : panels.front().curves) {
-    canvas.line({x, 20}, {x + 20, 20}, curve.stroke);
-    canvas.text({x + 26, 24}, curve.name, {.size = 12});
-    x += 46 + text_width(curve.name, 12);
+  const std::vector<LegendPlace> legend = place_legend(panels.front().curves);
+  const double panels_top = top + legend.back().y - legend_top;
+  SvgCanvas canvas(figure_width, panels_top + height + bottom, title, caption);
+  for (std::size_t i = 0; i < legend.size(); ++i) {
+    const Curve& curve = panels.front().curves[i];
+    canvas.line({legend[i].x, legend[i].y}, {legend[i].x + 20, legend[i].y}, curve.stroke);
+    canvas.text({legend[i].x + 26, legend[i].y + 4}, curve.name, {.size = 12});
   }
-  x = left;
+  double x = left;
   for (const Panel& panel : panels) {
-    draw_panel(canvas, {x, top, width, height}, panel);
+    draw_panel(canvas, {x, panels_top, width, height}, panel);
     x += width + gap;
   }
   return {name, title, caption, canvas.str()};
