@@ -58,13 +58,13 @@ void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float
 void write_border(std::uint32_t t, std::uint32_t added, std::uint32_t kept, std::uint32_t stride, const float* columns,
                   float* border) {
   for (std::uint32_t r = 0; r < 3; ++r, border += stride) {
-    const float* own = columns + std::size_t{3 * t + r} * stride;
+    const float* own = columns + (std::size_t{3} * t + r) * stride;
     std::memcpy(border, own + std::size_t{3} * added, sizeof(float) * 3 * kept);
     for (std::uint32_t s = 0; s < 3 * t; ++s) {
-      border[3 * kept + s] = columns[std::size_t{s} * stride + 3 * t + r];
+      border[std::size_t{3} * kept + s] = columns[std::size_t{s} * stride + std::size_t{3} * t + r];
     }
     for (std::uint32_t c = 0; c <= r; ++c) {
-      border[3 * (kept + t) + c] = columns[std::size_t{3 * t + c} * stride + 3 * t + r];
+      border[std::size_t{3} * (kept + t) + c] = columns[(std::size_t{3} * t + c) * stride + std::size_t{3} * t + r];
     }
   }
 }
@@ -84,7 +84,7 @@ void list_positions(const ContactSet& set, Factor& factor) {
 void FactorUpdateScratch::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
   const std::uint64_t stride = padded_order(3 * columns_of_a_set);
   order = arena.take<std::uint32_t>(columns_of_a_set);
-  columns = arena.take<Float4>(3 * FactorChanges::most * stride / 4);
+  columns = arena.take<Float4>(std::uint64_t{3} * FactorChanges::most * stride / 4);
   border = arena.take<Float4>(3 * stride / 4);
 }
 
