@@ -43,16 +43,14 @@ double relative_error(std::span<const float> computed, std::size_t stride, const
 double tolerance_of(const DenseAnswer& dense) { return 60 * dense.condition * 0x1p-24; }
 
 TEST_CASE("every constraint level agrees with a dense double-precision solution of what the file stands for") {
-  for (const auto& options :
-       {SyntheticOptions{.levels = 4, .epsilon = 0}, SyntheticOptions{.levels = 4},
-        SyntheticOptions{.levels = 4, .field_threshold = 0.01, .field_peak_threshold = 0.2},
-        SyntheticOptions{.levels = 5, .field_threshold = 0.004, .touchable_above = 0.5},
-        SyntheticOptions{.levels = 4, .wavelet = layout::Wavelet::linear},
-        SyntheticOptions{.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly},
-        SyntheticOptions{.levels = 4, .wavelet = layout::Wavelet::butterfly},
-        SyntheticOptions{.levels = 5, .wavelet = layout::Wavelet::lifted_butterfly, .touchable_above = 0.5},
-        SyntheticOptions{.levels = 3, .field_threshold = 0}, SyntheticOptions{.levels = 2, .quantum = 0},
-        SyntheticOptions{.levels = 1}}) {
+  for (const auto& options : {SyntheticOptions{.levels = 4, .epsilon = 0}, SyntheticOptions{.levels = 4},
+                              SyntheticOptions{.levels = 4, .field_threshold = 0.01, .field_peak_threshold = 0.2},
+                              SyntheticOptions{.levels = 5, .field_threshold = 0.004, .touchable_above = 0.5},
+                              SyntheticOptions{.levels = 4, .wavelet = layout::Wavelet::linear},
+                              SyntheticOptions{.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly},
+                              SyntheticOptions{.levels = 4, .wavelet = layout::Wavelet::butterfly},
+                              SyntheticOptions{.levels = 3, .field_threshold = 0},
+                              SyntheticOptions{.levels = 2, .quantum = 0}, SyntheticOptions{.levels = 1}}) {
     const ModelData data = synthetic_model(options);
     const TestModel model(encode(data));
     CAPTURE(options.levels);
