@@ -54,7 +54,8 @@ typedef enum greenloop_create_error {
   GREENLOOP_CREATE_ARENA_TOO_SMALL,
   GREENLOOP_CREATE_ARENA_MISALIGNED,
   GREENLOOP_CREATE_BAD_LIMITS,
-  GREENLOOP_CREATE_UNSUPPORTED_MODEL
+  GREENLOOP_CREATE_UNSUPPORTED_MODEL,
+  GREENLOOP_CREATE_INCONSISTENT_MODEL
 } greenloop_create_error;
 
 /* What came of a step. On GREENLOOP_OK and GREENLOOP_COARSER the buffers hold the answer; on any other nothing was
@@ -146,7 +147,8 @@ int greenloop_position(const greenloop_model* model, uint32_t node, float* posit
 /* Bytes and worst-case work in closed form. Start-up. */
 greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits);
 
-/* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up. */
+/* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up; makes the columns that fields are sums of, which takes
+ * a second or so for ten thousand nodes. */
 greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes);
 
 /* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of every node.
