@@ -84,7 +84,7 @@ void set_field(const FieldThresholds& field, ModelData& model) {
   model.info.field_threshold = static_cast<float>(field.spread);
   model.info.field_peak_threshold = static_cast<float>(field.peak);
   const EncodedModel encoded(model);
-  const FieldColumnMaker::Counts counts = ModelField(encoded.view).counts();
+  const FieldColumnMaker::Counts counts = count_field_columns(encoded.view);
   model.levels.back().counts.field_blocks = counts.blocks;
   model.levels.back().counts.longest_field_column = counts.longest;
 }

@@ -45,7 +45,7 @@ void fill_gaps(const TrialBench& bench, const ContactPatches& patches, double ch
                                                   const FieldThresholds& field, const std::vector<Trial>& trials);
 
 /// Says in `model` what its fields leave out, and how many blocks its field columns then have. Work: that of
-/// ModelField.
+/// count_field_columns.
 void set_field(const FieldThresholds& field, ModelData& model);
 
 }  // namespace greenloop::offline

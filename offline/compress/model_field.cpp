@@ -2,33 +2,61 @@
 
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 namespace greenloop::offline {
 
-void ModelField::Tables::carve(Arena& arena, const ModelView& view) {
-  refinement.carve(arena, view);
-  maker.carve(arena, view);
-  touched.carve(arena, view);
-  force = arena.take_zeroed<Float4>(view.domain_count);
-}
+namespace {
 
-ModelField::ModelField(const ModelView& view) : view_(view) {
-  Arena counting;
-  Tables sized;
-  sized.carve(counting, view);
-  tables_memory_ = AlignedBytes(static_cast<std::size_t>(counting.bytes()));
-  Arena arena(tables_memory_.data());
-  Tables tables;
-  tables.carve(arena, view);
-  tables.refinement.fill(view);
+// what makes field columns, in memory of its own
+struct Maker {
+  explicit Maker(const ModelView& view) {
+    Arena counting;
+    carve(counting, view);
+    memory = AlignedBytes(static_cast<std::size_t>(counting.bytes()));
+    Arena arena(memory.data());
+    carve(arena, view);
+    tables.fill(view);
+    refinement = tables.refinement(view, lifting);
+  }
+  Maker(const Maker&) = delete;  // the refinement points into it
+  Maker& operator=(const Maker&) = delete;
+
+  FieldColumnMaker::Counts make(const FieldColumnMaker::Room& room) {
+    const auto counts = columns.make(refinement, touched, force, room);
+    if (!counts.finite) throw std::runtime_error("compression: a field column is not finite");
+    return counts;
+  }
+
+  AlignedBytes memory;
+  RefinementTables tables;
+  FieldColumnMaker columns;
+  Touched touched;
+  Float4* force = nullptr;
   Lifting lifting;
-  const Refinement refinement = tables.refinement.refinement(view, lifting);
-  counts_ = tables.maker.make(refinement, tables.touched, tables.force, {});
-  if (!counts_.finite) throw std::runtime_error("compression: a field column is not finite");
+  Refinement refinement;
+
+ private:
+  void carve(Arena& arena, const ModelView& view) {
+    tables.carve(arena, view);
+    columns.carve(arena, view);
+    touched.carve(arena, view);
+    force = arena.take_zeroed<Float4>(view.domain_count);
+  }
+};
+
+}  // namespace
+
+FieldColumnMaker::Counts count_field_columns(const ModelView& view) { return Maker(view).make({}); }
+
+ModelField::ModelField(const ModelView& view) {
+  Maker maker(view);
+  counts_ = maker.make({});
   blocks_memory_ = AlignedBytes(static_cast<std::size_t>(counts_.blocks) * sizeof(ColumnBlock));
   auto* blocks = reinterpret_cast<ColumnBlock*>(blocks_memory_.data());
-  (void)tables.maker.make(refinement, tables.touched, tables.force, {blocks, counts_.blocks, counts_.longest});
-  columns_ = tables.maker.columns();
+  (void)maker.make({blocks, counts_.blocks, counts_.longest});
+  columns_ = maker.columns.columns();
+  tables_memory_ = std::move(maker.memory);
 }
 
 std::vector<double> ModelField::column(const SurfaceWavelet& wavelet, std::size_t level, std::size_t j) const {

@@ -10,10 +10,14 @@
 
 namespace greenloop::offline {
 
+/// How many blocks the field columns have that a body of the loop makes of a model, whatever the model says of it.
+/// Throws std::runtime_error if a number is not finite. Work: that of FieldColumnMaker::make.
+[[nodiscard]] FieldColumnMaker::Counts count_field_columns(const ModelView& view);
+
 /// The field columns that a body of the loop makes of a model, bit by bit.
 class ModelField {
  public:
-  /// Whatever the model says of their number. The view must outlive this. Throws std::runtime_error if a number is not
+  /// Whatever the model says of their number. The view may go. Throws std::runtime_error if a number is not
   /// finite. Work: that of FieldColumnMaker::make, twice.
   explicit ModelField(const ModelView& view);
 
@@ -30,15 +34,6 @@ class ModelField {
   [[nodiscard]] std::vector<double> column(const SurfaceWavelet& wavelet, std::size_t level, std::size_t j) const;
 
  private:
-  struct Tables {
-    RefinementTables refinement;
-    FieldColumnMaker maker;
-    Touched touched;
-    Float4* force = nullptr;
-    void carve(Arena& arena, const ModelView& view);
-  };
-
-  const ModelView& view_;
   FieldColumnMaker::Counts counts_;
   AlignedBytes tables_memory_, blocks_memory_;
   FieldColumns columns_;
