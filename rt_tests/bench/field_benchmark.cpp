@@ -9,6 +9,7 @@
 
 #include "rt_tests/bench/contact_sets.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
+#include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/stepper.hpp"
 
 namespace greenloop::bench {
@@ -20,12 +21,6 @@ constexpr std::size_t fewest_sets = 4, most_sets = 64;
 
 double microseconds(std::chrono::steady_clock::time_point since) {
   return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - since).count();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Sums of squares of the field's error and answer, and the worst errors of forces.

@@ -8,6 +8,7 @@
 #include "formats/exchange/green_store.hpp"
 #include "rt_tests/bench/contact_sets.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
+#include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/stepper.hpp"
 #include "runtime/body.hpp"
 #include "runtime/cholesky.hpp"
@@ -33,12 +34,6 @@ double time_of(std::size_t calls, Work work) {
     work();
   }
   return (thread_microseconds() - begin) / static_cast<double>(calls);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // a patch resolved on the finest level of a body
