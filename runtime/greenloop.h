@@ -147,8 +147,8 @@ int greenloop_position(const greenloop_model* model, uint32_t node, float* posit
 /* Bytes and worst-case work in closed form. Start-up. */
 greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits);
 
-/* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up; makes the columns that fields are sums of, which
- * takes a second or so for ten thousand nodes. */
+/* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up; makes the columns that fields are sums of, which can
+ * take seconds: see Elastostatic::create for the work. */
 greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes);
 
 /* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of every node.
