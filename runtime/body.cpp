@@ -131,7 +131,9 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, tables);
-  body.sums.carve(arena, view);
+  if (layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet))) {
+    body.field_touched = arena.take_zeroed<std::uint8_t>(view.node_count);
+  }
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
   carve_set(arena, view, sizes.counts.max_contacts, body.set);

@@ -26,7 +26,7 @@ struct Body {
   Lifting lifting;
   Refinement refinement;
   FieldColumns columns;
-  SparseCoefficients sums;                          ///< of the field
+  std::uint8_t* field_touched = nullptr;            ///< see compute_field
   const ParentOffsets* parents = nullptr;           ///< [domain]
   std::uint32_t* stored = nullptr;                  ///< [domain] blocks of all layers in a coefficient's column
   const ColumnCost* cost[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]

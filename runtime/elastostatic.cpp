@@ -156,7 +156,7 @@ void answer_field(Body& body, std::span<const Contact> contacts, std::uint32_t f
   const NodeForces forces{body.set.level, body.set.columns, body.set.column,
                           reinterpret_cast<const float*>(body.column_force)};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(model, forces, field_level, body.sums, x);
+  compute_field(model, forces, field_level, body.field_touched, x);
   if (body.set.level + 1 == view.levels) {
     // held nodes stand where they are held: only the others need the approximation
     for (const Contact& contact : contacts) {

@@ -4,6 +4,7 @@
 
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
+#include "runtime/domain.hpp"
 #include "runtime/float4.hpp"
 #include "runtime/sparse_forces.hpp"
 
@@ -16,7 +17,7 @@ namespace greenloop {
 
 /// A block of a column, m/N.
 struct alignas(8) ColumnBlock {
-  std::uint32_t byte_offset;  ///< of the moved coefficient, by its place in the domain, in an array of Float4
+  std::uint32_t byte_offset;  ///< of the moved coefficient's node in an array of Float4
   std::uint16_t value[9];     ///< by columns, upper halves of floats
   std::uint16_t zero;
 };
@@ -37,13 +38,18 @@ inline std::uint32_t column_blocks(const FieldColumns& columns, std::uint32_t c,
   return begin[field_level + 1] - begin[0];
 }
 
+/// Place in the domain of the coefficient that a block moves.
+inline std::uint32_t moved_place(const ModelView& view, const ColumnBlock& block) {
+  return domain_place(view, block.byte_offset / static_cast<std::uint32_t>(sizeof(Float4)));
+}
+
 /// Asks the processor for a column.
 void prefetch_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place) noexcept;
 
 /// sums += the column of the node at `place` of K(c), levels 0..field_level, times a force. For the loop; work: 10
 /// units per block.
 void add_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place, std::uint32_t field_level,
-                Float4 force, SparseCoefficients& sums) noexcept;
+                Float4 force, const SparseCoefficients& sums) noexcept;
 
 /// A stored block by its row's coefficient.
 struct MirroredBlock {

@@ -93,8 +93,9 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
         CAPTURE(field_level);
         const Forces forces(view, c, random);
         std::vector<Float4> x(view.node_count, splat(1e30F));
-        compute_field({view, body.columns, body.parents}, forces.on(c), field_level, body.sums, x.data());
-        CHECK(all_zero(body.sums.value, view.domain_count));
+        compute_field({view, body.columns, body.parents}, forces.on(c), field_level, body.field_touched, x.data());
+        CHECK((body.field_touched == nullptr ||
+               std::count(body.field_touched, body.field_touched + view.node_count, 0) == view.node_count));
         for (std::uint32_t q = 0; q < view.levels; ++q) {
           const LevelView& level = view.level[q];
           CHECK(all_zero(x.data() + level.node_begin + level.counts->domain_count,

@@ -11,41 +11,28 @@ Float4& at_offset(Float4* x, std::uint32_t byte_offset) {
   return *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + byte_offset);
 }
 
-// calls visit(i) for every i < count whose byte is not 0, in order; returns how many there are
+// calls visit(i) for every i < count whose byte is not 0, in order, and clears it
 template <class Visit>
-std::uint32_t visit_touched(const std::uint8_t* touched, std::uint32_t count, Visit visit) {
-  std::uint32_t visited = 0;
-  std::uint32_t i = 0;
-  while (i < count) {
+void take_touched(std::uint8_t* touched, std::uint32_t count, Visit visit) {
+  for (std::uint32_t i = 0; i < count; i += 8) {
     std::uint64_t eight = 0;
     std::memcpy(&eight, touched + i, count - i < 8 ? count - i : 8);
     while (eight != 0) {
       visit(i + static_cast<std::uint32_t>(std::countr_zero(eight)) / 8);
       eight &= eight - 1;
-      ++visited;
     }
-    i += 8;
   }
-  return visited;
+  std::memset(touched, 0, count);
 }
 
-// x = the averages of level 0
-void copy_averages(const ModelView& view, SparseCoefficients& averages, Float4* x) {
-  const std::uint32_t count = view.level[0].counts->domain_count;
-  std::memcpy(x, averages.value, sizeof(Float4) * count);
-  std::memset(averages.value, 0, sizeof(Float4) * count);
-  std::memset(averages.touched, 0, count);
-}
-
-// returns the number of details
-std::uint32_t undo_lifting(const LevelView& level, const ParentOffsets* parents, const SparseCoefficients& details,
-                           Float4* x) {
-  const std::uint32_t begin = level.domain_begin;
-  return visit_touched(details.touched + begin, level.counts->domain_count, [&](std::uint32_t i) {
-    const Float4 detail = details.value[begin + i];
+void undo_lifting(const LevelView& level, const ParentOffsets* parents, std::uint8_t* touched, Float4* x) {
+  const ParentOffsets* of_level = parents + level.domain_begin;
+  const Float4* odd = x + level.node_begin;
+  take_touched(touched + level.node_begin, level.counts->domain_count, [&](std::uint32_t i) {
+    const Float4 detail = odd[i];
     const float* lift = level.refinement[i].lift;
-    at_offset(x, parents[begin + i].byte_offset[0]) -= splat(lift[0]) * detail;
-    at_offset(x, parents[begin + i].byte_offset[1]) -= splat(lift[1]) * detail;
+    at_offset(x, of_level[i].byte_offset[0]) -= splat(lift[0]) * detail;
+    at_offset(x, of_level[i].byte_offset[1]) -= splat(lift[1]) * detail;
   });
 }
 
@@ -54,23 +41,8 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   const ParentOffsets* of_level = parents + level.domain_begin;
   const std::uint32_t count = level.counts->domain_count;
   for (std::uint32_t i = 0; i < count; ++i) {
-    odd[i] = splat(0.5F) * (at_offset(x, of_level[i].byte_offset[0]) + at_offset(x, of_level[i].byte_offset[1]));
+    odd[i] += splat(0.5F) * (at_offset(x, of_level[i].byte_offset[0]) + at_offset(x, of_level[i].byte_offset[1]));
   }
-}
-
-// the same as predict and add_details, bit by bit, in one pass over all nodes
-void predict_with_details(const LevelView& level, const ParentOffsets* parents, SparseCoefficients& details,
-                          Float4* x) {
-  Float4* odd = x + level.node_begin;
-  Float4* value = details.value + level.domain_begin;
-  const ParentOffsets* of_level = parents + level.domain_begin;
-  const std::uint32_t count = level.counts->domain_count;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    odd[i] =
-        splat(0.5F) * (at_offset(x, of_level[i].byte_offset[0]) + at_offset(x, of_level[i].byte_offset[1])) + value[i];
-    value[i] = Float4{};
-  }
-  std::memset(details.touched + level.domain_begin, 0, count);
 }
 
 void add_stencils(const LevelView& level, Float4* x) {
@@ -83,22 +55,6 @@ void add_stencils(const LevelView& level, Float4* x) {
       odd[i] += splat(layout::outer_weight) * ((x[outer[0]] + x[outer[1]]) + (x[outer[2]] + x[outer[3]]));
     }
   }
-}
-
-void add_details(const LevelView& level, SparseCoefficients& details, Float4* x) {
-  Float4* odd = x + level.node_begin;
-  Float4* value = details.value + level.domain_begin;
-  visit_touched(details.touched + level.domain_begin, level.counts->domain_count, [&](std::uint32_t i) {
-    odd[i] += value[i];
-    value[i] = Float4{};
-  });
-  std::memset(details.touched + level.domain_begin, 0, level.counts->domain_count);
-}
-
-void clear_others(const LevelView& level, Float4* x) {
-  const layout::Level& counts = *level.counts;
-  std::memset(x + level.node_begin + counts.domain_count, 0,
-              sizeof(Float4) * (counts.node_count - counts.domain_count));
 }
 
 // calls visit(odd node, parent, lift) for each parent that each domain node of M(level) is lifted into, in file order
@@ -178,28 +134,21 @@ void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept
   }
 }
 
-void SparseCoefficients::carve(Arena& arena, const ModelView& view) noexcept {
-  value = arena.take_zeroed<Float4>(view.domain_count);
-  touched = arena.take_zeroed<std::uint8_t>(view.domain_count);
-}
-
 void inverse_transform(const ModelView& view, const ParentOffsets* parents, std::uint32_t field_level,
-                       SparseCoefficients& coefficients, Float4* x) noexcept {
-  copy_averages(view, coefficients, x);
-  clear_others(view.level[0], x);
+                       const SparseCoefficients& coefficients) noexcept {
+  const bool lifted = coefficients.touched != nullptr;
+  if (lifted) {
+    std::memset(coefficients.touched, 0, view.level[0].counts->domain_count);
+  }
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
-    const std::uint32_t details = q <= field_level ? undo_lifting(level, parents, coefficients, x) : 0;
-    if (level.stencils == nullptr && details > level.counts->domain_count / 4) {
-      predict_with_details(level, parents, coefficients, x);
-    } else {
-      predict(level, parents, x);
-      if (level.stencils != nullptr) {
-        add_stencils(level, x);
-      }
-      add_details(level, coefficients, x);
+    if (lifted && q <= field_level) {
+      undo_lifting(level, parents, coefficients.touched, coefficients.value);
     }
-    clear_others(level, x);
+    predict(level, parents, coefficients.value);
+    if (level.stencils != nullptr) {
+      add_stencils(level, coefficients.value);
+    }
   }
 }
 

@@ -56,20 +56,18 @@ struct ParentOffsets {
 /// Of every domain node above level 0, by its place; parents: [domain]. Start-up; linear.
 void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept;
 
-/// Wavelet coefficients few of which are not zero. All are zero between uses.
+/// A field in the making: wavelet coefficients, few of which are not zero, where the displacements of their nodes will
+/// stand.
 struct SparseCoefficients {
-  Float4* value = nullptr;          ///< [domain]
-  std::uint8_t* touched = nullptr;  ///< [domain] 1 where the value may not be 0
-
-  /// Arrays out of `arena`; null while it counts.
-  void carve(Arena& arena, const ModelView& view) noexcept;
+  Float4* value = nullptr;          ///< [node_count] by file index; 0 outside the domain
+  std::uint8_t* touched = nullptr;  ///< [node_count] 1 where the value may not be 0, 0 between uses; null if unlifted
 };
 
-/// The inverse transform: x is written, `coefficients` are zero again. Levels above `field_level`, which must be 0
-/// there, are interpolated. parents: [domain]; x: [node_count], by file index. Only the nodes around a coefficient that
-/// was touched are lifted. For the loop; work: inverse_transform_work.
+/// The inverse transform in place; `touched` is zero again. Levels above `field_level`, which must be 0, are
+/// interpolated. parents: [domain]. Only the nodes around a coefficient that was touched are lifted. For the loop;
+/// work: inverse_transform_work.
 void inverse_transform(const ModelView& view, const ParentOffsets* parents, std::uint32_t field_level,
-                       SparseCoefficients& coefficients, Float4* x) noexcept;
+                       const SparseCoefficients& coefficients) noexcept;
 
 /// Work units of inverse_transform. odd_nodes: of the domain above level 0; touched: coefficients, at most.
 constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t touched,

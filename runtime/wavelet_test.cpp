@@ -25,15 +25,24 @@ std::vector<std::uint32_t> domain_nodes(const ModelView& view) {
   return nodes;
 }
 
-bool all_zero(const SparseCoefficients& sums, std::uint32_t count) {
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Float4 v = sums.value[i];
-    if (sums.touched[i] != 0 || v[0] != 0 || v[1] != 0 || v[2] != 0 || v[3] != 0) {
-      return false;
-    }
+// a field to be: coefficients by file index
+struct Coefficients {
+  explicit Coefficients(const ModelView& view) : value(view.node_count), touched(view.node_count) {}
+  void add(std::uint32_t node, Float4 coefficient) {
+    value[node] = coefficient;
+    touched[node] = 1;
   }
-  return true;
-}
+  // in place; touched is checked to be zero again
+  const std::vector<Float4>& inverse(const PlacedBody& placed, std::uint32_t field_level) {
+    const ModelView& view = *placed.body->view;
+    std::uint8_t* lifted = placed.body->field_touched == nullptr ? nullptr : touched.data();
+    inverse_transform(view, placed.body->parents, field_level, {value.data(), lifted});
+    CHECK((lifted == nullptr || std::count(touched.begin(), touched.end(), 0) == static_cast<int>(touched.size())));
+    return value;
+  }
+  std::vector<Float4> value;
+  std::vector<std::uint8_t> touched;
+};
 
 TEST_CASE("the inverse transform undoes the definition's forward transform") {
   layout::Wavelet kind{};
@@ -69,17 +78,13 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
       }
     }
   }
-  SparseCoefficients& sums = placed.body->sums;
+  Coefficients coefficients(view);
   for (const std::uint32_t node : domain_nodes(view)) {
-    const std::uint32_t place = domain_place(view, node);
-    for (std::size_t r = 0; r < 3; ++r) {
-      sums.value[place][r] = static_cast<float>(d[node][r]);
-    }
-    sums.touched[place] = 1;
+    const auto& of_node = d[node];
+    coefficients.add(
+        node, Float4{static_cast<float>(of_node[0]), static_cast<float>(of_node[1]), static_cast<float>(of_node[2])});
   }
-  std::vector<Float4> field(view.node_count, splat(1e30F));
-  inverse_transform(view, placed.body->parents, view.levels - 1, sums, field.data());
-  CHECK(all_zero(sums, view.domain_count));
+  const std::vector<Float4>& field = coefficients.inverse(placed, view.levels - 1);
   for (std::uint32_t node = 0; node < view.node_count; ++node) {
     for (std::size_t r = 0; r < 3; ++r) {
       CHECK(std::abs(double{field[node][r]} - x[node][r]) <= 8 * view.levels * 0x1p-24);
@@ -92,29 +97,22 @@ TEST_CASE("a few details give what all of them give that are zero but those") {
   const TestModel model({.levels = 5, .touchable_above = 0.95});
   const ModelView& view = model.view();
   const PlacedBody placed(view);
-  SparseCoefficients& sums = placed.body->sums;
+  const std::vector<std::uint32_t> nodes = domain_nodes(view);
   std::mt19937_64 random(3);
-  std::vector<Float4> x[2];
   for (int trial = 0; trial < 20; ++trial) {
-    std::vector<std::uint32_t> few(1 + random() % 40);
-    for (std::uint32_t& place : few) {
-      place = static_cast<std::uint32_t>(random() % view.domain_count);
+    Coefficients few(view);
+    for (std::size_t k = 1 + random() % 40; k > 0; --k) {
+      const std::uint32_t node = nodes[random() % nodes.size()];
+      few.add(node, splat3(0.25F + static_cast<float>(node)));
     }
-    for (std::vector<Float4>& field : x) {
-      for (std::uint32_t i = 0; i < view.domain_count && &field == x; ++i) {
-        sums.touched[i] = 1;
-      }
-      for (const std::uint32_t place : few) {
-        sums.value[place] = splat3(0.25F + static_cast<float>(place));
-        sums.touched[place] = 1;
-      }
-      field.assign(view.node_count, splat(1e30F));
-      inverse_transform(view, placed.body->parents, view.levels - 1, sums, field.data());
-      REQUIRE(all_zero(sums, view.domain_count));
+    Coefficients all = few;
+    for (const std::uint32_t node : nodes) {
+      all.touched[node] = 1;
     }
+    const std::vector<Float4>* x[] = {&few.inverse(placed, view.levels - 1), &all.inverse(placed, view.levels - 1)};
     for (std::uint32_t node = 0; node < view.node_count; ++node) {
       for (int r = 0; r < 4; ++r) {
-        CHECK(float{x[0][node][r]} == float{x[1][node][r]});
+        CHECK(float{(*x[0])[node][r]} == float{(*x[1])[node][r]});
       }
     }
   }
@@ -124,13 +122,11 @@ TEST_CASE("details above the field level are interpolated") {
   const TestModel model({.levels = 4, .touchable_above = 0.95});
   const ModelView& view = model.view();
   const PlacedBody placed(view);
-  SparseCoefficients& sums = placed.body->sums;
-  for (std::uint32_t i = 0; i < domain_up_to(view, 0); ++i) {
-    sums.value[i] = splat3(1.0F + static_cast<float>(i));
-    sums.touched[i] = 1;
+  Coefficients coarse(view);
+  for (std::uint32_t i = 0; i < view.level[0].counts->domain_count; ++i) {
+    coarse.add(i, splat3(1.0F + static_cast<float>(i)));
   }
-  std::vector<Float4> field(view.node_count, splat(1e30F));
-  inverse_transform(view, placed.body->parents, 0, sums, field.data());
+  const std::vector<Float4>& field = coarse.inverse(placed, 0);
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
