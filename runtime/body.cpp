@@ -113,18 +113,16 @@ void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, Cont
 void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch& scratch) {
   scratch.touched.carve(arena, view);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
-  const std::uint64_t slots = entries < view.domain_count ? entries : view.domain_count;
-  const std::uint64_t batch =
-      sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch;
+  scratch.room = sizes.counts.capacitance_room;
   scratch.coefficients = arena.take<PointCoefficient>(entries);
   scratch.begin = arena.take<std::uint32_t>(sizes.set_columns + std::uint64_t{1});
   scratch.column = arena.take<SlotColumn>(entries);
-  scratch.slot_begin = arena.take<std::uint32_t>(slots + 1);
-  scratch.batch_begin = arena.take<std::uint32_t>(slots);
-  scratch.batch_end = arena.take<std::uint32_t>(slots);
+  scratch.slot_begin = arena.take<std::uint32_t>(sizes.slots + 1);
+  scratch.batch_begin = arena.take<std::uint32_t>(sizes.slots);
+  scratch.batch_end = arena.take<std::uint32_t>(sizes.slots);
   scratch.slot = arena.take<std::uint32_t>(view.domain_count);
-  scratch.root = arena.take<Block>(slots);
-  scratch.sum = arena.take<Block>(slots * batch);
+  scratch.root = arena.take<Block>(sizes.slots);
+  scratch.sum = arena.take<Block>(scratch.room);
   scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
   scratch.blocks = arena.take<Block>(sizes.longest_column + std::uint64_t{1});
 }

@@ -201,9 +201,10 @@ void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns
     scratch.begin[i + 1] = write_functional(refinement, set.level, set.place[i], scratch.begin[i], scratch, force);
   }
   list_slot_columns(set.count, slots, scratch);
+  const std::uint64_t width = batch_width(scratch.room, slots);
   for (Batch batch{0, 0}; batch.first < computed; batch.first += batch.count) {
     const std::uint32_t left = computed - batch.first;
-    batch.count = left < CapacitanceScratch::batch ? left : CapacitanceScratch::batch;
+    batch.count = left < width ? left : static_cast<std::uint32_t>(width);
     begin_batch(batch, slots, scratch);
     for (std::uint32_t q = 0; q <= set.level; ++q) {
       const LevelView& level = view.level[q];

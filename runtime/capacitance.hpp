@@ -32,7 +32,7 @@ struct SlotColumn {
 /// Memory of assemble_capacitance. A coefficient of the set's functionals has a slot; there are `columns` columns and
 /// `entries` weights of functionals.
 struct CapacitanceScratch {
-  static constexpr std::uint32_t batch = 16;  ///< columns of the matrix that are summed together
+  static constexpr std::uint32_t batch = 16;  ///< columns of the matrix that are summed together, at least
 
   Touched touched;                           ///< of one node at a time
   PointCoefficient* coefficients = nullptr;  ///< [entries] the functionals, one after the other
@@ -43,7 +43,8 @@ struct CapacitanceScratch {
   std::uint32_t* batch_end = nullptr;        ///< [slots]
   std::uint32_t* slot = nullptr;             ///< [domain], layout::none between calls
   Block* root = nullptr;                     ///< [slots] scale
-  Block* sum = nullptr;                      ///< [slots * min(columns, batch)]
+  std::uint64_t room = 0;                    ///< slots * min(columns, batch), of the most there may be
+  Block* sum = nullptr;                      ///< [room]
   BlockPlace* places = nullptr;              ///< [longest column + 1]
   Block* blocks = nullptr;                   ///< [longest column + 1]
 };
@@ -64,11 +65,18 @@ struct CapacitanceCounts {
   std::uint64_t visits = 0;        ///< ColumnCost summed over the columns of the set
   std::uint64_t coefficients = 0;  ///< the same
   std::uint64_t blocks = 0;        ///< ColumnCost summed over the columns that are computed
+  std::uint64_t room = 0;          ///< of the scratch
 };
+
+/// Columns that are summed together: as many as the scratch has room for. slots: positive.
+constexpr std::uint64_t batch_width(std::uint64_t room, std::uint64_t slots) {
+  return room / slots > CapacitanceScratch::batch ? room / slots : CapacitanceScratch::batch;
+}
 
 /// Work units of assemble_capacitance.
 constexpr std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) {
-  const std::uint64_t batches = (counts.columns + CapacitanceScratch::batch - 1) / CapacitanceScratch::batch;
+  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
+  const std::uint64_t batches = (counts.columns + width - 1) / width;
   return 5 * counts.visits + 16 * counts.coefficients + 16 * counts.slots +
          batches * (68 * counts.slots + 74 * counts.stored) + 9 * counts.blocks +
          counts.columns * (3 * counts.slots + 9 * counts.coefficients);

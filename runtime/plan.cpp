@@ -29,13 +29,20 @@ std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexc
 std::uint64_t touch_work(const SetCounts& set) noexcept { return 2 * set.visits + 8 * set.coefficients; }
 
 CapacitanceCounts capacitance_counts(const SetCounts& set) noexcept {
-  return {set.columns, set.coefficients, set.stored, set.column_visits, set.column_coefficients, set.column_blocks};
+  return {.columns = set.columns,
+          .slots = set.coefficients,
+          .stored = set.stored,
+          .visits = set.column_visits,
+          .coefficients = set.column_coefficients,
+          .blocks = set.column_blocks};
 }
 
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
+  CapacitanceCounts capacitance = capacitance_counts(set);
+  capacitance.room = model.capacitance_room;
   return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
-         assemble_capacitance_work(capacitance_counts(set)) + cholesky_factor_work(order);
+         assemble_capacitance_work(capacitance) + cholesky_factor_work(order);
 }
 
 std::uint64_t force_work(const SetCounts& set) noexcept {

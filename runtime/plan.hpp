@@ -19,6 +19,7 @@ struct ModelCounts {
   std::uint32_t max_contacts = 0;
   std::uint32_t cached_factors = 0;
   std::uint64_t odd_nodes = 0;                  ///< of the domain, above level 0
+  std::uint64_t capacitance_room = 0;           ///< of CapacitanceScratch
   bool butterfly = false;                       ///< has_stencils
   std::uint64_t rows[layout::max_levels] = {};  ///< coefficients of levels 0..F
 };

@@ -71,6 +71,10 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
       requirement.worst_work[c] += cuts;
     }
   }
+  const std::uint64_t entries = sizes.set_columns * sizes.functional;
+  sizes.slots = entries < view.domain_count ? entries : view.domain_count;
+  sizes.counts.capacitance_room =
+      sizes.slots * (sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch);
   sizes.supported = true;
 }
 

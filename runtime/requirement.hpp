@@ -16,6 +16,7 @@ struct BodySizes {
   std::uint32_t longest_column = 0;  ///< most blocks in a column of a layer
   std::uint32_t most_neighbours[layout::max_levels] = {};
   std::uint64_t functional = 0;  ///< most coefficients of a point functional
+  std::uint64_t slots = 0;       ///< bound of the coefficients that a set's functionals have
 };
 
 /// Whether each limit is within the range that Limits states.
