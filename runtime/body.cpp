@@ -92,10 +92,13 @@ struct Tables {
   ColumnBlock* field_block = nullptr;
 };
 
-void carve_tables(Arena& arena, const ModelView& view, Tables& tables) {
+void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
   tables.refinement.carve(arena, view);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     tables.cost[c] = arena.take<ColumnCost>(domain_up_to(view, c));
+  }
+  if (sizes.counts.forces_only) {
+    return;
   }
   tables.parent_offsets = arena.take<ParentOffsets>(view.domain_count);
   tables.field_columns.carve(arena, view);
@@ -128,8 +131,8 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
 }
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
-  carve_tables(arena, view, tables);
-  if (layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet))) {
+  carve_tables(arena, view, sizes, tables);
+  if (!sizes.counts.forces_only && layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet))) {
     body.field_touched = arena.take_zeroed<std::uint8_t>(view.node_count);
   }
   body.stored = arena.take<std::uint32_t>(view.domain_count);
@@ -169,7 +172,6 @@ void fill_costs(const ModelView& view, const Tables& tables, std::uint32_t* degr
 
 void fill_tables(const ModelView& view, Tables& tables, Body& body) {
   tables.refinement.fill(view);
-  list_parent_offsets(view, tables.parent_offsets);
   list_node_facts(view, body.facts);
   count_stored(view, body.stored);
   fill_costs(view, tables, body.set.place_of_column, body);
@@ -179,8 +181,9 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
   }
 }
 
-// false if they are not within what the model says
-bool make_field_columns(const ModelView& view, Tables& tables, Body& body) {
+// false if the columns are not within what the model says
+bool prepare_fields(const ModelView& view, Tables& tables, Body& body) {
+  list_parent_offsets(view, tables.parent_offsets);
   const layout::Level& counts = *view.level[view.levels - 1].counts;
   const FieldColumnMaker::Room room{tables.field_block, counts.field_blocks, counts.longest_field_column};
   const auto made = tables.field_columns.make(body.refinement, body.touched, body.force, room);
@@ -208,7 +211,7 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   body.refinement = tables.refinement.refinement(view, body.lifting);
   body.parents = tables.parent_offsets;
   fill_tables(view, tables, body);
-  if (!make_field_columns(view, tables, body)) {
+  if (!body.counts.forces_only && !prepare_fields(view, tables, body)) {
     return nullptr;
   }
   body.force_limit = largest_force_sum(view, body.lifting);

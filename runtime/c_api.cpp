@@ -128,6 +128,9 @@ greenloop_fault greenloop_open(const void* bytes, size_t size, greenloop_model* 
           result.limit};
 }
 
+uint32_t greenloop_node_count_to(const greenloop_model* model, uint32_t level) {
+  return level < model_in(model).level_count() ? model_in(model).node_count(level) : 0;
+}
 uint32_t greenloop_node_count(const greenloop_model* model) { return model_in(model).node_count(); }
 
 uint32_t greenloop_level_count(const greenloop_model* model) { return model_in(model).level_count(); }
@@ -146,26 +149,34 @@ int greenloop_position(const greenloop_model* model, uint32_t node, float* posit
   return 1;
 }
 
+namespace {
+
+Limits limits_of(greenloop_limits limits) {
+  return {.max_contacts = limits.max_contacts,
+          .cached_factors = limits.cached_factors,
+          .forces_only = limits.forces_only != 0};
+}
+
+}  // namespace
+
 greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits) {
-  const Requirement need = Elastostatic::required(
-      model_in(model), {.max_contacts = limits.max_contacts, .cached_factors = limits.cached_factors});
+  const Requirement need = Elastostatic::required(model_in(model), limits_of(limits));
   greenloop_requirement requirement = {need.bytes, need.least_work, {}};
   std::memcpy(requirement.worst_work, need.worst_work, sizeof need.worst_work);
   return requirement;
 }
 
 greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes) {
-  const auto created = Elastostatic::create(
-      model_in(model), {.max_contacts = limits.max_contacts, .cached_factors = limits.cached_factors},
-      {static_cast<std::byte*>(arena), bytes});
+  const auto created =
+      Elastostatic::create(model_in(model), limits_of(limits), {static_cast<std::byte*>(arena), bytes});
   return {static_cast<greenloop_create_error>(created.error), created.requested, created.available, created.missing,
           reinterpret_cast<greenloop_body*>(std::bit_cast<Body*>(created.body))};
 }
 
 greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* contacts, size_t count, uint64_t work,
-                                float* force, float* displacement) {
+                                float* force, float* displacement, uint32_t nodes) {
   auto* const in_arena = reinterpret_cast<Body*>(body);
-  const std::size_t floats = displacement == nullptr ? 0 : static_cast<std::size_t>(4 * in_arena->counts.nodes);
+  const std::size_t floats = displacement == nullptr ? 0 : std::size_t{4} * nodes;
   const StepReport report = std::bit_cast<Elastostatic>(in_arena).step(
       {reinterpret_cast<const Contact*>(contacts), count}, {work}, {{force, 3 * count}, {displacement, floats}});
   return {static_cast<greenloop_status>(report.status),

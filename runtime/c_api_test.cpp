@@ -13,7 +13,7 @@
 namespace greenloop {
 namespace {
 
-constexpr greenloop_limits limits{.max_contacts = 9, .cached_factors = 2};
+constexpr greenloop_limits limits{.max_contacts = 9, .cached_factors = 2, .forces_only = 0};
 
 // a body made and stepped through C alone
 class CBody {
@@ -69,6 +69,9 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
   CHECK(c.need.least_work == body.requirement().least_work);
   CHECK(std::memcmp(c.need.worst_work, body.requirement().worst_work, sizeof c.need.worst_work) == 0);
   CHECK(greenloop_level_count(&c.model) == 3);
+  const std::uint32_t nodes = greenloop_node_count_to(&c.model, 2);
+  CHECK(nodes == greenloop_node_count(&c.model));
+  CHECK(greenloop_node_count_to(&c.model, 3) == 0);
   std::mt19937_64 random(31);
   std::set<int> met;
   for (int i = 0; i < 500; ++i) {
@@ -77,7 +80,7 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
     const bool with_field = i % 3 != 0;
     std::vector<float> force(3 * contacts.size());
     const auto report = greenloop_step(c.created.body, contacts.data(), contacts.size(), work, force.data(),
-                                       with_field ? c.field() : nullptr);
+                                       with_field ? c.field() : nullptr, with_field ? nodes : 0);
     const StepReport expected = body.step(to_cpp(contacts), work, with_field);
     REQUIRE(static_cast<int>(report.status) == static_cast<int>(expected.status));
     CHECK(report.constraint_level == expected.constraint_level);
@@ -133,7 +136,7 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(greenloop_create(&c.model, {0, 1}, arena.data(), c.need.bytes).error == GREENLOOP_CREATE_BAD_LIMITS);
+  CHECK(greenloop_create(&c.model, {0, 1, 0}, arena.data(), c.need.bytes).error == GREENLOOP_CREATE_BAD_LIMITS);
 }
 
 TEST_CASE("a model whose field columns are more than it says makes no body") {

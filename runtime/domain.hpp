@@ -21,6 +21,11 @@ inline bool in_domain(const ModelView& view, std::uint32_t node) noexcept {
   return node - level.node_begin < level.counts->domain_count;
 }
 
+/// Nodes of K(level): they come first.
+inline std::uint32_t nodes_up_to(const ModelView& view, std::uint32_t level) noexcept {
+  return view.level[level].node_begin + view.level[level].counts->node_count;
+}
+
 /// Domain nodes of K(level).
 inline std::uint32_t domain_up_to(const ModelView& view, std::uint32_t level) noexcept {
   return view.level[level].domain_begin + view.level[level].counts->domain_count;

@@ -19,11 +19,21 @@ struct Plan {
   Factor* cached = nullptr;
   FactorChanges changes;     ///< base: the factor to update, or null: make a fresh one
   std::uint64_t factor = 0;  ///< work of the factor, unless it is cached
-  std::uint32_t field_level = 0;
+  FieldLevels field_levels;
   std::uint64_t work = 0;   ///< spent on deciding
   std::uint64_t field = 0;  ///< work of the field
   bool fits = false;
 };
+
+// the finest level of the nodes that the response has room for; none if that is no level
+std::uint32_t finest_displaced(const Body& body, const Response& response) {
+  for (std::uint32_t q = body.counts.levels; q-- > 0 && !body.counts.forces_only;) {
+    if (response.displacement.size() == 4 * body.counts.nodes[q]) {
+      return q;
+    }
+  }
+  return layout::none;
+}
 
 Status check_request(const Body& body, std::size_t contacts, Budget budget, const Response& response) {
   if (budget.work < body.least_work) {
@@ -33,15 +43,15 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
     return Status::held_out_of_range;
   }
   const bool field_fits = response.displacement.empty() ||
-                          (response.displacement.size() == 4 * body.counts.nodes &&
+                          (finest_displaced(body, response) != layout::none &&
                            reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
   return response.force.size() == 3 * contacts && field_fits ? Status::ok : Status::held_response_size;
 }
 
 // as much of the field as a plan asks for
 std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
-  return field_work(body.counts, plan.counts, plan.field_level,
-                    count_field_blocks(body.columns, body.set, plan.field_level));
+  return field_work(body.counts, plan.counts, plan.field_levels,
+                    count_field_blocks(body.columns, body.set, plan.field_levels.details));
 }
 
 // touches the coefficients of the set and chooses how to make its factor
@@ -60,12 +70,14 @@ void plan_factor(Body& body, Plan& plan) {
   }
 }
 
-// resolves the contacts at the finest level that fits the budget with the whole field, else at the coarsest one with as
-// many details as fit; leaves the coefficients of that level touched unless its factor is cached
-Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field) {
+// resolves the contacts at the finest level that fits the budget with the field as it was asked for, else at the
+// coarsest one with as many details as fit; leaves the coefficients of that level touched unless its factor is cached
+Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, const Response& response) {
   const ModelView& view = *body.view;
   Plan plan;
-  plan.field_level = view.levels - 1;
+  const bool wants_field = !response.displacement.empty();
+  const std::uint32_t finest = wants_field ? finest_displaced(body, response) : view.levels - 1;
+  plan.field_levels = {finest, finest};
   const std::uint32_t coarsest = view.info->coarsest_constraint_level;
   std::uint64_t forces = 0;
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
@@ -87,8 +99,8 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
       return plan;
     }
   }
-  while (!plan.fits && wants_field && plan.field_level > 0) {
-    --plan.field_level;
+  while (!plan.fits && wants_field && plan.field_levels.details > 0) {
+    --plan.field_levels.details;
     plan.work += count_field_work(plan.counts);
     plan.field = planned_field_work(body, plan);
     plan.fits = plan.work + forces + plan.field <= budget;
@@ -149,20 +161,22 @@ bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& f
   return sum <= body.force_limit;
 }
 
-void answer_field(Body& body, std::span<const Contact> contacts, std::uint32_t field_level,
+void answer_field(Body& body, std::span<const Contact> contacts, const FieldLevels& levels,
                   std::span<float> displacement) {
   const ModelView& view = *body.view;
   const FieldModel model{view, body.columns, body.parents};
   const NodeForces forces{body.set.level, body.set.columns, body.set.column,
                           reinterpret_cast<const float*>(body.column_force)};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(model, forces, field_level, body.field_touched, x);
+  compute_field(model, forces, levels, body.field_touched, x);
   if (body.set.level + 1 == view.levels) {
     // held nodes stand where they are held: only the others need the approximation
     for (const Contact& contact : contacts) {
       const float* held = contact.displacement;
-      x[contact.node] =
-          Float4{without_denormals(held[0]), without_denormals(held[1]), without_denormals(held[2]), 0.0F};
+      if (contact.node < body.counts.nodes[levels.nodes]) {
+        x[contact.node] =
+            Float4{without_denormals(held[0]), without_denormals(held[1]), without_denormals(held[2]), 0.0F};
+      }
     }
   }
 }
@@ -175,7 +189,7 @@ void release(const Body& body, const Response& response, StepReport& report) {
     report.work += response.displacement.size() / 4;
   }
   report.constraint_level = view.levels - 1;
-  report.field_level = view.levels - 1;
+  report.field_level = response.displacement.empty() ? view.levels - 1 : finest_displaced(body, response);
 }
 
 StepReport held(Status status, std::uint64_t work) {
@@ -204,16 +218,16 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   share_forces(reinterpret_cast<const float*>(body.column_force), contacts.size(), body.set, response.force.data());
   if (!response.displacement.empty()) {
     work += plan.field;
-    answer_field(body, contacts, plan.field_level, response.displacement);
+    answer_field(body, contacts, plan.field_levels, response.displacement);
   }
   StepReport report;
   report.constraint_level = body.set.level;
-  report.field_level = plan.field_level;
+  report.field_level = plan.field_levels.details;
   report.error = view.level[body.set.level].counts->worst_column_error;
   report.work = work;
   report.cached_factor = plan.cached != nullptr;
   report.changed_nodes = plan.changes.base != nullptr ? plan.changes.added + plan.changes.removed : 0;
-  const bool finest = body.set.level + 1 == view.levels && plan.field_level + 1 == view.levels;
+  const bool finest = body.set.level + 1 == view.levels && plan.field_levels.details == plan.field_levels.nodes;
   report.status = finest ? Status::ok : Status::coarser;
   return report;
 }
@@ -283,7 +297,7 @@ StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, 
   if (contacts.empty()) {
     release(body, response, report);
   } else {
-    const Plan plan = make_plan(body, contacts, budget.work - report.work, !response.displacement.empty());
+    const Plan plan = make_plan(body, contacts, budget.work - report.work, response);
     report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, response)
                        : held(Status::held_over_budget, report.work + plan.work);
   }

@@ -14,6 +14,7 @@ struct Body;  // what a body keeps in its arena: runtime/body.hpp
 struct Limits {
   std::uint32_t max_contacts = 64;   ///< 1..4096, contacts per step
   std::uint32_t cached_factors = 8;  ///< 1..1024, capacitance factors kept
+  bool forces_only = false;          ///< no fields: little memory, and no columns to be made at the start
 };
 
 /// Work a step may spend, in work units: one unit is one multiply-add of the algorithm (one block times a vector is 9).
@@ -28,10 +29,10 @@ struct Contact {
 };
 
 enum class Status : std::uint8_t {
-  ok,                  ///< answered at the finest constraint level and the finest field level
-  coarser,             ///< answered within the budget at a coarser level
-  held_not_finite,     ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
-  held_out_of_range,   ///< a contact names no node of the model, or more contacts than Limits allow
+  ok,                 ///< answered at the finest constraint level and with all details of the nodes that were asked for
+  coarser,            ///< answered within the budget at a coarser level
+  held_not_finite,    ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
+  held_out_of_range,  ///< a contact names no node of the model, or more contacts than Limits allow
   held_not_touchable,  ///< a contact names a node that the scene did not declare touchable
   held_duplicate,      ///< two contacts name the same node
   held_response_size,  ///< a response buffer has the wrong size or alignment
@@ -40,11 +41,13 @@ enum class Status : std::uint8_t {
   held_overflow,       ///< the answer would not be finite, or comes too near the largest float
 };
 
-/// The answer of a step; the caller owns the memory. On any `held_` status nothing is written, so that the same buffers
-/// still hold the last good step.
+/// The answer of a step; the caller owns the memory. The size of `displacement` says which nodes are displaced: all, or
+/// those of the coarser levels, which come first in the file (Model::view, LevelView::node_begin). On any `held_`
+/// status nothing is written, so that the same buffers still hold the last good step.
 struct Response {
-  std::span<float> force;         ///< [3 * contacts] N, the force that holds each contact, in the order of the contacts
-  std::span<float> displacement;  ///< [4 * node_count] m, x y z 0 per node, 16-byte aligned; empty: no field is wanted
+  std::span<float> force;  ///< [3 * contacts] N, the force that holds each contact, in the order of the contacts
+  std::span<float>
+      displacement;  ///< [4 * nodes of levels 0..q] m, x y z 0 per node, 16-byte aligned; empty: none is wanted
 };
 
 struct StepReport {

@@ -294,6 +294,45 @@ TEST_CASE("refusals have a name, write nothing and leave the body usable") {
   held.refuses(bad, Status::held_out_of_range);
 }
 
+TEST_CASE("the nodes of coarser levels, asked for alone, stand where the whole field has them, for less work") {
+  for (const layout::Wavelet wavelet : {layout::Wavelet::lifted_linear, layout::Wavelet::linear}) {
+    const TestModel model({.levels = 4, .wavelet = wavelet, .touchable_above = 0.3});
+    const Limits limits{.max_contacts = 12, .cached_factors = 2};
+    TestBody whole(model, limits);
+    TestBody part(model, limits);
+    std::mt19937_64 random(17);
+    for (std::uint32_t level = 0; level < model.view().levels; ++level) {
+      const auto contacts = random_contacts(random, model.touchable(), 12);
+      std::vector<float> force(3 * contacts.size());
+      AlignedBytes memory(std::size_t{16} * model.model().node_count(level));
+      const std::span<float> few(reinterpret_cast<float*>(memory.data()), memory.size() / sizeof(float));
+      const StepReport all = whole.step(contacts, any_budget);
+      const StepReport report = part.body().step(contacts, {any_budget}, {force, few});
+      CHECK(report.status == Status::ok);
+      CHECK(report.field_level == level);
+      CHECK((level + 1 == model.view().levels ? report.work == all.work : report.work < all.work));
+      CHECK(std::equal(force.begin(), force.end(), whole.force().begin()));
+      // without lifting a coarse node's displacement has no part in finer details
+      CHECK((wavelet != layout::Wavelet::linear || std::equal(few.begin(), few.end(), whole.field().begin())));
+    }
+  }
+}
+
+TEST_CASE("a body for forces alone gives the same forces out of less memory, and refuses fields") {
+  const TestModel model({.levels = 4, .touchable_above = 0.3});
+  TestBody whole(model, {.max_contacts = 8, .cached_factors = 2});
+  TestBody forces(model, {.max_contacts = 8, .cached_factors = 2, .forces_only = true});
+  CHECK(forces.requirement().bytes < whole.requirement().bytes / 2);
+  std::mt19937_64 random(18);
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto contacts = random_contacts(random, model.touchable(), 8);
+    CHECK(forces.step(contacts, any_budget, false).work == whole.step(contacts, any_budget, false).work);
+    CHECK(std::equal(forces.force().begin(), forces.force().end(), whole.force().begin()));
+    CHECK(forces.step(contacts, forces.requirement().least_work, false).status <= Status::coarser);
+    CHECK(forces.step(contacts, any_budget).status == Status::held_response_size);
+  }
+}
+
 TEST_CASE("response buffers of the wrong size or alignment are refused") {
   const TestModel model({.levels = 2});
   TestBody body(model, {.max_contacts = 2, .cached_factors = 1});

@@ -23,10 +23,10 @@ struct NodeForces {
   const float* force;          ///< [3 * count] N
 };
 
-/// Fast summation (James & Pai 2003, section 5.4): the displacement of every node by some forces, with details up to
-/// `field_level`, interpolated beyond. touched: [node_count], 0 before and after; null if the wavelets are not lifted;
-/// x: [node_count]. For the loop; work: field_work.
-void compute_field(const FieldModel& model, const NodeForces& forces, std::uint32_t field_level, std::uint8_t* touched,
+/// Fast summation (James & Pai 2003, section 5.4): the displacement of the nodes of K(levels.nodes) by some forces,
+/// with details up to levels.details, interpolated beyond. touched: [node_count], 0 before and after; null if the
+/// wavelets are not lifted; x: [nodes of K(levels.nodes)]. For the loop; work: field_work.
+void compute_field(const FieldModel& model, const NodeForces& forces, const FieldLevels& levels, std::uint8_t* touched,
                    Float4* x) noexcept;
 
 }  // namespace greenloop

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 #include <vector>
 
@@ -93,7 +94,8 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
         CAPTURE(field_level);
         const Forces forces(view, c, random);
         std::vector<Float4> x(view.node_count, splat(1e30F));
-        compute_field({view, body.columns, body.parents}, forces.on(c), field_level, body.field_touched, x.data());
+        compute_field({view, body.columns, body.parents}, forces.on(c), {view.levels - 1, field_level},
+                      body.field_touched, x.data());
         CHECK((body.field_touched == nullptr ||
                std::count(body.field_touched, body.field_touched + view.node_count, 0) == view.node_count));
         for (std::uint32_t q = 0; q < view.levels; ++q) {
@@ -104,6 +106,10 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
             CHECK(float{x[level.node_begin + i][1]} == interpolated(level, i, x));
           }
         }
+        std::vector<Float4> coarse(nodes_up_to(view, field_level), splat(1e30F));
+        compute_field({view, body.columns, body.parents}, forces.on(c), {field_level, field_level}, body.field_touched,
+                      coarse.data());
+        CHECK(std::memcmp(coarse.data(), x.data(), sizeof(Float4) * coarse.size()) == 0);
         const Eigen::VectorXd whole = reference.field(c) * forces.dense;
         const Eigen::VectorXd averages = reference.averages(field_level, whole);
         CHECK(averages_error(body, averages, x) <= 1e-5 * whole.cwiseAbs().maxCoeff());

@@ -100,6 +100,7 @@ typedef struct greenloop_fault {
 typedef struct greenloop_limits {
   uint32_t max_contacts;   /* 1..4096, contacts per step */
   uint32_t cached_factors; /* 1..1024, capacitance factors kept */
+  int forces_only;         /* 1: no fields, little memory, and no columns to be made at the start */
 } greenloop_limits;
 
 /* What those limits cost. Work is counted in units: see docs/runtime.md. */
@@ -136,6 +137,8 @@ typedef struct greenloop_report {
 greenloop_fault greenloop_open(const void* bytes, size_t size, greenloop_model* model);
 
 uint32_t greenloop_node_count(const greenloop_model* model);
+/* Nodes of mesh levels 0..level, which come first; 0 for a level that the model does not have. */
+uint32_t greenloop_node_count_to(const greenloop_model* model, uint32_t level);
 uint32_t greenloop_level_count(const greenloop_model* model);
 
 /* Whether a node may be a contact; 0 for a node that the model does not have. */
@@ -151,11 +154,12 @@ greenloop_requirement greenloop_required(const greenloop_model* model, greenloop
  * take seconds: see Elastostatic::create for the work. */
 greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes);
 
-/* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of every node.
- * force: 3 * count floats [N], in the order of the contacts. displacement: 4 * node_count floats [m], x y z 0 per node,
- * 16-byte aligned; null if no field is wanted, which then costs nothing. Spends at most `work` units. */
+/* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of the first `nodes`
+ * nodes, all or those of the coarser levels (greenloop_node_count_to). force: 3 * count floats [N], in the order of the
+ * contacts. displacement: 4 * nodes floats [m], x y z 0 per node, 16-byte aligned; null and 0 if no field is wanted,
+ * which then costs nothing. Spends at most `work` units. */
 greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* contacts, size_t count, uint64_t work,
-                                float* force, float* displacement);
+                                float* force, float* displacement, uint32_t nodes);
 
 /* One sentence each; static storage. */
 const char* greenloop_rule_text(greenloop_rule rule);

@@ -52,11 +52,13 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
 
 std::uint64_t count_field_work(const SetCounts& set) noexcept { return 2 * set.columns; }
 
-std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level,
+std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
-  const std::uint64_t touched = smaller(model.rows[field_level], blocks);
+  const std::uint64_t touched = smaller(model.rows[levels.details], blocks);
   return 4 * set.columns + 10 * blocks +
-         inverse_transform_work(model.nodes, model.odd_nodes, touched, model.butterfly) + 4 * set.contacts;
+         inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], touched,
+                                model.butterfly) +
+         4 * set.contacts;
 }
 
 void count_factor(const ContactSet& set, const Touched& touched, const ColumnCost* cost, const std::uint32_t* stored,

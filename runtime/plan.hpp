@@ -14,14 +14,14 @@ namespace greenloop {
 
 /// Counts of a model and its limits that the work of a step follows from.
 struct ModelCounts {
-  std::uint64_t nodes = 0;
   std::uint32_t levels = 0;
   std::uint32_t max_contacts = 0;
   std::uint32_t cached_factors = 0;
-  std::uint64_t odd_nodes = 0;                  ///< of the domain, above level 0
-  std::uint64_t capacitance_room = 0;           ///< of CapacitanceScratch
-  bool butterfly = false;                       ///< has_stencils
-  std::uint64_t rows[layout::max_levels] = {};  ///< coefficients of levels 0..F
+  std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
+  bool butterfly = false;              ///< has_stencils
+  bool forces_only = false;
+  std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
+  std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F
 };
 
 /// What a set of columns of one constraint level holds.
@@ -55,8 +55,8 @@ struct SetCounts {
 /// Work units of counting the blocks of a field.
 [[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
 
-/// Work units of the field with details up to `field_level`, whose columns have `blocks` blocks.
-[[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, std::uint32_t field_level,
+/// Work units of a field whose columns have `blocks` blocks.
+[[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                                        std::uint64_t blocks) noexcept;
 
 /// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. cost: [domain] of each

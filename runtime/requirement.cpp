@@ -14,16 +14,16 @@ constexpr std::uint64_t most_field_blocks_of_a_model = std::uint64_t{1} << 30;
 
 void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) {
   ModelCounts& counts = sizes.counts;
-  counts.nodes = view.node_count;
   counts.levels = view.levels;
   counts.max_contacts = limits.max_contacts;
   counts.cached_factors = limits.cached_factors;
   counts.butterfly = has_stencils(view);
-  counts.odd_nodes = view.domain_count - view.level[0].counts->domain_count;
+  counts.forces_only = limits.forces_only;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
       sizes.most_neighbours[q] = count_lifting(view, q).most_neighbours;
     }
+    counts.nodes[q] = nodes_up_to(view, q);
     counts.rows[q] = domain_up_to(view, q);
   }
 }
@@ -56,7 +56,8 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     }
     const SetCounts most = most_counts(view, couplings, c, limits.max_contacts, reach);
     const auto field = [&](std::uint32_t field_level) {
-      return field_work(sizes.counts, most, field_level, most_field_blocks(view, most.columns, field_level));
+      const std::uint64_t blocks = most_field_blocks(view, most.columns, field_level);
+      return limits.forces_only ? 0 : field_work(sizes.counts, most, {finest, field_level}, blocks);
     };
     const std::uint64_t functional = most.columns > 0 ? most.column_coefficients / most.columns : 0;
     sizes.functional = functional > sizes.functional ? functional : sizes.functional;

@@ -134,15 +134,15 @@ void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept
   }
 }
 
-void inverse_transform(const ModelView& view, const ParentOffsets* parents, std::uint32_t field_level,
+void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
                        const SparseCoefficients& coefficients) noexcept {
   const bool lifted = coefficients.touched != nullptr;
   if (lifted) {
     std::memset(coefficients.touched, 0, view.level[0].counts->domain_count);
   }
-  for (std::uint32_t q = 1; q < view.levels; ++q) {
+  for (std::uint32_t q = 1; q <= levels.nodes; ++q) {
     const LevelView& level = view.level[q];
-    if (lifted && q <= field_level) {
+    if (lifted && q <= levels.details) {
       undo_lifting(level, parents, coefficients.touched, coefficients.value);
     }
     predict(level, parents, coefficients.value);

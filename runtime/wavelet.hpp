@@ -56,6 +56,12 @@ struct ParentOffsets {
 /// Of every domain node above level 0, by its place; parents: [domain]. Start-up; linear.
 void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept;
 
+/// What a field is asked for.
+struct FieldLevels {
+  std::uint32_t nodes = 0;    ///< finest level whose nodes are displaced
+  std::uint32_t details = 0;  ///< finest level whose details are summed, at most `nodes`
+};
+
 /// A field in the making: wavelet coefficients, few of which are not zero, where the displacements of their nodes will
 /// stand.
 struct SparseCoefficients {
@@ -63,10 +69,10 @@ struct SparseCoefficients {
   std::uint8_t* touched = nullptr;  ///< [node_count] 1 where the value may not be 0, 0 between uses; null if unlifted
 };
 
-/// The inverse transform in place; `touched` is zero again. Levels above `field_level`, which must be 0, are
-/// interpolated. parents: [domain]. Only the nodes around a coefficient that was touched are lifted. For the loop;
-/// work: inverse_transform_work.
-void inverse_transform(const ModelView& view, const ParentOffsets* parents, std::uint32_t field_level,
+/// The inverse transform in place, of the nodes of K(levels.nodes); `touched` is zero again. Levels above
+/// levels.details, which must be 0, are interpolated. parents: [domain]. Only the nodes around a coefficient that was
+/// touched are lifted. For the loop; work: inverse_transform_work.
+void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
                        const SparseCoefficients& coefficients) noexcept;
 
 /// Work units of inverse_transform. odd_nodes: of the domain above level 0; touched: coefficients, at most.

@@ -36,7 +36,7 @@ struct Coefficients {
   const std::vector<Float4>& inverse(const PlacedBody& placed, std::uint32_t field_level) {
     const ModelView& view = *placed.body->view;
     std::uint8_t* lifted = placed.body->field_touched == nullptr ? nullptr : touched.data();
-    inverse_transform(view, placed.body->parents, field_level, {value.data(), lifted});
+    inverse_transform(view, placed.body->parents, {view.levels - 1, field_level}, {value.data(), lifted});
     CHECK((lifted == nullptr || std::count(touched.begin(), touched.end(), 0) == static_cast<int>(touched.size())));
     return value;
   }

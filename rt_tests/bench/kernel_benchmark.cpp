@@ -152,7 +152,8 @@ TransformFigures measure_transform(const Model& model, const GreenStore& store, 
       x = sums;
       touched = ones;
       sum += time_of(1, [&] {
-        inverse_transform(view, patch.body.parents, patch.level, {x.data(), lifted ? touched.data() : nullptr});
+        inverse_transform(view, patch.body.parents, {patch.level, patch.level},
+                          {x.data(), lifted ? touched.data() : nullptr});
       });
     }
     transform.push_back(sum / static_cast<double>(at_once));
