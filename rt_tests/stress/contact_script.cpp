@@ -9,9 +9,11 @@
 namespace greenloop {
 namespace {
 
-const layout::NodeRecord& record(const ModelView& view, std::uint32_t node) {
+constexpr std::size_t patch_sets = 4;  // disjoint sets that a patch has room for
+
+const float* position(const ModelView& view, std::uint32_t node) {
   const LevelView& level = view.level[level_of(view, node)];
-  return level.nodes[node - level.node_begin];
+  return level.nodes[node - level.node_begin].position;
 }
 
 float square_distance(const float* a, const float* b) {
@@ -22,16 +24,66 @@ float square_distance(const float* a, const float* b) {
   return sum;
 }
 
+// calls visit(node, record) for every node of a model, in the order of the file
+template <class Visit>
+void visit_nodes(const ModelView& view, Visit visit) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+      visit(level.node_begin + i, level.nodes[i]);
+    }
+  }
+}
+
+// the generator of a kind's script
+std::mt19937_64 generator(ScriptKind kind, std::uint64_t seed) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         static_cast<std::uint32_t>(kind)};
+  return std::mt19937_64(sequence);
+}
+
 }  // namespace
 
 ContactScript::ContactScript(const ModelView& view, const Limits& limits, const Requirement& requirement,
-                             std::uint64_t seed)
-    : view_(&view), max_contacts_(limits.max_contacts), requirement_(requirement), random_(seed) {
+                             ScriptKind kind, std::uint64_t seed)
+    : view_(&view), limits_(limits), requirement_(requirement), script_(kind), random_(generator(kind, seed)) {
   worst_work_ = *std::max_element(std::begin(requirement.worst_work), std::end(requirement.worst_work));
-  for (std::uint32_t node = 0; node < view.node_count; ++node) {
-    if ((record(view, node).flags & layout::node_touchable) != 0) {
+  list_touchable();
+  shuffled_ = touchable_;
+  list_short_edges();
+  most_ = std::min<std::size_t>(limits.max_contacts, touchable_.size());
+}
+
+void ContactScript::list_touchable() {
+  visit_nodes(*view_, [this](std::uint32_t node, const layout::NodeRecord& record) {
+    if ((record.flags & layout::node_touchable) != 0) {
       touchable_.push_back(node);
+    } else {
+      not_touchable_ = node;
     }
+  });
+}
+
+// the halves of edges that have been split
+void ContactScript::list_short_edges() {
+  const auto is_touchable = [this](std::uint32_t node) {
+    return std::binary_search(touchable_.begin(), touchable_.end(), node);
+  };
+  std::vector<std::pair<float, Pair>> edges;
+  for (std::uint32_t q = 1; q < view_->levels; ++q) {
+    const LevelView& level = view_->level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      const std::uint32_t odd = level.node_begin + i;
+      for (const std::uint32_t parent : level.refinement[i].parent) {
+        if (is_touchable(odd) && is_touchable(parent)) {
+          edges.push_back({square_distance(level.nodes[i].position, position(*view_, parent)), {odd, parent}});
+        }
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (const auto& edge : edges) {
+    short_edges_.push_back(edge.second);
   }
 }
 
@@ -41,72 +93,115 @@ const ScriptedStep& ContactScript::next() {
   }
   --remaining_;
   step_.valid = true;
-  step_.smooth = kind_ == Kind::press && age_ > 0;
-  const std::size_t most = std::min<std::size_t>(max_contacts_, touchable_.size());
-  switch (kind_) {
-    case Kind::press:
-      touch(0, 1 + most / 4);
-      break;
-    case Kind::slide:
-      touch(age_, std::min<std::size_t>(most, 9));
-      break;
-    case Kind::scattered:
-      scatter(most);
-      break;
-    case Kind::alternate:
-      touch(age_ % 2 == 0 ? 0 : nearest_.size() / 2, 1 + most / 2);
-      break;
-    case Kind::thrash:
-    case Kind::extremes:
-      scatter(1 + below(most));
-      break;
-    case Kind::release:
-      step_.contacts.clear();
-      break;
-    case Kind::garbage:
-    case Kind::count:
-      scatter(1 + below(most));
-      spoil();
-      break;
-  }
-  if (kind_ == Kind::extremes) {
-    constexpr float sizes[] = {0, FLT_TRUE_MIN, FLT_MIN, 1e-30F, 1e-12F, 1, 1e10F};
-    const float size = sizes[below(std::size(sizes))];
-    for (Contact& contact : step_.contacts) {
-      for (float& u : contact.displacement) {
-        u = size * uniform();
-      }
-    }
-  }
+  step_.with_field = below(4) != 0;
+  place_contacts();
   draw_budget();
   ++age_;
   return step_;
 }
 
 void ContactScript::begin_burst() {
-  kind_ = static_cast<Kind>(below(static_cast<std::size_t>(Kind::count)));
+  kind_ = script_ == ScriptKind::mixed ? static_cast<ScriptKind>(below(static_cast<std::size_t>(ScriptKind::mixed)))
+                                       : script_;
   remaining_ = 1 + static_cast<std::uint32_t>(below(40));
   age_ = 0;
+  unlimited_ = below(2) == 0;
+  size_ = 1 + below(most_);
+  shift_ = 1 + below(size_);
   for (float& component : direction_) {
     component = uniform();
   }
   place_patch();
+  if (kind_ == ScriptKind::defeat_cache) {
+    draw_sets();
+  } else if (kind_ == ScriptKind::every_node) {
+    scatter(most_);
+  }
 }
 
 void ContactScript::place_patch() {
-  nearest_ = touchable_;
-  const float* centre = record(*view_, touchable_[below(touchable_.size())]).position;
-  std::stable_sort(nearest_.begin(), nearest_.end(), [this, centre](std::uint32_t a, std::uint32_t b) {
-    return square_distance(record(*view_, a).position, centre) < square_distance(record(*view_, b).position, centre);
-  });
+  const float* centre = position(*view_, touchable_[below(touchable_.size())]);
+  std::vector<std::pair<float, std::uint32_t>> nearest;
+  nearest.reserve(touchable_.size());
+  for (const std::uint32_t node : touchable_) {
+    nearest.emplace_back(square_distance(position(*view_, node), centre), node);
+  }
+  const std::size_t count = std::min(nearest.size(), patch_sets * most_);
+  std::nth_element(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count - 1), nearest.end());
+  std::sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count));
+  patch_.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    patch_.push_back(nearest[i].second);
+  }
 }
 
-// `count` nodes of the patch from `first` on, pressed the deeper the older the burst
-void ContactScript::touch(std::size_t first, std::size_t count) {
-  step_.contacts.clear();
+// one more than the cache holds: strangers to each other, or each a few nodes from the one before
+void ContactScript::draw_sets() {
+  const bool strangers = below(2) == 0;
+  const std::size_t apart = 1 + below(4);
+  sets_.assign(limits_.cached_factors + std::size_t{1}, {});
+  for (std::size_t i = 0; i < sets_.size(); ++i) {
+    if (strangers) {
+      scatter(size_);
+    } else {
+      touch(apart * i, size_, 1e-4F);
+    }
+    sets_[i] = step_.contacts;
+  }
+  remaining_ = static_cast<std::uint32_t>(3 * sets_.size());
+}
+
+void ContactScript::place_contacts() {
   const float depth = 1e-5F * static_cast<float>(age_ + 1);
-  for (std::size_t i = 0; i < std::min(count, nearest_.size()); ++i) {
-    Contact contact{nearest_[(first + i) % nearest_.size()], {}};
+  switch (kind_) {
+    case ScriptKind::single:
+      touch(age_ % 2, 1, depth);
+      break;
+    case ScriptKind::press:
+      touch(0, size_, depth);
+      break;
+    case ScriptKind::slide:
+      touch(age_, size_, depth);
+      break;
+    case ScriptKind::neighbours:
+      touch(age_ % 2 == 0 ? 0 : shift_, size_, depth);
+      break;
+    case ScriptKind::coincident:
+      touch_pairs(1 + below(std::max<std::size_t>(most_ / 2, 1)));
+      break;
+    case ScriptKind::random:
+      scatter(1 + below(most_));
+      break;
+    case ScriptKind::defeat_cache:
+      step_.contacts = sets_[age_ % sets_.size()];
+      break;
+    case ScriptKind::every_node:
+      step_.contacts[below(most_)].displacement[below(3)] = depth;
+      break;
+    case ScriptKind::flap_levels:
+      // a set that is at hand is answered at the finest level for any budget: every other time they come in pairs
+      touch(unlimited_ ? age_ / 2 : 0, size_, 1e-4F);
+      break;
+    case ScriptKind::extremes:
+      scatter(1 + below(most_));
+      displace_extremely();
+      break;
+    case ScriptKind::release:
+      step_.contacts.clear();
+      break;
+    case ScriptKind::garbage:
+    case ScriptKind::mixed:  // is never the kind of a burst
+      scatter(1 + below(most_));
+      spoil();
+      break;
+  }
+}
+
+// `count` nodes of the patch from `first` on
+void ContactScript::touch(std::size_t first, std::size_t count, float depth) {
+  step_.contacts.clear();
+  for (std::size_t i = 0; i < std::min(count, patch_.size()); ++i) {
+    Contact contact{patch_[(first + i) % patch_.size()], {}};
     for (int r = 0; r < 3; ++r) {
       contact.displacement[r] = depth * direction_[r];
     }
@@ -114,11 +209,39 @@ void ContactScript::touch(std::size_t first, std::size_t count) {
   }
 }
 
+// the ends of short edges, without common nodes, moved against each other
+void ContactScript::touch_pairs(std::size_t count) {
+  step_.contacts.clear();
+  const std::size_t first = below(1 + short_edges_.size() / 16);
+  const auto is_held = [this](std::uint32_t node) {
+    return std::any_of(step_.contacts.begin(), step_.contacts.end(), [node](auto& at) { return at.node == node; });
+  };
+  for (std::size_t i = first; i < short_edges_.size() && step_.contacts.size() + 2 <= std::min(2 * count, most_); ++i) {
+    const auto& [a, b] = short_edges_[i];
+    if (!is_held(a) && !is_held(b)) {
+      const float depth = 1e-4F * uniform();
+      step_.contacts.push_back({a, {depth, depth, -depth}});
+      step_.contacts.push_back({b, {-depth, -depth, depth}});
+    }
+  }
+}
+
+// distinct nodes from anywhere
 void ContactScript::scatter(std::size_t count) {
   step_.contacts.clear();
   for (std::size_t i = 0; i < count; ++i) {
-    std::swap(nearest_[i], nearest_[i + below(nearest_.size() - i)]);
-    step_.contacts.push_back({nearest_[i], {1e-4F * uniform(), 1e-4F * uniform(), 1e-4F * uniform()}});
+    std::swap(shuffled_[i], shuffled_[i + below(shuffled_.size() - i)]);
+    step_.contacts.push_back({shuffled_[i], {1e-4F * uniform(), 1e-4F * uniform(), 1e-4F * uniform()}});
+  }
+}
+
+void ContactScript::displace_extremely() {
+  constexpr float sizes[] = {0, FLT_TRUE_MIN, FLT_MIN, 1e-30F, 1e-12F, 1, 1e10F};
+  const float size = sizes[below(std::size(sizes))];
+  for (Contact& contact : step_.contacts) {
+    for (float& u : contact.displacement) {
+      u = size * uniform();
+    }
   }
 }
 
@@ -128,7 +251,7 @@ void ContactScript::spoil() {
   Contact& victim = step_.contacts[below(step_.contacts.size())];
   const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                        -std::numeric_limits<float>::infinity(), FLT_MAX, -FLT_MAX};
-  switch (below(5)) {
+  switch (below(6)) {
     case 0:
       victim.displacement[below(3)] = bad[below(std::size(bad))];
       break;
@@ -139,10 +262,13 @@ void ContactScript::spoil() {
       victim.node = static_cast<std::uint32_t>(random_() | 0xffff0000);
       break;
     case 3:
+      victim.node = not_touchable_;
+      break;
+    case 4:
       step_.contacts.push_back(victim);
       break;
     default:
-      step_.contacts.resize(max_contacts_ + 1 + below(4), victim);
+      step_.contacts.resize(limits_.max_contacts + 1 + below(4), victim);
       break;
   }
 }
@@ -150,6 +276,14 @@ void ContactScript::spoil() {
 void ContactScript::draw_budget() {
   const std::uint64_t least = requirement_.least_work;
   const std::uint64_t span = worst_work_ > least ? worst_work_ - least : 1;
+  if (kind_ == ScriptKind::flap_levels) {
+    step_.budget = age_ % 2 == 0 ? least : ~std::uint64_t{0};
+    return;
+  }
+  if (unlimited_) {
+    step_.budget = ~std::uint64_t{0};
+    return;
+  }
   switch (below(8)) {
     case 0:
       step_.budget = least;
@@ -158,12 +292,9 @@ void ContactScript::draw_budget() {
       step_.budget = below(16) == 0 ? random_() % least : least + 1;
       break;
     case 2:
-      step_.budget = ~std::uint64_t{0};
-      break;
-    case 3:
       step_.budget = worst_work_;
       break;
-    case 4:
+    case 3:
       step_.budget = least + random_() % span;
       break;
     default:
@@ -171,7 +302,6 @@ void ContactScript::draw_budget() {
       step_.budget = least + random_() % (span / 16 + 1);
       break;
   }
-  step_.with_field = below(4) != 0;
 }
 
 }  // namespace greenloop

@@ -1,19 +1,21 @@
 #include "rt_tests/stress/stress_run.hpp"
 
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
-#include <vector>
+#include <string>
 
 #include "formats/aligned_bytes.hpp"
-#include "rt_tests/stress/contact_script.hpp"
+#include "rt_tests/stress/force_step.hpp"
 #include "sim_hw/guard/allocation_guard.hpp"
 #include "sim_hw/guard/mutex_guard.hpp"
 #include "sim_hw/guard/system_call_guard.hpp"
@@ -21,7 +23,9 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint64_t warm_up = 100;  // cycles whose page faults do not count
+constexpr std::uint64_t warm_up_cycles = 200;    // before the scripts: their pages are not of the loop
+constexpr std::uint64_t progress_interval = 64;  // cycles
+constexpr std::uint64_t empty_digest = 0xcbf29ce484222325;
 
 double thread_microseconds() {
   timespec time{};
@@ -35,84 +39,145 @@ std::uint64_t minor_faults() {
   return static_cast<std::uint64_t>(usage.ru_minflt);
 }
 
-void add_time(TimeHistogram& times, double microseconds) {
-  const auto bin = static_cast<std::size_t>(microseconds);
-  ++(bin < TimeHistogram::bins ? times.count[bin] : times.overflow);
-  times.least = times.total == 0 ? microseconds : std::min(times.least, microseconds);
-  times.most = std::max(times.most, microseconds);
-  times.total += microseconds;
-}
-
 std::uint64_t add_to_digest(std::uint64_t digest, const void* data, std::size_t bytes) {
   const auto* at = static_cast<const unsigned char*>(data);
-  for (std::size_t i = 0; i < bytes; ++i) {
-    digest = (digest ^ at[i]) * 0x100000001b3;
+  for (std::size_t i = 0; i < bytes; i += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, at + i, std::min(sizeof word, bytes - i));
+    digest = std::rotl(digest ^ word, 29) * 0x100000001b3;
   }
   return digest;
 }
 
+// without a branch on each, so that a whole field costs little
 bool all_finite(std::span<const float> values) {
-  return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+  bool finite = true;
+  for (const float value : values) {
+    finite &= (std::bit_cast<std::uint32_t>(value) & 0x7f800000) != 0x7f800000;
+  }
+  return finite;
 }
 
 class StressRun {
  public:
   StressRun(const Model& model, const StressOptions& options)
-      : options_(options),
+      : model_(&model),
+        options_(options),
         requirement_(Elastostatic::required(model, options.limits)),
         arena_(requirement_.bytes),
         field_memory_(std::size_t{16} * model.node_count()),
         field_(reinterpret_cast<float*>(field_memory_.data()), std::size_t{4} * model.node_count()),
-        held_field_(field_.size()),
+        held_field_(field_.begin(), field_.end()),
         force_(std::size_t{3} * (options.limits.max_contacts + 16)),
-        held_force_(force_.size()),
-        script_(model.view(), options.limits, requirement_, options.seed) {
-    const auto created = Elastostatic::create(model, options.limits, {arena_.data(), arena_.size()});
-    if (!created) {
-      throw std::runtime_error("no body for this model with " + std::to_string(options.limits.max_contacts) +
-                               " contacts and " + std::to_string(options.limits.cached_factors) +
-                               " cached factors (error " + std::to_string(static_cast<int>(created.error)) + ")");
-    }
-    body_ = created.body;
-    result_.digest = 0xcbf29ce484222325;
+        held_force_(force_) {
+    result_.times = TimeHistogram(options.histogram_bins);
     result_.declared_work = *std::max_element(std::begin(requirement_.worst_work), std::end(requirement_.worst_work));
+    result_.arena_bytes = requirement_.bytes;
+    result_.digest = empty_digest;
   }
 
   StressResult run() {
     {
       const std::lock_guard lock(mutex_);  // so that the guard has looked up the real function, which may allocate
     }
-    const bool watches_system_calls = system_call_guard::install();
-    const std::uint64_t allocations = allocation_guard::count();
-    const std::uint64_t locks = mutex_guard::count();
-    const std::uint64_t system_calls = system_call_guard::count();
-    for (; result_.cycles < options_.cycles; ++result_.cycles) {
-      cycle(script_.next());
+    result_.watches_system_calls = system_call_guard::install();
+    warm_up();
+    const std::size_t kinds = options_.script ? 1 : script_names.size();
+    for (std::size_t k = 0; k < kinds; ++k) {
+      const std::uint64_t share = options_.cycles / kinds + (k < options_.cycles % kinds ? 1 : 0);
+      if (share > 0) {
+        run_script(options_.script.value_or(static_cast<ScriptKind>(k)), share);
+      }
     }
-    result_.allocations = allocation_guard::count() - allocations;
-    result_.locks = mutex_guard::count() - locks;
-    result_.system_calls =
-        watches_system_calls ? static_cast<std::int64_t>(system_call_guard::count() - system_calls) : -1;
     return result_;
   }
 
  private:
-  void cycle(const ScriptedStep& scripted) {
-    const std::span<float> force(force_.data(), 3 * scripted.contacts.size());
-    const Response response{force, scripted.with_field ? field_ : std::span<float>()};
+  void create_body() {
+    const double begin = thread_microseconds();
+    const auto created = Elastostatic::create(*model_, options_.limits, {arena_.data(), arena_.size()});
+    result_.create_ms = (thread_microseconds() - begin) / 1e3;
+    if (!created) {
+      throw std::runtime_error("no body for this model with " + std::to_string(options_.limits.max_contacts) +
+                               " contacts and " + std::to_string(options_.limits.cached_factors) +
+                               " cached factors (error " + std::to_string(static_cast<int>(created.error)) + ")");
+    }
+    body_ = created.body;
+  }
+
+  ContactScript script(ScriptKind kind) const {
+    return {model_->view(), options_.limits, requirement_, kind, options_.seed};
+  }
+
+  void warm_up() {
+    create_body();
+    ContactScript script = this->script(ScriptKind::mixed);
+    pristine_.assign(arena_.data(), arena_.data() + arena_.size());
+    for (std::uint64_t i = 0; i < warm_up_cycles; ++i) {
+      const ScriptedStep& scripted = script.next();
+      body_.step(scripted.contacts, {scripted.budget}, response(scripted));
+    }
+  }
+
+  // on a body and buffers as in a run of this script alone
+  void run_script(ScriptKind kind, std::uint64_t cycles) {
+    ContactScript script = this->script(kind);
+    std::copy(pristine_.begin(), pristine_.end(), arena_.data());
+    std::fill(field_.begin(), field_.end(), 0.0F);
+    std::fill(force_.begin(), force_.end(), 0.0F);
+    hold_answer();
+    force_step_.restart();
+    script_ = {.kind = kind, .digest = empty_digest};
+    for (; script_.cycles < cycles; ++script_.cycles, ++result_.cycles) {
+      if (options_.progress && result_.cycles % progress_interval == 0) {
+        options_.progress(kind, result_.cycles);
+      }
+      cycle(script.next());
+    }
+    result_.worst_work = std::max(result_.worst_work, script_.worst_work);
+    result_.force_step_max = std::max(result_.force_step_max, script_.force_step_max);
+    result_.digest = add_to_digest(result_.digest, &script_.digest, sizeof script_.digest);
+    result_.scripts.push_back(script_);
+  }
+
+  Response response(const ScriptedStep& scripted) {
+    return {std::span(force_).first(3 * scripted.contacts.size()), scripted.with_field ? field_ : std::span<float>()};
+  }
+
+  void hold_answer() {
     std::copy(field_.begin(), field_.end(), held_field_.begin());
     std::copy(force_.begin(), force_.end(), held_force_.begin());
-    const std::uint64_t faults = minor_faults();
+  }
+
+  void cycle(const ScriptedStep& scripted) {
+    const Response response = this->response(scripted);
+    const std::uint64_t violations = result_.violations.sum();
     const double begin = thread_microseconds();
     const StepReport report = guarded_step(scripted, response);
-    add_time(result_.times, thread_microseconds() - begin);
-    result_.minor_faults += result_.cycles < warm_up ? 0 : minor_faults() - faults;
-    check(scripted, report, force);
-    note_force(scripted, report, force);
+    const double us = thread_microseconds() - begin;
+    result_.times.add(us);
+    script_.worst_us = std::max(script_.worst_us, us);
+    const bool answered = report.status <= Status::coarser;
+    check(scripted, report, response);
+    count(report);
+    note_digest(report, response);
+    script_.force_step_max =
+        std::max(script_.force_step_max, force_step_.follow(scripted.contacts, answered, response.force));
+    if (answered) {
+      hold_answer();
+    }
+    if (!result_.first_violation && result_.violations.sum() > violations) {
+      result_.first_violation = {script_.kind, script_.cycles};
+    }
   }
 
   StepReport guarded_step(const ScriptedStep& scripted, const Response& response) {
-    const bool faulty = result_.cycles % 100 == 99;
+    const bool faulty = script_.cycles % 100 == 99;
+    if (faulty && options_.fault == InjectedFault::page_fault) {
+      madvise(page_.get(), page_bytes_, MADV_DONTNEED);
+    }
+    const std::uint64_t allocations = allocation_guard::count(), locks = mutex_guard::count(),
+                        system_calls = system_call_guard::count(), faults = minor_faults();
     allocation_guard::arm();
     mutex_guard::arm();
     system_call_guard::arm();
@@ -123,6 +188,11 @@ class StressRun {
     system_call_guard::disarm();
     mutex_guard::disarm();
     allocation_guard::disarm();
+    Violations& violations = result_.violations;
+    violations.minor_faults += minor_faults() - faults;
+    violations.allocations += allocation_guard::count() - allocations;
+    violations.locks += mutex_guard::count() - locks;
+    violations.system_calls += system_call_guard::count() - system_calls;
     return report;
   }
 
@@ -140,67 +210,69 @@ class StressRun {
       case InjectedFault::system_call:
         static_cast<void>(getppid());
         break;
+      case InjectedFault::page_fault:
+        *static_cast<volatile char*>(page_.get()) = 1;
+        break;
       case InjectedFault::overrun:
         report.work += result_.declared_work;
         break;
     }
   }
 
-  void check(const ScriptedStep& scripted, const StepReport& report, std::span<const float> force) {
+  void check(const ScriptedStep& scripted, const StepReport& report, const Response& response) {
     const bool answered = report.status <= Status::coarser;
     const std::uint64_t declared = answered ? requirement_.worst_work[report.constraint_level] : result_.declared_work;
-    result_.worst_work = std::max(result_.worst_work, report.work);
-    result_.work_overruns += report.work > scripted.budget || report.work > declared ? 1 : 0;
-    const bool held_in_place = std::memcmp(field_.data(), held_field_.data(), field_.size_bytes()) == 0 &&
-                               std::memcmp(force_.data(), held_force_.data(), sizeof(float) * force_.size()) == 0;
+    result_.violations.work_overruns += report.work > scripted.budget || report.work > declared ? 1 : 0;
     const bool may_answer = scripted.budget >= requirement_.least_work;
-    const bool right =
-        answered ? may_answer && scripted.valid && all_finite(force) && all_finite(field_)
-                 : held_in_place && (!scripted.valid || !may_answer || report.status == Status::held_singular);
-    result_.wrong_answers += right ? 0 : 1;
-    result_.answered += answered ? 1 : 0;
-    result_.coarser += report.status == Status::coarser ? 1 : 0;
-    result_.refused += answered ? 0 : 1;
-    result_.cached += report.cached_factor ? 1 : 0;
+    bool right = false;
+    if (answered) {
+      right = may_answer && scripted.valid && all_finite(response.force) && all_finite(response.displacement);
+    } else {
+      const bool held_in_place = std::memcmp(field_.data(), held_field_.data(), field_.size_bytes()) == 0 &&
+                                 std::memcmp(force_.data(), held_force_.data(), sizeof(float) * force_.size()) == 0;
+      right = held_in_place && (!scripted.valid || !may_answer || report.status == Status::held_singular);
+    }
+    result_.violations.wrong_answers += right ? 0 : 1;
+  }
+
+  void count(const StepReport& report) {
+    const bool answered = report.status <= Status::coarser;
+    ++result_.by_status[static_cast<std::size_t>(report.status)];
+    ++(answered ? script_.answered : script_.refused);
+    script_.coarser += report.status == Status::coarser ? 1 : 0;
+    script_.cached += report.cached_factor ? 1 : 0;
+    script_.changed += report.changed_nodes > 0 ? 1 : 0;
+    script_.worst_work = std::max(script_.worst_work, report.work);
     result_.levels[report.constraint_level] += answered ? 1 : 0;
+  }
+
+  void note_digest(const StepReport& report, const Response& response) {
     const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status), report.constraint_level,
                                    report.field_level, report.work};
-    result_.digest = add_to_digest(result_.digest, facts, sizeof facts);
-    result_.digest = add_to_digest(result_.digest, force.data(), force.size_bytes());
-    if (scripted.with_field && answered) {
-      result_.digest = add_to_digest(result_.digest, field_.data(), field_.size_bytes());
-    }
+    script_.digest = add_to_digest(script_.digest, facts, sizeof facts);
+    script_.digest = add_to_digest(script_.digest, response.force.data(), response.force.size_bytes());
+    script_.digest = add_to_digest(script_.digest, response.displacement.data(), response.displacement.size_bytes());
   }
 
-  void note_force(const ScriptedStep& scripted, const StepReport& report, std::span<const float> force) {
-    if (report.status > Status::coarser) {
-      return;
-    }
-    double total[3] = {};
-    for (std::size_t i = 0; i < force.size(); ++i) {
-      total[i % 3] += double{force[i]};
-    }
-    if (scripted.smooth) {
-      const double change = std::hypot(total[0] - total_[0], total[1] - total_[1], total[2] - total_[2]);
-      result_.force_step_max = std::max(result_.force_step_max, change);
-    }
-    std::copy(std::begin(total), std::end(total), std::begin(total_));
-  }
-
+  const Model* model_;
   StressOptions options_;
   Requirement requirement_;
   AlignedBytes arena_;
+  std::vector<std::byte> pristine_;  // the arena of a new body
   AlignedBytes field_memory_;
   std::span<float> field_;
   std::vector<float> held_field_;
   std::vector<float> force_;
   std::vector<float> held_force_;
-  ContactScript script_;
   Elastostatic body_;
+  ScriptResult script_;
   StressResult result_;
-  double total_[3] = {};
+  ForceStep force_step_;
   std::unique_ptr<int> leak_;
   std::mutex mutex_;
+  std::size_t page_bytes_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::unique_ptr<char, decltype(&std::free)> page_{static_cast<char*>(std::aligned_alloc(page_bytes_, page_bytes_)),
+                                                    &std::free};
 };
 
 }  // namespace

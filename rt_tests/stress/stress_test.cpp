@@ -1,6 +1,9 @@
 #include <doctest/doctest.h>
 
-#include "rt_tests/stress/stress_run.hpp"
+#include <algorithm>
+#include <set>
+
+#include "rt_tests/stress/stress_report.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -9,6 +12,10 @@ namespace {
 StressResult stress(const SyntheticOptions& synthetic, const StressOptions& options) {
   const TestModel model(synthetic);
   return run_stress(model.model(), options);
+}
+
+const ScriptResult& result_of(const StressResult& result, ScriptKind kind) {
+  return *std::find_if(result.scripts.begin(), result.scripts.end(), [kind](auto& s) { return s.kind == kind; });
 }
 
 TEST_CASE("no script makes a body spend more than declared, answer garbage, allocate, lock or enter the kernel") {
@@ -29,23 +36,53 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
       CAPTURE(synthetic.levels);
       CAPTURE(limit.max_contacts);
       CAPTURE(seed);
-      const StressResult result = stress(synthetic, {.cycles = 1000, .seed = seed, .limits = limit});
-      CHECK(result.work_overruns == 0);
-      CHECK(result.wrong_answers == 0);
-      CHECK(result.allocations == 0);
-      CHECK(result.locks == 0);
-      CHECK(result.system_calls <= 0);
-      CHECK(result.minor_faults == 0);
-      CHECK(result.answered > 600);
-      CHECK(result.refused > 30);
+      const StressResult result = stress(synthetic, {.cycles = 1300, .seed = seed, .limits = limit});
+      CHECK(result.violations.work_overruns == 0);
+      CHECK(result.violations.wrong_answers == 0);
+      CHECK(result.violations.allocations == 0);
+      CHECK(result.violations.locks == 0);
+      CHECK(result.violations.system_calls == 0);
+      CHECK(result.violations.minor_faults == 0);
       CHECK(result.worst_work > result.declared_work / 8);
-      CHECK(result.passed());
+      CHECK(result.times.total() == result.cycles);
+      CHECK(result.held());
     }
   }
 }
 
+TEST_CASE("every script does what its name says") {
+  const StressResult result =
+      stress({.levels = 4}, {.cycles = 13003, .seed = 5, .limits = {.max_contacts = 16, .cached_factors = 3}});
+  REQUIRE(result.scripts.size() == script_names.size());
+  CHECK(result.cycles == 13003);
+  std::set<std::uint64_t> digests;
+  for (const ScriptResult& script : result.scripts) {
+    CAPTURE(name(script.kind));
+    CHECK(script.answered + script.refused == script.cycles);
+    CHECK(script.cycles >= 1000);
+    CHECK(script.cycles <= 1001);
+    CHECK((script.kind == ScriptKind::garbage) == (script.answered == 0));
+    CHECK(script.worst_work <= result.worst_work);
+    digests.insert(script.digest);
+  }
+  CHECK(digests.size() == script_names.size());
+  CHECK(result_of(result, ScriptKind::press).cached > 500);
+  CHECK(result_of(result, ScriptKind::slide).changed > 100);
+  CHECK(result_of(result, ScriptKind::neighbours).cached > 500);
+  CHECK(result_of(result, ScriptKind::random).cached < 100);
+  CHECK(result_of(result, ScriptKind::defeat_cache).cached < 300);
+  CHECK(result_of(result, ScriptKind::flap_levels).coarser > 100);
+  CHECK(result_of(result, ScriptKind::flap_levels).force_step_max > 0.01);
+  CHECK(result_of(result, ScriptKind::press).force_step_max == 0);
+  CHECK(result_of(result, ScriptKind::single).worst_work < result_of(result, ScriptKind::every_node).worst_work);
+  for (const Status status : {Status::held_not_finite, Status::held_out_of_range, Status::held_not_touchable,
+                              Status::held_duplicate, Status::held_over_budget}) {
+    CHECK(result.by_status[static_cast<std::size_t>(status)] > 0);
+  }
+}
+
 TEST_CASE("the same seed gives the same digest, another seed another") {
-  const StressOptions options{.cycles = 1000, .seed = 3, .limits = {.max_contacts = 8, .cached_factors = 2}};
+  const StressOptions options{.cycles = 1300, .seed = 3, .limits = {.max_contacts = 8, .cached_factors = 2}};
   StressOptions other = options;
   other.seed = 4;
   const std::uint64_t digest = stress({.levels = 3}, options).digest;
@@ -53,24 +90,70 @@ TEST_CASE("the same seed gives the same digest, another seed another") {
   CHECK(stress({.levels = 3}, other).digest != digest);
 }
 
-TEST_CASE("every fault is seen") {
-  for (const InjectedFault fault :
-       {InjectedFault::allocation, InjectedFault::lock, InjectedFault::system_call, InjectedFault::overrun}) {
-    const StressResult result = stress({.levels = 2}, {.cycles = 300, .limits = {.max_contacts = 4}, .fault = fault});
+TEST_CASE("a script alone does what it did among the others") {
+  StressOptions options{.cycles = 2600, .seed = 9, .limits = {.max_contacts = 8, .cached_factors = 2}};
+  const TestModel model({.levels = 3});
+  const StressResult all = run_stress(model.model(), options);
+  options.cycles = 200;
+  for (const ScriptResult& among : all.scripts) {
+    CAPTURE(name(among.kind));
+    options.script = among.kind;
+    const StressResult alone = run_stress(model.model(), options);
+    REQUIRE(alone.scripts.size() == 1);
+    CHECK(alone.scripts[0].digest == among.digest);
+    CHECK(alone.scripts[0].worst_work == among.worst_work);
+  }
+}
+
+TEST_CASE("every fault is seen, counted and can be met again") {
+  const Limits limits{.max_contacts = 4};
+  for (const InjectedFault fault : {InjectedFault::none, InjectedFault::allocation, InjectedFault::lock,
+                                    InjectedFault::system_call, InjectedFault::page_fault, InjectedFault::overrun}) {
+    StressReport report{
+        .model = "m.gloop",
+        .options = {.cycles = 300, .seed = 7, .script = ScriptKind::slide, .limits = limits, .fault = fault},
+        .result = {}};
+    report.result = stress({.levels = 2}, report.options);
+    const StressResult& result = report.result;
     CAPTURE(static_cast<int>(fault));
-    CHECK((fault == InjectedFault::allocation) == (result.allocations > 0));
-    CHECK((fault == InjectedFault::lock) == (result.locks > 0));
+    const Violations& seen = result.violations;
+    CHECK((fault == InjectedFault::allocation) == (seen.allocations > 0));
+    CHECK((fault == InjectedFault::lock) == (seen.locks > 0));
+    CHECK((fault == InjectedFault::overrun) == (seen.work_overruns > 0));
+    CHECK(seen.wrong_answers == 0);
 #ifdef __SANITIZE_ADDRESS__
     constexpr bool allocation_enters_kernel = true;  // the sanitizer's own allocator does
 #else
     constexpr bool allocation_enters_kernel = false;
 #endif
     if (fault != InjectedFault::allocation || !allocation_enters_kernel) {
-      CHECK((fault == InjectedFault::system_call && result.system_calls >= 0) == (result.system_calls > 0));
+      CHECK((fault == InjectedFault::system_call && result.watches_system_calls) == (seen.system_calls > 0));
+      CHECK((fault == InjectedFault::page_fault) == (seen.minor_faults > 0));
     }
-    CHECK((fault == InjectedFault::overrun) == (result.work_overruns > 0));
-    CHECK(result.passed() == (fault == InjectedFault::system_call && result.system_calls < 0));
+    const bool unseen = fault == InjectedFault::system_call && !result.watches_system_calls;
+    CHECK(result.held() == (fault == InjectedFault::none || unseen));
+    CHECK(result.held() == (report.verdict() == "HELD"));
+    REQUIRE(result.held() == !result.first_violation);
+    if (!result.held()) {
+      CHECK(result.first_violation->cycle == 99);
+      CHECK(report.replay() ==
+            "greenloop-stress m.gloop --seed 7 --script slide --cycles 100 --contacts 4 --factors 8");
+      CHECK(report.json()["first_violation"]["script"] == "slide");
+    }
   }
+}
+
+TEST_CASE("the histogram counts every time once") {
+  TimeHistogram times(3);
+  for (const double us : {0.0, 0.9, 1.0, 2.99, 3.0, 100.0}) {
+    times.add(us);
+  }
+  CHECK(times.count() == std::vector<std::uint64_t>{2, 1, 1});
+  CHECK(times.overflows() == 2);
+  CHECK(times.total() == 6);
+  CHECK(times.least() == 0);
+  CHECK(times.most() == 100);
+  CHECK(times.average() == doctest::Approx(107.89 / 6));
 }
 
 }  // namespace

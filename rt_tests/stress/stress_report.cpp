@@ -1,0 +1,183 @@
+#include "rt_tests/stress/stress_report.hpp"
+
+#include <fmt/format.h>
+
+namespace greenloop {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array<const char*, 10> status_names = {"ok",
+                                                      "coarser",
+                                                      "held_not_finite",
+                                                      "held_out_of_range",
+                                                      "held_not_touchable",
+                                                      "held_duplicate",
+                                                      "held_response_size",
+                                                      "held_over_budget",
+                                                      "held_singular",
+                                                      "held_overflow"};
+
+struct NamedCount {
+  const char* name;
+  std::uint64_t count;
+};
+
+std::array<NamedCount, 6> named(const Violations& violations) {
+  return {{{"work_overruns", violations.work_overruns},
+           {"wrong_answers", violations.wrong_answers},
+           {"allocations", violations.allocations},
+           {"locks", violations.locks},
+           {"syscalls", violations.system_calls},
+           {"minor_faults", violations.minor_faults}}};
+}
+
+json as_json(const ScriptResult& script) {
+  return {{"name", name(script.kind)},   {"cycles", script.cycles},
+          {"answered", script.answered}, {"coarser", script.coarser},
+          {"cached", script.cached},     {"changed", script.changed},
+          {"refused", script.refused},   {"worst_work", script.worst_work},
+          {"worst_us", script.worst_us}, {"force_step_max", script.force_step_max},
+          {"digest", script.digest}};
+}
+
+json as_json(const TimeHistogram& times) {
+  return {{"unit", "us"},           {"clock", "thread CPU time"},
+          {"count", times.count()}, {"overflows", times.overflows()},
+          {"total", times.total()}, {"min", times.least()},
+          {"avg", times.average()}, {"max", times.most()}};
+}
+
+void print_scripts(const std::vector<ScriptResult>& scripts) {
+  fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}\n", "script", "cycles", "answered",
+             "coarser", "cached", "changed", "refused", "worst work", "worst us", "force step");
+  for (const ScriptResult& s : scripts) {
+    fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9.0f} {:>10.2g}\n", name(s.kind), s.cycles,
+               s.answered, s.coarser, s.cached, s.changed, s.refused, s.worst_work, s.worst_us, s.force_step_max);
+  }
+}
+
+void print_counts(const StressResult& result) {
+  fmt::print("steps by status:");
+  for (std::size_t i = 0; i < status_names.size(); ++i) {
+    if (result.by_status[i] > 0) {
+      fmt::print("  {} {}", status_names[i], result.by_status[i]);
+    }
+  }
+  fmt::print("\nanswers by constraint level:");
+  for (std::uint32_t c = 0; c < layout::max_levels; ++c) {
+    if (result.levels[c] > 0) {
+      fmt::print("  {}: {}", c, result.levels[c]);
+    }
+  }
+  fmt::print("\n");
+}
+
+// as cyclictest prints it; empty bins are left out
+void print_histogram(const TimeHistogram& times) {
+  fmt::print("# Histogram: microseconds of thread CPU time, steps (reading the clock is part of it)\n");
+  for (std::size_t bin = 0; bin < times.count().size(); ++bin) {
+    if (times.count()[bin] > 0) {
+      fmt::print("{:06} {:06}\n", bin, times.count()[bin]);
+    }
+  }
+  fmt::print("# Total: {:09}\n# Min Latencies: {:05.0f}\n# Avg Latencies: {:05.0f}\n# Max Latencies: {:05.0f}\n",
+             times.total(), times.least(), times.average(), times.most());
+  fmt::print("# Histogram Overflows: {:05}\n", times.overflows());
+}
+
+}  // namespace
+
+std::string StressReport::verdict() const {
+  if (result.held()) {
+    return "HELD";
+  }
+  std::string text = "VIOLATED";
+  const char* before = ": ";
+  for (const auto& [name, count] : named(result.violations)) {
+    if (count > 0) {
+      text += fmt::format("{}{} {}", before, name, count);
+      before = ", ";
+    }
+  }
+  return text;
+}
+
+std::string StressReport::replay() const {
+  if (!result.first_violation) {
+    return {};
+  }
+  return fmt::format("greenloop-stress {} --seed {} --script {} --cycles {} --contacts {} --factors {}", model,
+                     options.seed, name(result.first_violation->script), result.first_violation->cycle + 1,
+                     options.limits.max_contacts, options.limits.cached_factors);
+}
+
+nlohmann::json StressReport::json() const {
+  nlohmann::json all = {{"model", model},
+                        {"seed", options.seed},
+                        {"contacts", options.limits.max_contacts},
+                        {"factors", options.limits.cached_factors},
+                        {"cycles", result.cycles},
+                        {"worst_work", result.worst_work},
+                        {"declared_work", result.declared_work},
+                        {"instructions_max", nullptr},
+                        {"force_step_max", result.force_step_max},
+                        {"digest", result.digest},
+                        {"create_ms", result.create_ms},
+                        {"arena_bytes", result.arena_bytes},
+                        {"minutes_per_million_cycles", minutes_per_million},
+                        {"histogram", as_json(result.times)},
+                        {"scripts", nlohmann::json::array()},
+                        {"first_violation", nullptr},
+                        {"verdict", verdict()}};
+  for (const auto& [name, count] : named(result.violations)) {
+    all[name] = count;
+  }
+  if (!result.watches_system_calls) {
+    all["syscalls"] = nullptr;
+  }
+  if (instructions_max >= 0) {
+    all["instructions_max"] = instructions_max;
+  }
+  for (const ScriptResult& script : result.scripts) {
+    all["scripts"].push_back(as_json(script));
+  }
+  for (std::size_t i = 0; i < status_names.size(); ++i) {
+    all["statuses"][status_names[i]] = result.by_status[i];
+  }
+  if (result.first_violation) {
+    all["first_violation"] = {{"script", name(result.first_violation->script)},
+                              {"cycle", result.first_violation->cycle},
+                              {"seed", options.seed},
+                              {"replay", replay()}};
+  }
+  return all;
+}
+
+void StressReport::print() const {
+  fmt::print("{}: {} cycles, seed {}, at most {} contacts, {} cached factors; arena {} bytes, created in {:.1f} ms\n\n",
+             model, result.cycles, options.seed, options.limits.max_contacts, options.limits.cached_factors,
+             result.arena_bytes, result.create_ms);
+  print_scripts(result.scripts);
+  fmt::print("\n");
+  print_counts(result);
+  fmt::print("worst work {} of {} declared units\n", result.worst_work, result.declared_work);
+  if (instructions_max >= 0) {
+    fmt::print("instructions of the heaviest kind of step {}\n", instructions_max);
+  } else {
+    fmt::print("instructions not counted\n");
+  }
+  if (!result.watches_system_calls) {
+    fmt::print("system calls not watched: this kernel has no Syscall User Dispatch\n");
+  }
+  fmt::print("largest relative step of the forces by a change of level alone {:.3g}\n", result.force_step_max);
+  fmt::print("digest {:016x}; {:.1f} minutes per million cycles\n\n", result.digest, minutes_per_million);
+  print_histogram(result.times);
+  fmt::print("\n{}\n", verdict());
+  if (result.first_violation) {
+    fmt::print("first in script {}, seed {}, cycle {}; again with\n  {}\n", name(result.first_violation->script),
+               options.seed, result.first_violation->cycle, replay());
+  }
+}
+
+}  // namespace greenloop
