@@ -12,14 +12,18 @@
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
 #include "rt_tests/bench/kernel_benchmark.hpp"
+#include "rt_tests/bench/roofline.hpp"
 #include "runtime/model.hpp"
 
 namespace {
 
 using greenloop::bench::BackSubstitution;
 using greenloop::bench::CapacitanceFigures;
+using greenloop::bench::CreationFigures;
 using greenloop::bench::FieldFigures;
 using greenloop::bench::ForceFigures;
+using greenloop::bench::Roofline;
+using greenloop::bench::RooflinePoint;
 using greenloop::bench::TransformFigures;
 using nlohmann::json;
 
@@ -85,6 +89,20 @@ json as_json(const CapacitanceFigures& figures) {
 
 json as_json(const ForceFigures& figures) { return {{"contacts", figures.contacts}, {"us", figures.us}}; }
 
+json as_json(const RooflinePoint& point) {
+  return {{"kernel", point.kernel},
+          {"contacts", point.contacts},
+          {"bytes", point.bytes},
+          {"flops", point.flops},
+          {"us", point.us},
+          {"gb_per_s", point.gb_per_s},
+          {"bound_us", point.bound_us},
+          {"ratio", point.ratio},
+          {"compute_us", point.compute_us},
+          {"compute_ratio", point.us / point.compute_us},
+          {"bound_by", point.compute_bound() ? "arithmetic" : "bytes"}};
+}
+
 template <class Figures>
 json list_of(const std::vector<Figures>& all) {
   json list = json::array();
@@ -106,6 +124,29 @@ void print_kernels(const KernelFigures& kernels) {
   }
   for (const auto& f : kernels.forces) {
     fmt::print("forces of {} contacts alone, factor cached: {:.2f} us\n", f.contacts, f.us);
+  }
+}
+
+json streams_of(const Roofline& roofline) {
+  json streams = json::array();
+  for (std::size_t i = 0; i < roofline.gb_per_s.size(); ++i) {
+    streams.push_back({{"bytes", greenloop::bench::stream_bytes[i]}, {"gb_per_s", roofline.gb_per_s[i]}});
+  }
+  return streams;
+}
+
+void print_roofline(const Roofline& roofline) {
+  fmt::print("\nRoofline, one set over and over, thread CPU time. Reading");
+  for (std::size_t i = 0; i < roofline.gb_per_s.size(); ++i) {
+    fmt::print(" {} KB: {:.1f} GB/s,", greenloop::bench::stream_bytes[i] >> 10, roofline.gb_per_s[i]);
+  }
+  fmt::print(" arithmetic in fours: {:.1f} GFlop/s\n", roofline.gflops);
+  fmt::print("{:<20} {:>8} {:>10} {:>12} {:>10} {:>6} {:>9} {:>7} {:>11} {:>7}  {}\n", "kernel", "contacts", "bytes",
+             "flops", "us", "GB/s", "bound us", "ratio", "compute us", "ratio", "bound by");
+  for (const RooflinePoint& p : roofline.points) {
+    fmt::print("{:<20} {:>8} {:>10.0f} {:>12.0f} {:>10.2f} {:>6.1f} {:>9.2f} {:>7.2f} {:>11.2f} {:>7.2f}  {}\n",
+               p.kernel, p.contacts, p.bytes, p.flops, p.us, p.gb_per_s, p.bound_us, p.ratio, p.compute_us,
+               p.us / p.compute_us, p.compute_bound() ? "arithmetic" : "bytes");
   }
 }
 
@@ -139,9 +180,15 @@ int run(const Arguments& arguments) {
     all.push_back(greenloop::bench::measure_field(opened.model, store, contacts, arguments.rounds, back.seconds));
   }
   const KernelFigures kernels = measure_kernels(opened.model, store, arguments);
+  const Roofline roofline = greenloop::bench::measure_roofline(opened.model, arguments.contacts, arguments.rounds);
+  const CreationFigures creation =
+      greenloop::bench::measure_creation(opened.model, {.max_contacts = opened.model.view().info->max_contacts});
   if (!arguments.json) {
     print_table(all, back);
     print_kernels(kernels);
+    print_roofline(roofline);
+    fmt::print("\na body of {} contacts and {} cached factors: arena {} bytes, created in {:.1f} ms\n",
+               creation.limits.max_contacts, creation.limits.cached_factors, creation.arena_bytes, creation.create_ms);
     return 0;
   }
   fmt::print("{}\n", json{{"model", arguments.model.filename().string()},
@@ -153,7 +200,12 @@ int run(const Arguments& arguments) {
                           {"transform_over_dense_column", kernels.transform.ratio},
                           {"extract_ns_per_block", kernels.capacitance.back().extract_ns_per_block},
                           {"capacitance", list_of(kernels.capacitance)},
-                          {"force_only", list_of(kernels.forces)}}
+                          {"force_only", list_of(kernels.forces)},
+                          {"create_ms", creation.create_ms},
+                          {"arena_bytes", creation.arena_bytes},
+                          {"streams", streams_of(roofline)},
+                          {"gflops", roofline.gflops},
+                          {"roofline", list_of(roofline.points)}}
                          .dump(2));
   return 0;
 }

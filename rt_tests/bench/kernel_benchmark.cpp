@@ -2,64 +2,23 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <ctime>
 #include <random>
 
 #include "formats/exchange/green_store.hpp"
 #include "rt_tests/bench/contact_sets.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/median.hpp"
+#include "rt_tests/bench/patch.hpp"
 #include "rt_tests/bench/stepper.hpp"
-#include "runtime/body.hpp"
+#include "rt_tests/bench/thread_time.hpp"
 #include "runtime/cholesky.hpp"
 #include "runtime/field.hpp"
-#include "runtime/testing/placed_body.hpp"
 
 namespace greenloop::bench {
 namespace {
 
-constexpr std::uint64_t seed = 20030102;
+constexpr std::uint64_t seed = Patch::seed;
 constexpr std::size_t at_once = 20;  // calls between two looks at the clock, which costs as much as a small kernel
-
-double thread_microseconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
-}
-
-template <class Work>
-double time_of(std::size_t calls, Work work) {
-  const double begin = thread_microseconds();
-  for (std::size_t i = 0; i < calls; ++i) {
-    work();
-  }
-  return (thread_microseconds() - begin) / static_cast<double>(calls);
-}
-
-// a patch resolved on the finest level of a body
-struct Patch {
-  Patch(const Model& model, std::size_t contacts)
-      : set(patch_contacts(model.view(), 1, contacts, seed).front()),
-        placed(model.view(), static_cast<std::uint32_t>(set.size())),
-        body(*placed.body),
-        level(model.level_count() - 1) {
-    resolve_contacts(set, model.view(), body.facts, level, body.set);
-    touch(body.refinement, level, body.set.column, body.set.columns, body.touched);
-  }
-  [[nodiscard]] std::uint32_t order() const { return 3 * body.set.columns; }
-  [[nodiscard]] std::uint32_t stride() const { return body.cache.stride(); }
-
-  // the lower triangle
-  void assemble(std::vector<Float4>& matrix) {
-    assemble_capacitance(body.refinement, {level, body.set.columns, body.set.column}, body.set.columns, body.touched,
-                         body.capacitance, body.force, stride(), matrix.data());
-  }
-
-  std::vector<Contact> set;
-  PlacedBody placed;
-  Body& body;
-  std::uint32_t level;
-};
 
 // factors of a matrix that nodes of three rows leave and enter again
 class ChangingFactors {
@@ -211,6 +170,23 @@ ForceFigures measure_forces(const Model& model, std::size_t contacts, std::size_
     time.push_back(time_of(5 * at_once, [&] { stepper.step_forces(set); }));
   }
   return {set.size(), median(time)};
+}
+
+CreationFigures measure_creation(const Model& model, const Limits& limits) {
+  CreationFigures figures{limits, 0, Elastostatic::required(model, limits).bytes};
+  AlignedBytes memory(figures.arena_bytes);
+  std::fill_n(memory.data(), memory.size(), std::byte{1});
+  bool good = false;
+  figures.create_ms =
+      time_of(1,
+              [&] {
+                good = static_cast<bool>(Elastostatic::create(model, limits, {memory.data(), memory.size()}));
+              }) /
+      1e3;
+  if (!good) {
+    throw std::runtime_error("a body of " + std::to_string(limits.max_contacts) + " contacts cannot be made");
+  }
+  return figures;
 }
 
 }  // namespace greenloop::bench

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "formats/exchange/green_store.hpp"
-#include "runtime/model.hpp"
+#include "runtime/elastostatic.hpp"
 
 namespace greenloop::bench {
 
@@ -38,5 +38,13 @@ struct ForceFigures {
   double us = 0;
 };
 [[nodiscard]] ForceFigures measure_forces(const Model& model, std::size_t contacts, std::size_t rounds);
+
+/// What a body costs to make.
+struct CreationFigures {
+  Limits limits;
+  double create_ms = 0;  ///< Elastostatic::create, once, in memory that has been touched
+  std::size_t arena_bytes = 0;
+};
+[[nodiscard]] CreationFigures measure_creation(const Model& model, const Limits& limits);
 
 }  // namespace greenloop::bench

@@ -8,13 +8,13 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
 
 #include "formats/aligned_bytes.hpp"
+#include "rt_tests/bench/thread_time.hpp"
 #include "rt_tests/stress/force_step.hpp"
 #include "sim_hw/guard/allocation_guard.hpp"
 #include "sim_hw/guard/mutex_guard.hpp"
@@ -26,12 +26,6 @@ namespace {
 constexpr std::uint64_t warm_up_cycles = 200;    // before the scripts: their pages are not of the loop
 constexpr std::uint64_t progress_interval = 64;  // cycles
 constexpr std::uint64_t empty_digest = 0xcbf29ce484222325;
-
-double thread_microseconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) * 1e6 + static_cast<double>(time.tv_nsec) / 1e3;
-}
 
 std::uint64_t minor_faults() {
   rusage usage{};
@@ -94,9 +88,9 @@ class StressRun {
 
  private:
   void create_body() {
-    const double begin = thread_microseconds();
+    const double begin = bench::thread_microseconds();
     const auto created = Elastostatic::create(*model_, options_.limits, {arena_.data(), arena_.size()});
-    result_.create_ms = (thread_microseconds() - begin) / 1e3;
+    result_.create_ms = (bench::thread_microseconds() - begin) / 1e3;
     if (!created) {
       throw std::runtime_error("no body for this model with " + std::to_string(options_.limits.max_contacts) +
                                " contacts and " + std::to_string(options_.limits.cached_factors) +
@@ -152,9 +146,9 @@ class StressRun {
   void cycle(const ScriptedStep& scripted) {
     const Response response = this->response(scripted);
     const std::uint64_t violations = result_.violations.sum();
-    const double begin = thread_microseconds();
+    const double begin = bench::thread_microseconds();
     const StepReport report = guarded_step(scripted, response);
-    const double us = thread_microseconds() - begin;
+    const double us = bench::thread_microseconds() - begin;
     result_.times.add(us);
     script_.worst_us = std::max(script_.worst_us, us);
     const bool answered = report.status <= Status::coarser;

@@ -1,0 +1,213 @@
+#include "rt_tests/bench/roofline.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "rt_tests/bench/median.hpp"
+#include "rt_tests/bench/patch.hpp"
+#include "rt_tests/bench/thread_time.hpp"
+#include "runtime/cholesky.hpp"
+#include "runtime/couplings.hpp"
+#include "runtime/field.hpp"
+
+namespace greenloop::bench {
+namespace {
+
+constexpr std::size_t at_once = 20;  // calls of a small kernel between two looks at the clock
+
+class RooflineRun {
+ public:
+  RooflineRun(const Model& model, std::size_t rounds) : view_(&model.view()), rounds_(rounds) {
+    for (const std::size_t bytes : stream_bytes) {
+      streams_.emplace_back(bytes);
+    }
+    std::vector<double> nothing;
+    for (std::size_t round = 0; round < rounds; ++round) {
+      nothing.push_back(time_of(1, [] {}));
+    }
+    clock_us_ = median(nothing);
+  }
+
+  void measure(Patch& patch) {
+    measure_field(patch);
+    if (patch.set.size() > 1) {
+      measure_factor(patch);
+    }
+  }
+
+  Roofline result() {
+    std::vector<double> flops;
+    for (std::size_t round = 0; round < rounds_; ++round) {
+      flops.push_back(measure_flops());
+    }
+    roofline_.gflops = median(flops) / 1e3;
+    for (std::size_t i = 0; i < streams_.size(); ++i) {
+      roofline_.gb_per_s[i] = median_stream(streams_[i]);
+    }
+    for (RooflinePoint& point : roofline_.points) {
+      point.compute_us = point.flops / (1e3 * roofline_.gflops);
+    }
+    return roofline_;
+  }
+
+ private:
+  double median_stream(ReadStream& stream) const {
+    std::vector<double> speed;
+    for (std::size_t round = 0; round < std::min<std::size_t>(rounds_, 9); ++round) {
+      speed.push_back(stream.measure() / 1e3);
+    }
+    return median(speed);
+  }
+
+  // of one call, without the clock's own time
+  template <class Work>
+  double time_once(Work work) const {
+    return std::max(time_of(1, work) - clock_us_, 0.0);
+  }
+
+  // microseconds(): of one call whose bytes are in the caches
+  template <class Microseconds>
+  void add(const RooflinePoint& point, Microseconds microseconds) {
+    const auto fits = [&](const ReadStream& stream) { return static_cast<double>(stream.bytes()) >= point.bytes; };
+    add(point, *std::find_if(streams_.begin(), streams_.end() - 1, fits), microseconds);
+  }
+
+  // the stream is measured just before each call
+  template <class Microseconds>
+  void add(RooflinePoint point, ReadStream& stream, Microseconds microseconds) {
+    std::vector<double> us, speed, ratio;
+    for (std::size_t round = 0; round < rounds_; ++round) {
+      speed.push_back(stream.measure());
+      us.push_back(microseconds());
+      ratio.push_back(us.back() * speed.back() / point.bytes);
+    }
+    point.us = median(us);
+    point.gb_per_s = median(speed) / 1e3;
+    point.bound_us = point.bytes / median(speed);
+    point.ratio = median(ratio);
+    roofline_.points.push_back(point);
+  }
+
+  void measure_field(Patch& patch) {
+    const Body& body = patch.body;
+    const ContactSet& set = body.set;
+    SparseCoefficients sums = body.sums;
+    const auto sum = [&] {
+      for (std::uint32_t k = 0; k < set.columns; ++k) {
+        add_column(body.columns, patch.level, set.column[k], patch.level, splat3(1e-6F), sums);
+      }
+    };
+    sum();
+    const std::vector<std::uint8_t> touched(sums.touched, sums.touched + view_->domain_count);
+    const auto moved = static_cast<double>(std::count(touched.begin(), touched.end(), 1));
+    const auto blocks = static_cast<double>(count_field_blocks(body.columns, set, patch.level));
+    RooflinePoint columns{.kernel = "field columns",
+                          .contacts = patch.set.size(),
+                          .bytes = blocks * sizeof(ColumnBlock) + moved * 2 * sizeof(Float4),
+                          .flops = blocks * 18};
+    add(columns, [&] { return time_of(at_once, sum); });
+    columns.kernel = "field columns, cold";
+    add(columns, streams_.back(), [&] { return time_once(sum); });
+
+    std::vector<Float4> x(view_->node_count);
+    const auto odd = static_cast<double>(view_->domain_count - view_->level[0].counts->domain_count);
+    add({.kernel = "inverse transform",
+         .contacts = patch.set.size(),
+         .bytes = view_->node_count * 2.0 * sizeof(Float4) + odd * sizeof(ParentOffsets) +
+                  moved * sizeof(layout::RefinementRecord),
+         .flops = odd * (has_stencils(*view_) ? 36 : 9) + moved * 12},
+        [&] {
+          double us = 0;
+          for (std::size_t i = 0; i < at_once; ++i) {
+            sum();
+            us += time_once([&] { inverse_transform(*view_, body.parents, patch.level, sums, x.data()); });
+          }
+          return us / at_once;
+        });
+  }
+
+  void measure_factor(Patch& patch) {
+    const auto order = static_cast<double>(patch.order());
+    const double triangle = sizeof(float) * order * (order + 1) / 2;
+    std::vector<Float4> matrix(std::size_t{patch.stride()} * patch.stride() / 4);
+    add({.kernel = "capacitance matrix",
+         .contacts = patch.set.size(),
+         .bytes = coupling_bytes(patch.body) + triangle,
+         .flops = capacitance_flops(patch.body)},
+        [&] { return time_once([&] { patch.assemble(matrix); }); });
+    std::vector<Float4> factor;
+    bool good = true;
+    add({.kernel = "Cholesky", .contacts = patch.set.size(), .bytes = 2 * triangle, .flops = order * order * order / 3},
+        [&] {
+          factor = matrix;
+          return time_once([&] { good = cholesky_factor(patch.order(), patch.stride(), factor.data()) && good; });
+        });
+    if (!good) {
+      throw std::runtime_error("a capacitance matrix of the model is not positive definite");
+    }
+    std::vector<Float4> held(padded_order(patch.order()) / 4);
+    for (std::uint32_t i = 0; i < patch.order(); ++i) {
+      held[i / 4][i % 4] = 1e-3F;
+    }
+    std::vector<Float4> solution = held;
+    add({.kernel = "triangular solution",
+         .contacts = patch.set.size(),
+         .bytes = 2 * triangle + 4 * order * sizeof(float),
+         .flops = 2 * order * order},
+        [&] {
+          return time_of(at_once, [&] {
+            std::copy(held.begin(), held.end(), solution.begin());
+            cholesky_solve(patch.order(), patch.stride(), factor.data(), solution.data());
+          });
+        });
+  }
+
+  // of the couplings between touched coefficients, as they lie in the file, of the indices of all blocks in their
+  // columns, and of their scales
+  double coupling_bytes(const Body& body) const {
+    std::size_t bytes = 0;
+    for (std::uint32_t q = 0; q <= body.touched.constraint_level; ++q) {
+      const LevelView& level = view_->level[q];
+      for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
+        const std::uint32_t coefficient = body.touched.list[q][k];
+        bytes += sizeof(layout::Scale);
+        for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+          const CouplingsView& couplings = level.couplings[layer];
+          const std::uint32_t column = coefficient - level.domain_begin;
+          bytes += std::size_t{couplings.index_bytes} * column_length(couplings, column);
+          visit_rows(couplings, column, 0, coefficient, [&](std::uint32_t row, std::uint32_t) {
+            bytes += body.touched.mark[row] ? (9 * layout::value_bits[layer] + 7) / 8 : 0;
+          });
+        }
+      }
+    }
+    return static_cast<double>(bytes);
+  }
+
+  // at most, as declared
+  double capacitance_flops(const Body& body) const {
+    SetCounts counts;
+    counts.columns = body.set.columns;
+    count_factor(body.set, body.touched, body.cost[body.set.level], body.stored, counts);
+    return 2.0 * static_cast<double>(assemble_capacitance_work(capacitance_counts(counts)));
+  }
+
+  const ModelView* view_;
+  std::size_t rounds_;
+  double clock_us_ = 0;
+  std::vector<ReadStream> streams_;
+  Roofline roofline_;
+};
+
+}  // namespace
+
+Roofline measure_roofline(const Model& model, const std::vector<std::size_t>& contacts, std::size_t rounds) {
+  RooflineRun run(model, rounds);
+  for (const std::size_t count : contacts) {
+    Patch patch(model, count);
+    run.measure(patch);
+  }
+  return run.result();
+}
+
+}  // namespace greenloop::bench
