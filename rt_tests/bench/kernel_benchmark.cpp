@@ -152,7 +152,7 @@ CapacitanceFigures measure_capacitance(const Model& model, std::size_t contacts,
   if (!factors.good()) {
     throw std::runtime_error("a capacitance matrix of the model is not positive definite");
   }
-  const auto blocks = static_cast<double>(patch.body.set.columns * (patch.body.set.columns + 1) / 2);
+  const std::uint32_t blocks = patch.body.set.columns * (patch.body.set.columns + 1) / 2;
   figures.extract_ns_per_block = 1e3 * median(extract) / blocks;
   figures.factor_us = median(factor);
   figures.insert_us = median(insert);

@@ -1,8 +1,11 @@
-// write_recorded_model FILE.h: the model of the recorded script as a C array, FILE.h and FILE.c. It is the synthetic
-// sphere's mesh with arbitrary numbers on it: bits that no mathematical library has a part in.
+// write_recorded_model FILE.h WAVELET: a model of the recorded script as a C array, FILE.h and FILE.c; WAVELET is
+// lifted-linear, lifted-butterfly or butterfly. It is the synthetic sphere's mesh with arbitrary numbers on it: bits
+// that no mathematical library has a part in.
 #include <exception>
 #include <iostream>
+#include <map>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "formats/c_array.hpp"
@@ -55,9 +58,9 @@ std::size_t domain(const LevelData& level) {
   return count;
 }
 
-ModelData arbitrary_model() {
+ModelData arbitrary_model(layout::Wavelet wavelet) {
   std::mt19937_64 random(20);
-  ModelData data = synthetic_model({.levels = 3, .touchable_above = 0.2});
+  ModelData data = synthetic_model({.levels = 3, .wavelet = wavelet, .touchable_above = 0.2});
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     // small enough that the identity outweighs a whole row
     const int most = (1 << (layout::value_bits[layer] - 1)) - 1;
@@ -88,12 +91,17 @@ ModelData arbitrary_model() {
 }  // namespace greenloop
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: write_recorded_model FILE.h\n";
+  using greenloop::layout::Wavelet;
+  const std::map<std::string, Wavelet> wavelets = {{"lifted-linear", Wavelet::lifted_linear},
+                                                   {"lifted-butterfly", Wavelet::lifted_butterfly},
+                                                   {"butterfly", Wavelet::butterfly}};
+  const auto wavelet = wavelets.find(argc == 3 ? argv[2] : "");
+  if (wavelet == wavelets.end()) {
+    std::cerr << "usage: write_recorded_model FILE.h lifted-linear|lifted-butterfly|butterfly\n";
     return 2;
   }
   try {
-    greenloop::write_c_array(argv[1], greenloop::encode(greenloop::arbitrary_model()));
+    greenloop::write_c_array(argv[1], greenloop::encode(greenloop::arbitrary_model(wavelet->second)));
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -1,10 +1,15 @@
-// recorded_digest BUILD [--flip-bit]: runs the recorded script on the model compiled in and compares the digest of all
+// recorded_digest BUILD [--flip-bit]: runs the recorded script on the models compiled in and compares the digest of all
 // answers with the one that every compiler and processor has to find; exits with 4 if they differ. BUILD is what the
-// program was meant to be compiled by and for. "--flip-bit" changes one bit of one answer, which must be noticed.
+// program was meant to be compiled by and for. "--flip-bit" changes one bit of one answer of the last model, which must
+// be noticed.
 #include <cinttypes>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
+#include <span>
 
+#include "recorded_butterfly.h"
+#include "recorded_lifted_butterfly.h"
 #include "recorded_model.h"
 #include "rt_tests/determinism/recorded_script.hpp"
 
@@ -44,15 +49,39 @@ bool processor_runs_this() {
 alignas(64) std::byte arena[2 << 20];
 alignas(16) float field[4 * 512];
 
-void print(const greenloop::RecordedRun& run) {
-  std::printf("%s: %" PRIu32 " cycles, %" PRIu64 " units of work, %" PRIu32
+struct Recorded {
+  const char* wavelets;
+  std::span<const std::byte> model;
+  std::uint64_t digest;
+};
+const Recorded recorded[] = {
+    {"lifted Linear", std::as_bytes(std::span(recorded_model)), greenloop::recorded_digest},
+    {"lifted Butterfly", std::as_bytes(std::span(recorded_lifted_butterfly)),
+     greenloop::recorded_lifted_butterfly_digest},
+    {"Butterfly", std::as_bytes(std::span(recorded_butterfly)), greenloop::recorded_butterfly_digest},
+};
+
+void print(const Recorded& of, const greenloop::RecordedRun& run) {
+  std::printf("%s, %s wavelets: %" PRIu32 " cycles, %" PRIu64 " units of work, %" PRIu32
               " cached factors, arena %zu bytes; answers by status:",
-              this_build, greenloop::RecordedScript::cycles, run.outcome.work, run.outcome.cached, run.arena_bytes);
+              this_build, of.wavelets, greenloop::RecordedScript::cycles, run.outcome.work, run.outcome.cached,
+              run.arena_bytes);
   for (const std::uint32_t count : run.outcome.by_status) {
     std::printf(" %" PRIu32, count);
   }
   std::printf("; levels 0x%" PRIx32 "\ndigest %016" PRIx64 ", expected %016" PRIx64 "\n", run.outcome.levels,
-              run.outcome.digest, greenloop::recorded_digest);
+              run.outcome.digest, of.digest);
+}
+
+// 0, or what the program exits with
+int compare(const Recorded& of, bool flip) {
+  const auto run = greenloop::run_recorded_script(of.model, arena, field, flip);
+  print(of, run);
+  if (run.error != nullptr) {
+    std::printf("%s\n", run.error);
+    return 1;
+  }
+  return run.outcome.digest == of.digest ? 0 : 4;
 }
 
 }  // namespace
@@ -67,11 +96,10 @@ int main(int argc, char** argv) {
     return 3;
   }
   const bool flip = argc > 2 && std::strcmp(argv[2], "--flip-bit") == 0;
-  const auto run = greenloop::run_recorded_script(std::as_bytes(std::span(recorded_model)), arena, field, flip);
-  print(run);
-  if (run.error != nullptr) {
-    std::printf("%s\n", run.error);
-    return 1;
+  int status = 0;
+  for (const Recorded& of : recorded) {
+    const int of_model = compare(of, flip && &of == std::end(recorded) - 1);
+    status = of_model == 0 ? status : of_model;
   }
-  return run.outcome.digest == greenloop::recorded_digest ? 0 : 4;
+  return status;
 }
