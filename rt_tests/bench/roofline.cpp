@@ -91,15 +91,18 @@ class RooflineRun {
   void measure_field(Patch& patch) {
     const Body& body = patch.body;
     const ContactSet& set = body.set;
-    SparseCoefficients sums = body.sums;
-    const auto sum = [&] {
+    std::vector<Float4> x(view_->node_count);
+    std::vector<std::uint8_t> touched(view_->node_count);
+    const auto sum_into = [&](const SparseCoefficients& sums) {
       for (std::uint32_t k = 0; k < set.columns; ++k) {
         add_column(body.columns, patch.level, set.column[k], patch.level, splat3(1e-6F), sums);
       }
     };
-    sum();
-    const std::vector<std::uint8_t> touched(sums.touched, sums.touched + view_->domain_count);
+    sum_into({x.data(), touched.data()});
     const auto moved = static_cast<double>(std::count(touched.begin(), touched.end(), 1));
+    const bool lifted = layout::is_lifted(static_cast<layout::Wavelet>(view_->info->wavelet));
+    const SparseCoefficients sums{x.data(), lifted ? touched.data() : nullptr};
+    const auto sum = [&] { sum_into(sums); };
     const auto blocks = static_cast<double>(count_field_blocks(body.columns, set, patch.level));
     RooflinePoint columns{.kernel = "field columns",
                           .contacts = patch.set.size(),
@@ -109,7 +112,6 @@ class RooflineRun {
     columns.kernel = "field columns, cold";
     add(columns, streams_.back(), [&] { return time_once(sum); });
 
-    std::vector<Float4> x(view_->node_count);
     const auto odd = static_cast<double>(view_->domain_count - view_->level[0].counts->domain_count);
     add({.kernel = "inverse transform",
          .contacts = patch.set.size(),
@@ -119,8 +121,9 @@ class RooflineRun {
         [&] {
           double us = 0;
           for (std::size_t i = 0; i < at_once; ++i) {
+            std::fill(x.begin(), x.end(), Float4{});
             sum();
-            us += time_once([&] { inverse_transform(*view_, body.parents, patch.level, sums, x.data()); });
+            us += time_once([&] { inverse_transform(*view_, body.parents, {patch.level, patch.level}, sums); });
           }
           return us / at_once;
         });

@@ -7,23 +7,16 @@
 #include <limits>
 #include <vector>
 
+#include "rt_tests/instructions/counted.hpp"
 #include "rt_tests/stress/heaviest_step.hpp"
 #include "runtime/cholesky.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/field.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
-#include "sim_hw/guard/instruction_counter.hpp"
 
 namespace greenloop {
 namespace {
-
-template <class Work>
-std::uint64_t count(Work work) {
-  instruction_counter::start();
-  work();
-  return instruction_counter::stop();
-}
 
 // what `kernel` takes with each of these numbers in its input
 template <class Kernel>
@@ -40,13 +33,9 @@ std::vector<std::uint64_t> counts(Kernel kernel) {
   kernel(1.0F);  // every library function has been called before
   std::vector<std::uint64_t> result;
   for (const float value : values) {
-    result.push_back(count([&] { kernel(value); }));
+    result.push_back(count_instructions([&] { kernel(value); }));
   }
   return result;
-}
-
-bool all_equal(const std::vector<std::uint64_t>& counts) {
-  return std::all_of(counts.begin(), counts.end(), [&](std::uint64_t c) { return c == counts[0]; });
 }
 
 TEST_CASE("instructions are counted exactly, and a branch on data is seen") {
@@ -55,7 +44,7 @@ TEST_CASE("instructions are counted exactly, and a branch on data is seen") {
     return;
   }
   const auto loop = [](std::uint64_t turns) {
-    return count([turns] {
+    return count_instructions([turns] {
       std::uint64_t left = turns;
       while (left > 0) {
         asm volatile("sub $1, %0" : "+r"(left));
@@ -111,6 +100,54 @@ TEST_CASE("kernels take the same instructions whatever the numbers") {
   CHECK(all_equal(solve));
 }
 
+// a matrix by whole columns: `scale` on the diagonal and `off` times it beside it
+std::vector<Float4> matrix(std::uint32_t order, float scale, float off) {
+  std::vector<Float4> a(std::size_t{order} * order / 4, splat(scale * off));
+  for (std::uint32_t i = 0; i < order; ++i) {
+    a[(std::size_t{order} + 1) * i / 4][((order + 1) * i) % 4] = scale;
+  }
+  return a;
+}
+
+TEST_CASE("factors take the same instructions whatever the matrix, unless it is not positive definite") {
+  if (!instruction_counter::install()) {
+    return;
+  }
+  constexpr std::uint32_t order = 24;
+  std::vector<std::uint64_t> fresh, removed, appended;
+  for (int pass = 0; pass < 2; ++pass) {  // in the first every library function is called before
+    fresh.clear(), removed.clear(), appended.clear();
+    for (const float scale : {1.0F, 0x1p-60F, 0x1p60F}) {
+      for (const float off : {0.0F, -0.0F, FLT_TRUE_MIN, 0x1p-100F, 0.01F, -0.01F}) {
+        CAPTURE(scale);
+        CAPTURE(off);
+        std::vector<Float4> a = matrix(order, scale, off);
+        const std::vector<Float4> all = a;
+        std::vector<Float4> border(3 * order / 4);
+        bool good = false;
+        fresh.push_back(count_instructions([&] { good = cholesky_factor(order, order, a.data()); }));
+        CHECK(good);
+        removed.push_back(count_instructions([&] { cholesky_remove(order, 6, 3, order, a.data(), border.data()); }));
+        border.assign(all.end() - 3 * order / 4, all.end());
+        appended.push_back(
+            count_instructions([&] { good = cholesky_append(order - 3, 3, order, a.data(), border.data()); }));
+        CHECK(good);
+      }
+    }
+  }
+  CHECK(all_equal(fresh));
+  CHECK(all_equal(removed));
+  CHECK(all_equal(appended));
+  for (const float bad :
+       {0.0F, -1.0F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    CAPTURE(bad);
+    std::vector<Float4> a = matrix(order, bad, 0);
+    bool good = true;
+    CHECK(count_instructions([&] { good = cholesky_factor(order, order, a.data()); }) < fresh[0]);
+    CHECK_FALSE(good);
+  }
+}
+
 TEST_CASE("whole steps take the same instructions when repeated and whatever the displacements") {
   if (!instruction_counter::install()) {
     return;
@@ -124,7 +161,7 @@ TEST_CASE("whole steps take the same instructions when repeated and whatever the
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       contacts[i] = {nodes[2 * i], {value, -value, value}};
     }
-    return count([&] { body.body().step(contacts, {any_budget}, {force, body.field()}); });
+    return count_instructions([&] { body.body().step(contacts, {any_budget}, {force, body.field()}); });
   };
   step(1e-3F);
   step(1e-3F);  // every library function has been called before, with the factor at hand too

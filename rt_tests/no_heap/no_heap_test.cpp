@@ -1,6 +1,8 @@
 // Runs steps with every guard armed: no allocation, lock, system call or page fault in the loop. Each guard is first
 // shown to trip.
 #include <doctest/doctest.h>
+#include <pthread.h>
+#include <semaphore.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +15,7 @@
 #include <memory>
 #include <mutex>
 #include <random>
+#include <shared_mutex>
 #include <vector>
 
 #include "runtime/testing/test_body.hpp"
@@ -93,6 +96,32 @@ TEST_CASE("the mutex guard trips on a lock") {
   CHECK(mutex_guard::count() == before + 1);
   { const std::lock_guard lock(mutex); }
   CHECK(mutex_guard::count() == before + 1);
+}
+
+TEST_CASE("the mutex guard trips on every other kind of lock") {
+  const auto trips = [](auto act) {
+    const std::uint64_t before = mutex_guard::count();
+    mutex_guard::arm();
+    act();
+    mutex_guard::disarm();
+    return mutex_guard::count() - before;
+  };
+  std::mutex mutex;
+  CHECK(trips([&] { CHECK(mutex.try_lock()); }) == 1);
+  mutex.unlock();
+  std::shared_mutex shared;
+  CHECK(trips([&] { shared.lock(); }) == 1);
+  shared.unlock();
+  CHECK(trips([&] { shared.lock_shared(); }) == 1);
+  shared.unlock_shared();
+  pthread_spinlock_t spin{};
+  REQUIRE(pthread_spin_init(&spin, PTHREAD_PROCESS_PRIVATE) == 0);
+  CHECK(trips([&] { pthread_spin_lock(&spin); }) == 1);
+  pthread_spin_unlock(&spin);
+  sem_t semaphore{};
+  REQUIRE(sem_init(&semaphore, 0, 1) == 0);
+  CHECK(trips([&] { sem_wait(&semaphore); }) == 1);
+  CHECK(trips([] {}) == 0);
 }
 
 TEST_CASE("no allocation and no lock in the loop") {

@@ -1,0 +1,192 @@
+// A step takes as many instructions whatever the displacements and whatever the numbers in the model, on every way the
+// planner can take.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/aligned_bytes.hpp"
+#include "rt_tests/instructions/counted.hpp"
+#include "runtime/testing/test_body.hpp"
+
+namespace greenloop {
+namespace {
+
+// bodies one after the other in the same memory
+class Steps {
+ public:
+  Steps(const TestModel& model, const Limits& limits)
+      : model_(&model),
+        limits_(limits),
+        requirement_(Elastostatic::required(model.model(), limits)),
+        arena_(requirement_.bytes),
+        field_(std::size_t{16} * model.model().node_count()),
+        force_(std::size_t{3} * limits.max_contacts) {}
+
+  void renew() { body_ = Elastostatic::create(model_->model(), limits_, {arena_.data(), arena_.size()}).body; }
+
+  StepReport step(const std::vector<Contact>& contacts, std::uint64_t work, bool with_field) {
+    const std::span<float> field(reinterpret_cast<float*>(field_.data()), field_.size() / sizeof(float));
+    return body_.step(contacts, {work},
+                      {std::span(force_).first(3 * contacts.size()), with_field ? field : std::span<float>()});
+  }
+
+  [[nodiscard]] const Requirement& requirement() const { return requirement_; }
+
+ private:
+  const TestModel* model_;
+  Limits limits_;
+  Requirement requirement_;
+  AlignedBytes arena_, field_;
+  std::vector<float> force_;
+  Elastostatic body_;
+};
+
+std::vector<Contact> contacts(const std::vector<std::uint32_t>& nodes, float value) {
+  std::vector<Contact> result(nodes.size());
+  std::transform(nodes.begin(), nodes.end(), result.begin(), [value](std::uint32_t node) {
+    return Contact{node, {value, -value, value}};
+  });
+  return result;
+}
+
+// a step after others of a new body
+struct Way {
+  std::string name;
+  std::vector<std::uint32_t> before;  // nodes held in the step before; none: there is none
+  std::vector<std::uint32_t> nodes;
+  std::uint64_t budget;
+  bool with_field;
+};
+
+// instructions of the last step with contacts displaced by each value, and the reports
+struct Outcome {
+  std::vector<std::uint64_t> instructions;
+  StepReport report;
+};
+
+Outcome take(const Way& way, Steps& steps, std::initializer_list<float> values) {
+  Outcome outcome;
+  const auto step = [&](float value) {
+    steps.renew();
+    if (!way.before.empty()) {
+      steps.step(contacts(way.before, 1e-3F), any_budget, true);
+    }
+    const auto set = contacts(way.nodes, value);
+    return [&, set] { outcome.report = steps.step(set, way.budget, way.with_field); };
+  };
+  step (*values.begin())();  // every library function has been called before
+  for (const float value : values) {
+    const auto counted = step(value);
+    outcome.instructions.push_back(count_instructions(counted));
+  }
+  return outcome;
+}
+
+// the work of a step that is not limited, and the greatest budget below it that still is answered
+std::uint64_t budget_below(Steps& steps, const std::vector<std::uint32_t>& nodes) {
+  steps.renew();
+  return steps.step(contacts(nodes, 1e-3F), any_budget, true).work - 1;
+}
+
+// those of a patch, from `first` on
+std::vector<std::uint32_t> nodes_of(const TestModel& model, std::size_t first, std::size_t count) {
+  const auto nodes = model.touchable();
+  std::vector<std::uint32_t> result;
+  for (std::size_t i = 0; i < count; ++i) {
+    result.push_back(nodes[first + i]);
+  }
+  return result;
+}
+
+std::vector<Way> ways(const TestModel& model, Steps& steps, std::size_t contacts) {
+  const auto patch = nodes_of(model, 0, contacts), moved = nodes_of(model, 1, contacts);
+  return {{"released", patch, {}, any_budget, true},
+          {"cached", patch, patch, any_budget, true},
+          {"cached, forces only", patch, patch, any_budget, false},
+          {"changed", patch, moved, any_budget, true},
+          {"fresh", {}, patch, any_budget, true},
+          {"fresh, forces only", {}, patch, any_budget, false},
+          {"coarser", {}, patch, budget_below(steps, patch), true}};
+}
+
+void check_way(const Way& way, const StepReport& report, std::uint32_t finest) {
+  const std::string& name = way.name;
+  const bool fine = report.constraint_level == finest && report.field_level == finest;
+  CHECK(report.status == (fine ? Status::ok : Status::coarser));
+  CHECK((name.find("cached") == 0) == report.cached_factor);
+  CHECK((name == "changed") == (report.changed_nodes > 0));
+  CHECK((name.find("coarse") == 0) == (report.constraint_level < finest));
+  CHECK((name == "coarsest, field cut") == (report.field_level < finest));
+}
+
+void compare(const Way& way, const TestModel& model, Steps& steps) {
+  CAPTURE(way.name);
+  const Outcome outcome = take(way, steps, {1e-3F, 1e-3F, 0.0F, FLT_TRUE_MIN, 1.0F});
+  check_way(way, outcome.report, model.model().level_count() - 1);
+  CHECK(all_equal(outcome.instructions));
+}
+
+TEST_CASE("on every way of the planner a step takes the same instructions whatever the displacements") {
+  if (!instruction_counter::install()) {
+    MESSAGE("instructions cannot be counted on this processor; nothing is compared");
+    return;
+  }
+  // a patch so large that changing a factor is less work than a fresh one
+  const std::pair<layout::Wavelet, std::uint32_t> patches[] = {{layout::Wavelet::lifted_linear, 4},
+                                                               {layout::Wavelet::butterfly, 6}};
+  for (const auto& [wavelet, contacts] : patches) {
+    const TestModel model({.levels = 3, .wavelet = wavelet});
+    Steps steps(model, {.max_contacts = contacts, .cached_factors = 2});
+    for (const Way& way : ways(model, steps, contacts)) {
+      compare(way, model, steps);
+    }
+    // the field of one node is dear beside its forces
+    Steps single(model, {.max_contacts = 1, .cached_factors = 1});
+    compare({"coarsest, field cut", {}, {model.touchable().back()}, single.requirement().least_work, true}, model,
+            single);
+  }
+}
+
+// the same structure with other numbers in the couplings
+TestModel with_couplings(std::int16_t value) {
+  ModelData data = synthetic_model({.levels = 2});
+  for (LevelData& level : data.levels) {
+    for (CouplingsData& couplings : level.couplings) {
+      std::fill(couplings.value.begin(), couplings.value.end(), value);
+    }
+  }
+  allow_all_field_blocks(data);
+  return TestModel(encode(data));
+}
+
+TEST_CASE("forces take the same instructions whatever the numbers in the model") {
+  if (!instruction_counter::install()) {
+    return;
+  }
+  const TestModel models[] = {with_couplings(0), with_couplings(1), with_couplings(-1)};
+  std::vector<std::vector<std::uint64_t>> counts(3);
+  for (const TestModel& model : models) {
+    Steps steps(model, {.max_contacts = 4, .cached_factors = 2});
+    const auto patch = nodes_of(model, 0, 4), moved = nodes_of(model, 1, 4);
+    const Way of_forces[] = {{"cached", patch, patch, any_budget, false},
+                             {"changed", patch, moved, any_budget, false},
+                             {"fresh", {}, patch, any_budget, false}};
+    for (std::size_t i = 0; i < std::size(of_forces); ++i) {
+      CAPTURE(of_forces[i].name);
+      const Outcome outcome = take(of_forces[i], steps, {1e-3F});
+      check_way(of_forces[i], outcome.report, model.model().level_count() - 1);
+      counts[i].push_back(outcome.instructions[0]);
+    }
+  }
+  for (const auto& of_way : counts) {
+    CHECK(all_equal(of_way));
+    CHECK(of_way[0] > 100);
+  }
+}
+
+}  // namespace
+}  // namespace greenloop
