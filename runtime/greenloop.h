@@ -154,10 +154,10 @@ greenloop_requirement greenloop_required(const greenloop_model* model, greenloop
  * take seconds: see Elastostatic::create for the work. */
 greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes);
 
-/* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of the first `nodes`
- * nodes, all or those of the coarser levels (greenloop_node_count_to). force: 3 * count floats [N], in the order of the
- * contacts. displacement: 4 * nodes floats [m], x y z 0 per node, 16-byte aligned; null and 0 if no field is wanted,
- * which then costs nothing. Spends at most `work` units. */
+/* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of the first
+ * `nodes` nodes, all or those of the coarser levels (greenloop_node_count_to). force: 3 * count floats [N], in the
+ * order of the contacts. displacement: 4 * nodes floats [m], x y z 0 per node, 16-byte aligned; null and 0 if no field
+ * is wanted, which then costs nothing. Spends at most `work` units. */
 greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* contacts, size_t count, uint64_t work,
                                 float* force, float* displacement, uint32_t nodes);
 

@@ -5,7 +5,6 @@
 
 #include "formats/verify.hpp"
 #include "formats/view.hpp"
-#include "runtime/domain.hpp"
 
 namespace greenloop {
 
@@ -21,7 +20,7 @@ class Model {
   [[nodiscard]] const ModelView& view() const noexcept { return view_; }
   [[nodiscard]] std::uint32_t node_count() const noexcept { return view_.node_count; }
   /// Nodes of mesh levels 0..level, which come first; level below level_count().
-  [[nodiscard]] std::uint32_t node_count(std::uint32_t level) const noexcept { return nodes_up_to(view_, level); }
+  [[nodiscard]] std::uint32_t node_count(std::uint32_t level) const noexcept;
   [[nodiscard]] std::uint32_t level_count() const noexcept { return view_.levels; }
 
  private:
