@@ -1,7 +1,6 @@
 #include "rt_tests/bench/field_benchmark.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
@@ -11,6 +10,9 @@
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/stepper.hpp"
+#include "rt_tests/bench/thread_time.hpp"
+#include "runtime/field.hpp"
+#include "runtime/testing/placed_body.hpp"
 
 namespace greenloop::bench {
 namespace {
@@ -18,10 +20,6 @@ namespace {
 constexpr std::uint64_t seed = 20030101;
 constexpr std::size_t columns_in_turn = 512;  ///< dense columns that take turns: more than a second-level cache holds
 constexpr std::size_t fewest_sets = 4, most_sets = 64;
-
-double microseconds(std::chrono::steady_clock::time_point since) {
-  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - since).count();
-}
 
 /// Sums of squares of the field's error and answer, and the worst errors of forces.
 struct ErrorSum {
@@ -47,6 +45,46 @@ struct ErrorSum {
   [[nodiscard]] double rms() const { return std::sqrt(error / exact); }
 };
 
+/// Fields of given forces, without the step that finds them.
+class FieldSums {
+ public:
+  FieldSums(const Model& model, const std::vector<std::vector<Contact>>& sets,
+            const std::vector<std::vector<float>>& forces)
+      : placed_(model.view(), static_cast<std::uint32_t>(sets.front().size())),
+        level_(model.level_count() - 1),
+        x_(model.node_count()) {
+    Body& body = *placed_.body;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      resolve_contacts(sets[i], model.view(), body.facts, level_, body.set);
+      Columns columns{{body.set.column, body.set.column + body.set.columns}, {}};
+      columns.force.resize(3 * columns.place.size());
+      for (std::size_t k = 0; k < 3 * sets[i].size(); ++k) {
+        columns.force[3 * body.set.place[k / 3] + k % 3] += forces[i][k];
+      }
+      sets_.push_back(std::move(columns));
+    }
+  }
+
+  void round() {
+    Body& body = *placed_.body;
+    for (const Columns& set : sets_) {
+      const auto count = static_cast<std::uint32_t>(set.place.size());
+      compute_field({*body.view, body.columns, body.parents}, {level_, count, set.place.data(), set.force.data()},
+                    {level_, level_}, body.field_touched, x_.data());
+    }
+  }
+
+ private:
+  struct Columns {
+    std::vector<std::uint32_t> place;
+    std::vector<float> force;
+  };
+  PlacedBody placed_;
+  std::uint32_t level_;
+  std::vector<Columns> sets_;
+  std::vector<Float4> x_;
+};
+
 /// Everything one contact count is measured with.
 struct Bench {
   const std::vector<std::vector<Contact>>& sets;
@@ -57,33 +95,46 @@ struct Bench {
   Stepper& cached;
 };
 
-double dense_round(Bench& bench, Eigen::VectorXf& field) {
-  const auto start = std::chrono::steady_clock::now();
+// microseconds for each of the sets
+template <class Round>
+double time_of_sets(const Bench& bench, Round round) {
+  return time_of(1, round) / static_cast<double>(bench.sets.size());
+}
+
+void sum_dense(const Bench& bench, Eigen::VectorXf& field) {
   for (std::size_t i = 0; i < bench.sets.size(); ++i) {
     bench.columns.sum(bench.sets[i], bench.forces[i].data(), field);
   }
-  return microseconds(start) / static_cast<double>(bench.sets.size());
 }
 
-double step_round(const std::vector<std::vector<Contact>>& sets, Stepper& stepper, std::uint64_t work = UINT64_MAX) {
-  const auto start = std::chrono::steady_clock::now();
+void step_sets(const std::vector<std::vector<Contact>>& sets, Stepper& stepper) {
   for (const auto& set : sets) {
-    stepper.step(set, work);
+    stepper.step(set);
   }
-  return microseconds(start) / static_cast<double>(sets.size());
 }
 
-void measure_moving(Bench& bench, std::size_t rounds, FieldFigures& figures) {
+void measure_moving(const Model& model, Bench& bench, std::size_t rounds, FieldFigures& figures) {
   Eigen::VectorXf field(3 * static_cast<Eigen::Index>(bench.row_node.size()));
-  std::vector<double> dense, step, ratio;
+  FieldSums sums(model, bench.sets, bench.forces);
+  const auto step = [&] { step_sets(bench.sets, bench.cached); };
+  std::vector<double> dense, cold, warm, given, field_ratio, warm_ratio, cold_ratio;
   for (std::size_t round = 0; round < rounds; ++round) {
-    dense.push_back(dense_round(bench, field));
-    step.push_back(step_round(bench.sets, bench.cached));
-    ratio.push_back(dense.back() / step.back());
+    dense.push_back(time_of_sets(bench, [&] { sum_dense(bench, field); }));
+    cold.push_back(time_of_sets(bench, step));
+    warm.push_back(time_of_sets(bench, step));
+    sums.round();
+    given.push_back(time_of_sets(bench, [&] { sums.round(); }));
+    field_ratio.push_back(dense.back() / given.back());
+    warm_ratio.push_back(dense.back() / warm.back());
+    cold_ratio.push_back(dense.back() / cold.back());
   }
   figures.dense_us = median(dense);
-  figures.step_us = median(step);
-  figures.dense_ratio = median(ratio);
+  figures.field_us = median(given);
+  figures.step_us = median(warm);
+  figures.cold_step_us = median(cold);
+  figures.field_dense_ratio = median(field_ratio);
+  figures.dense_ratio = median(warm_ratio);
+  figures.cold_dense_ratio = median(cold_ratio);
 }
 
 void measure_same_set(Bench& bench, std::size_t rounds, FieldFigures& figures) {
@@ -92,13 +143,13 @@ void measure_same_set(Bench& bench, std::size_t rounds, FieldFigures& figures) {
   for (std::size_t round = 0; round < rounds; ++round) {
     const std::size_t i = round % bench.sets.size();
     const std::vector<std::vector<Contact>> same(bench.sets.size(), bench.sets[i]);
-    step_round(same, bench.cached);
-    const auto start = std::chrono::steady_clock::now();
-    for (std::size_t k = 0; k < same.size(); ++k) {
-      bench.columns.sum(same[k], bench.forces[i].data(), field);
-    }
-    const double dense = microseconds(start) / static_cast<double>(same.size());
-    ratio.push_back(dense / step_round(same, bench.cached));
+    step_sets(same, bench.cached);
+    const double dense = time_of_sets(bench, [&] {
+      for (const auto& set : same) {
+        bench.columns.sum(set, bench.forces[i].data(), field);
+      }
+    });
+    ratio.push_back(dense / time_of_sets(bench, [&] { step_sets(same, bench.cached); }));
   }
   figures.same_set_dense_ratio = median(ratio);
 }
@@ -121,11 +172,11 @@ void descend(Bench& bench, std::size_t rounds, FieldFigures& figures) {
       errors.add(bench.truth[i], bench.row_node, bench.cached);
     }
     for (std::size_t round = 0; round < rounds; ++round) {
-      const auto start = std::chrono::steady_clock::now();
-      for (std::size_t i = 0; i < bench.sets.size(); ++i) {
-        bench.cached.step(bench.sets[i], budget[i]);
-      }
-      time.push_back(microseconds(start) / static_cast<double>(bench.sets.size()));
+      time.push_back(time_of_sets(bench, [&] {
+        for (std::size_t i = 0; i < bench.sets.size(); ++i) {
+          bench.cached.step(bench.sets[i], budget[i]);
+        }
+      }));
     }
     rung.work = static_cast<std::uint64_t>(median(work));
     rung.step_us = median(time);
@@ -169,14 +220,14 @@ FieldFigures measure_field(const Model& model, const GreenStore& store, std::siz
   figures.force_error = errors.worst_force;
   figures.total_force_error = errors.worst_total;
 
-  measure_moving(bench, rounds, figures);
+  measure_moving(model, bench, rounds, figures);
   measure_same_set(bench, rounds, figures);
   figures.backsolve_ratio = 1e6 * back_substitution_seconds / figures.step_us;
 
   Stepper fresh(model, figures.contacts, 1);
   std::vector<double> time;
   for (std::size_t round = 0; round < std::max<std::size_t>(1, rounds / 10); ++round) {
-    time.push_back(step_round(sets, fresh));
+    time.push_back(time_of_sets(bench, [&] { step_sets(sets, fresh); }));
   }
   figures.fresh_step_us = median(time);
   descend(bench, rounds / 4 + 1, figures);

@@ -79,8 +79,8 @@ struct ScriptOutcome {
 
 /// The digests of the script on write_recorded_model's models: what every target has to find.
 inline constexpr std::uint64_t recorded_digest = 0x6d9a3391ba5d0593;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0x359b81f689b8a6bc;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0x730b8a4ddea1b656;
+inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0x000580bf527bfff9;
+inline constexpr std::uint64_t recorded_butterfly_digest = 0x66a281f907f9eeaa;
 
 /// A body that ran the whole script, or why it did not.
 struct RecordedRun {
