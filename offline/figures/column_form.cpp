@@ -8,6 +8,7 @@
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/exact_sample.hpp"
 #include "offline/compress/surface_wavelet.hpp"
+#include "offline/figures/column_compression.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -17,55 +18,27 @@ constexpr std::size_t stream_columns = 64;  // read at a time
 
 using Values = std::vector<double>;
 
-double block_norm(const Values& x, std::size_t row) {
-  return Eigen::Map<const Eigen::Matrix3d>(x.data() + width * row).norm();
-}
-
-double largest_block(const Values& x) {
-  double most = 0;
-  for (std::size_t row = 0; row < x.size() / width; ++row) most = std::max(most, block_norm(x, row));
-  return most;
-}
-
-double energy(const Values& x) { return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size()).squaredNorm(); }
-
-// Compresses columns and sums up their errors, for every threshold.
-class ColumnCompression {
+// Errors and blocks of all columns of a level, for every threshold.
+class ColumnSums {
  public:
-  ColumnCompression(const SurfaceWavelet& wavelet, const std::vector<double>& thresholds)
-      : wavelet_(&wavelet), thresholds_(&thresholds), sums_(thresholds.size()) {
-    std::size_t level = 0;
-    for (std::size_t row = 0; row < wavelet.rows(); ++row) {
-      while (row >= wavelet.row_end(level)) ++level;
-      const int coarser = static_cast<int>(level) - static_cast<int>(wavelet.finest());
-      level_share_.push_back(level == 0 ? 0 : std::ldexp(1.0, coarser));
-    }
-  }
+  explicit ColumnSums(std::size_t thresholds) : sums_(thresholds) {}
 
-  // `take(threshold's number, error of the compressed column)`
-  template <class Take>
-  void add(const Values& x, Take take) {
-    const std::size_t finest = wavelet_->finest();
-    const double peak = largest_block(x);
-    Values coefficients = x;
-    for (std::size_t level = finest; level > 0; --level) wavelet_->split(level, width, coefficients.data());
-    exact_energy_ += energy(x);
+  void add(const CompressedColumn& column) {
+    exact_energy_ += column.exact_energy;
     ++columns_;
     for (std::size_t t = 0; t < sums_.size(); ++t) {
-      Values error = dropped(coefficients, (*thresholds_)[t] * peak, sums_[t].kept);
-      for (std::size_t level = 1; level <= finest; ++level) wavelet_->merge(level, width, error.data());
-      sums_[t].error_energy += energy(error);
-      sums_[t].worst = std::max(sums_[t].worst, largest_block(error) / peak);
-      take(t, error);
+      sums_[t].kept += column.trials[t].kept;
+      sums_[t].error_energy += column.trials[t].error_energy;
+      sums_[t].worst = std::max(sums_[t].worst, column.trials[t].worst);
     }
   }
 
-  [[nodiscard]] LevelRates rates(std::size_t level) const {
+  [[nodiscard]] LevelRates rates(std::size_t level, std::size_t rows, const std::vector<double>& thresholds) const {
     LevelRates result{.level = level, .columns = columns_, .points = {}};
-    const auto dense = static_cast<double>(columns_ * wavelet_->rows());
+    const auto dense = static_cast<double>(columns_ * rows);
     for (std::size_t t = 0; t < sums_.size(); ++t) {
       RatePoint point;
-      point.threshold = (*thresholds_)[t];
+      point.threshold = thresholds[t];
       point.ratio = dense / static_cast<double>(sums_[t].kept);
       point.rms = std::sqrt(sums_[t].error_energy / exact_energy_);
       point.worst_column = sums_[t].worst;
@@ -75,28 +48,7 @@ class ColumnCompression {
   }
 
  private:
-  struct Sum {
-    std::size_t kept = 0;
-    double error_energy = 0, worst = 0;
-  };
-
-  [[nodiscard]] Values dropped(const Values& coefficients, double threshold, std::size_t& kept) const {
-    Values drop(coefficients.size(), 0.0);
-    for (std::size_t row = 0; row < level_share_.size(); ++row) {
-      if (block_norm(coefficients, row) >= level_share_[row] * threshold) {
-        ++kept;
-      } else {
-        std::copy_n(coefficients.begin() + static_cast<std::ptrdiff_t>(width * row), width,
-                    drop.begin() + static_cast<std::ptrdiff_t>(width * row));
-      }
-    }
-    return drop;
-  }
-
-  const SurfaceWavelet* wavelet_;
-  const std::vector<double>* thresholds_;
-  std::vector<double> level_share_;  // [row] of epsilon
-  std::vector<Sum> sums_;            // [threshold]
+  std::vector<ColumnTrial> sums_;  // [threshold]
   double exact_energy_ = 0;
   std::size_t columns_ = 0;
 };
@@ -168,7 +120,8 @@ class ColumnFormStudy {
         wavelet_(body.mesh, body.flags, body.area, kind.wavelet),
         thresholds_(thresholds),
         patches_(row_positions(body.mesh, wavelet_, wavelet_.finest()), thresholds.size()),
-        finest_(wavelet_, thresholds) {
+        compression_(wavelet_, thresholds),
+        finest_(thresholds.size()) {
     for (std::size_t level = 0; level < wavelet_.finest(); ++level) coarse_.emplace_back(wavelet_, level);
   }
 
@@ -190,24 +143,24 @@ class ColumnFormStudy {
     for (CoarseColumns& level : coarse_) level.add(j, x);
     const bool in_patch = patches_.touch(j);
     if (in_patch) patches_.add_exact(j, x, area);
-    finest_.add(x, [&](std::size_t threshold, const Values& error) {
+    finest_.add(compression_.compress(x, [&](std::size_t threshold, const Values& error) {
       if (!in_patch) return;
       Values found = x;
       for (std::size_t i = 0; i < x.size(); ++i) found[i] -= error[i];
       patches_.add(threshold, j, found, area);
-    });
+    }));
   }
 
   [[nodiscard]] std::vector<LevelRates> rates() const {
     std::vector<LevelRates> levels;
     for (std::size_t level = 0; level < coarse_.size(); ++level) {
-      ColumnCompression compression(wavelet_, thresholds_);
+      ColumnSums sums(thresholds_.size());
       for (std::size_t k = 0; k < coarse_[level].size(); ++k) {
-        compression.add(coarse_[level].column(k), [](std::size_t, const Values&) {});
+        sums.add(compression_.compress(coarse_[level].column(k)));
       }
-      levels.push_back(compression.rates(level));
+      levels.push_back(sums.rates(level, wavelet_.rows(), thresholds_));
     }
-    levels.push_back(finest_.rates(wavelet_.finest()));
+    levels.push_back(finest_.rates(wavelet_.finest(), wavelet_.rows(), thresholds_));
     for (std::size_t t = 0; t < thresholds_.size(); ++t) levels.back().points[t].patch_force = patches_.worst_error(t);
     return levels;
   }
@@ -216,7 +169,8 @@ class ColumnFormStudy {
   SurfaceWavelet wavelet_;
   const std::vector<double>& thresholds_;
   PatchForces patches_;
-  ColumnCompression finest_;
+  ColumnCompression compression_;
+  ColumnSums finest_;
   std::vector<CoarseColumns> coarse_;
 };
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+
 #include <iterator>
 #include <span>
 #include <stdexcept>
@@ -19,6 +19,7 @@
 #include "offline/compress/model_builder.hpp"
 #include "offline/compress/wavelet_choice.hpp"
 #include "offline/pipeline/body_geometry.hpp"
+#include "offline/pipeline/body_problem.hpp"
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/solve/green_functions.hpp"
@@ -28,28 +29,6 @@ namespace greenloop::offline {
 namespace {
 
 using nlohmann::json;
-
-// part of every fingerprint: raised when a stage starts to give other results for the same scene
-constexpr std::string_view pipeline_version = "greenloop 0.2.0";
-
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    throw std::runtime_error(fmt::format("{}: cannot be opened; does it exist?", path.string()));
-  }
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// What the exact columns depend on: everything but accuracy, budget and coding.
-std::string column_fingerprint(Scene scene, const std::string& mesh) {
-  scene.coarsest_constraints = 0;
-  scene.accuracy = {};
-  scene.wavelet = layout::Wavelet::lifted_linear;
-  scene.budget = {};
-  scene.store.reset();
-  scene.store_name.clear();
-  return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();
-}
 
 std::string request_fingerprint(const Scene& scene, const std::string& mesh) {
   return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();
@@ -73,28 +52,16 @@ json up_to_date_record(const BuildRequest& request, const std::string& wanted) {
   }
 }
 
-GreenStoreContents store_contents(const Scene& scene, const BodyGeometry& body, Volume volume, const json& record,
-                                  const std::string& columns) {
-  GreenStoreContents contents;
-  contents.surface = body.surface;
-  contents.area = Eigen::VectorXd::Map(body.area.data(), static_cast<Eigen::Index>(body.area.size()));
-  for (std::size_t i = 0; i < body.flags.size(); ++i) {
-    const auto flags = body.flags[i];
-    contents.flags.push_back(static_cast<std::uint8_t>(flags));
-    // the compliance is kept in two-sided wavelet coordinates: every row needs its column
-    if ((flags & layout::node_domain) != 0) {
-      contents.row_node.push_back(static_cast<int>(i));
-      contents.column_node.push_back(static_cast<int>(i));
-    }
-  }
-  contents.volume = std::move(volume.mesh);
-  contents.volume_fixed = std::move(volume.fixed);
-  contents.interpolation.swap(volume.interpolation);
-  contents.young = scene.material.young;
-  contents.poisson = scene.material.poisson;
-  contents.provenance = record.dump();
-  contents.fingerprint = columns;
-  return contents;
+/// Before anything is solved: a store of `nodes` columns needs room where it is to stand.
+void require_disk_space(const std::filesystem::path& store, std::size_t nodes) {
+  const double needed = 9.0 * sizeof(double) * static_cast<double>(nodes) * static_cast<double>(nodes);
+  const auto folder = std::filesystem::absolute(store).parent_path();
+  const auto free = static_cast<double>(std::filesystem::space(folder).available);
+  if (needed <= free) return;
+  throw std::runtime_error(fmt::format(
+      "{}: the Green's functions of {} nodes take {:.1f} GB, its disk has {:.1f} GB free; name a file on a larger disk "
+      "with --store or take fewer levels",
+      store.string(), nodes, 1e-9 * needed, 1e-9 * free));
 }
 
 /// The store of the scene's columns: the one on disk if it is that, else a new one with nothing solved.
@@ -114,9 +81,8 @@ GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene,
     }
   }
   auto body = make_body_geometry(scene, progress);
-  json record = body.record;
-  auto volume = body.volume ? std::move(*body.volume) : fill_with_tetrahedra(body, progress, record);
-  return GreenStore::create(request.store, store_contents(scene, body, std::move(volume), record, columns));
+  require_disk_space(request.store, domain_size(body));
+  return GreenStore::create(request.store, describe_problem(scene, std::move(body), columns, progress));
 }
 
 json solve_missing_columns(GreenStore& store, ProgressBar& progress) {

@@ -4,20 +4,18 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/factorization.hpp"
+#include "offline/solve/compliance_solver.hpp"
 #include "offline/solve/support.hpp"
 
 namespace greenloop::offline {
 namespace {
 
-// 192 right-hand sides at a time: see docs/solving.md
-constexpr int kBlockNodes = 64;
 constexpr double kMostAsymmetry = 1e-8;
 
 class Stopwatch {
@@ -37,8 +35,8 @@ struct ColumnRange {
 std::vector<ColumnRange> blocks_of(const std::vector<int>& missing) {
   std::vector<ColumnRange> ranges;
   for (const int column : missing) {
-    const bool extends =
-        !ranges.empty() && ranges.back().count < kBlockNodes && column == ranges.back().first + ranges.back().count;
+    const bool extends = !ranges.empty() && ranges.back().count < ComplianceSolver::kPatternsAtOnce &&
+                         column == ranges.back().first + ranges.back().count;
     if (extends) {
       ++ranges.back().count;
     } else {
@@ -47,58 +45,6 @@ std::vector<ColumnRange> blocks_of(const std::vector<int>& missing) {
   }
   return ranges;
 }
-
-/// The compliance of one problem: applies B K^-1 B^T to unit forces.
-class Compliance {
- public:
-  explicit Compliance(const GreenStoreContents& contents)
-      : contents_(contents),
-        free_(contents.volume_fixed),
-        factors_(assemble_stiffness(contents.volume, {contents.young, contents.poisson}, free_), 3) {}
-
-  /// 3R x 3 count, m/N.
-  Eigen::MatrixXd columns(const ColumnRange& range) {
-    factors_.solve(unit_forces(range), volume_displacement_);
-    Eigen::MatrixXd displacement(3 * static_cast<Eigen::Index>(contents_.row_node.size()),
-                                 Eigen::Index{3} * range.count);
-    for (Eigen::Index c = 0; c < displacement.cols(); ++c) gather(c, displacement);
-    return displacement;
-  }
-
-  [[nodiscard]] const Factorization& factors() const { return factors_; }
-  [[nodiscard]] std::int64_t unknowns() const { return 3LL * free_.count; }
-
- private:
-  [[nodiscard]] Eigen::SparseMatrix<double> unit_forces(const ColumnRange& range) const {
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int c = 0; c < range.count; ++c) {
-      for (Interpolation::InnerIterator it(contents_.interpolation, contents_.column_node[range.first + c]); it; ++it) {
-        const int number = free_.number[it.col()];
-        if (number < 0) continue;
-        for (int axis = 0; axis < 3; ++axis) entries.emplace_back(3 * number + axis, 3 * c + axis, it.value());
-      }
-    }
-    Eigen::SparseMatrix<double> forces(Eigen::Index{3} * free_.count, Eigen::Index{3} * range.count);
-    forces.setFromTriplets(entries.begin(), entries.end());
-    return forces;
-  }
-
-  void gather(Eigen::Index column, Eigen::MatrixXd& displacement) const {
-    for (std::size_t r = 0; r < contents_.row_node.size(); ++r) {
-      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-      for (Interpolation::InnerIterator it(contents_.interpolation, contents_.row_node[r]); it; ++it) {
-        const Eigen::Index number = free_.number[it.col()];
-        if (number >= 0) sum += it.value() * volume_displacement_.col(column).segment<3>(3 * number);
-      }
-      displacement.col(column).segment<3>(3 * static_cast<Eigen::Index>(r)) = sum;
-    }
-  }
-
-  const GreenStoreContents& contents_;
-  FreeVertices free_;
-  Factorization factors_;
-  Eigen::MatrixXd volume_displacement_;
-};
 
 void require_solvable(const GreenStore& store) {
   const auto& contents = store.contents();
@@ -113,15 +59,17 @@ void require_solvable(const GreenStore& store) {
 void solve_missing(GreenStore& store, const std::vector<int>& missing, const SolveProgressCallback& progress,
                    SolveReport& report) {
   const Stopwatch factor_time;
-  Compliance compliance(store.contents());
+  ComplianceSolver compliance(store.contents());
   report.factor_seconds = factor_time.seconds();
-  report.factor_entries = compliance.factors().factor_entries();
+  report.factor_entries = compliance.factor_entries();
   report.unknowns = compliance.unknowns();
 
   const Stopwatch solve_time;
   const int total = store.column_count(), to_solve = static_cast<int>(missing.size());
   for (const auto& range : blocks_of(missing)) {
-    store.write_columns(range.first, compliance.columns(range));
+    store.write_columns(
+        range.first, compliance.displacement(unit_patterns(
+                         store.contents(), std::span(store.contents().column_node).subspan(range.first, range.count))));
     report.columns_solved += range.count;
     report.solve_seconds = solve_time.seconds();
     if (!progress) continue;

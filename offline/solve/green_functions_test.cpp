@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "offline/solve/boundary_interpolation.hpp"
+#include "offline/solve/compliance_solver.hpp"
 #include "offline/solve/elasticity.hpp"
 #include "offline/solve/support.hpp"
 #include "offline/solve/testing/shapes.hpp"
@@ -90,6 +91,19 @@ TEST_CASE("the columns are those of the dense inverse, and reciprocal") {
   CHECK(report.largest_asymmetry > 0.0);
   const MatrixXd expected = dense_compliance(contents);
   CHECK((store.read_columns(0, store.column_count()) - expected).norm() < 1e-11 * expected.norm());
+}
+
+TEST_CASE("a pattern of forces does what its unit forces do together") {
+  const auto contents = ellipsoid_problem(1);
+  ComplianceSolver solver(contents);
+  const std::vector<int> nodes(contents.column_node.begin(), contents.column_node.begin() + 3);
+  const auto units = unit_patterns(contents, nodes);
+  const MatrixXd single = solver.displacement(units);
+  REQUIRE(single.cols() == 9);
+  const Eigen::SparseMatrix<double> pattern =
+      units * Eigen::SparseMatrix<double>(Vector3d(2.0, -1.0, 0.5).sparseView());
+  const MatrixXd expected = 2.0 * single.leftCols(3) - single.middleCols(3, 3) + 0.5 * single.rightCols(3);
+  CHECK((solver.displacement(pattern) - expected).norm() < 1e-12 * expected.norm());
 }
 
 TEST_CASE("an interrupted run solves only what is missing, with the same result") {

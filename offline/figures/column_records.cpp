@@ -1,0 +1,62 @@
+#include "offline/figures/column_records.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "offline/report/csv_table.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+std::string kept_name(double threshold) { return fmt::format("kept {}", threshold); }
+std::string error_name(double threshold) { return fmt::format("error energy {}", threshold); }
+std::string worst_name(double threshold) { return fmt::format("worst {}", threshold); }
+
+}  // namespace
+
+ColumnRecords::ColumnRecords(const std::filesystem::path& file, std::string body, const std::vector<double>& thresholds)
+    : body_(std::move(body)) {
+  const bool resumed = std::filesystem::exists(file);
+  if (resumed) load(file, thresholds);
+  stream_.open(file, std::ios::app);
+  if (!resumed) {
+    stream_ << "body,row,exact energy";
+    for (const double t : thresholds) stream_ << fmt::format(",{},{},{}", kept_name(t), error_name(t), worst_name(t));
+    stream_ << std::endl;
+  }
+  if (!stream_) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+void ColumnRecords::load(const std::filesystem::path& file, const std::vector<double>& thresholds) {
+  const CsvTable table = CsvTable::load(file);
+  const auto bodies = table.texts("body");
+  if (std::any_of(bodies.begin(), bodies.end(), [&](const std::string& body) { return body != body_; })) {
+    throw std::runtime_error(file.string() + ": holds columns of another body or wavelet; name another file");
+  }
+  const auto rows = table.counts("row");
+  const auto exact = table.numbers("exact energy");
+  std::vector<CompressedColumn> columns(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) columns[i].exact_energy = exact[i];
+  for (const double threshold : thresholds) {
+    const auto kept = table.counts(kept_name(threshold));
+    const auto error = table.numbers(error_name(threshold)), worst = table.numbers(worst_name(threshold));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      columns[i].trials.push_back({static_cast<std::size_t>(kept[i]), error[i], worst[i]});
+    }
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) columns_[static_cast<std::size_t>(rows[i])] = std::move(columns[i]);
+}
+
+void ColumnRecords::add(std::size_t row, CompressedColumn column) {
+  stream_ << fmt::format("{},{},{}", body_, row, column.exact_energy);
+  for (const ColumnTrial& trial : column.trials) {
+    stream_ << fmt::format(",{},{},{}", trial.kept, trial.error_energy, trial.worst);
+  }
+  stream_ << std::endl;
+  columns_[row] = std::move(column);
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/exchange/green_store.hpp"
+#include "offline/compress/exact_sample.hpp"
+#include "offline/figures/column_form.hpp"
+#include "offline/figures/column_records.hpp"
+#include "offline/figures/column_sample.hpp"
+#include "offline/pipeline/body_problem.hpp"
+#include "offline/pipeline/progress_bar.hpp"
+#include "offline/solve/compliance_solver.hpp"
+
+namespace {
+
+using namespace greenloop;
+using namespace greenloop::offline;
+
+struct Arguments {
+  std::filesystem::path scene, records;
+  std::size_t columns = 1024;
+  std::string wavelet = "lifted linear";
+  std::vector<double> thresholds = {0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5};
+};
+
+layout::Wavelet wavelet_of(const std::string& name) {
+  for (const WaveletKind& kind : wavelet_kinds) {
+    if (kind.name == name) return kind.wavelet;
+  }
+  throw std::invalid_argument("--wavelet " + name + ": there is no such wavelet");
+}
+
+GreenStoreContents read_problem(const std::filesystem::path& file, ProgressBar& progress) {
+  const Scene scene = read_scene(file);
+  const std::string fingerprint = column_fingerprint(scene, read_text(scene.mesh.path));
+  return describe_problem(scene, make_body_geometry(scene, progress), fingerprint, progress);
+}
+
+// A body whose Green's functions are solved, measured and forgotten.
+class StreamedBody {
+ public:
+  StreamedBody(const Arguments& arguments, ProgressBar& progress)
+      : arguments_(arguments),
+        progress_(progress),
+        problem_(read_problem(arguments.scene, progress)),
+        wavelet_(problem_.surface, {problem_.flags.begin(), problem_.flags.end()},
+                 {problem_.area.begin(), problem_.area.end()}, wavelet_of(arguments.wavelet)),
+        strata_(stratified_sample(wavelet_, arguments.columns)),
+        compression_(wavelet_, arguments.thresholds),
+        records_(arguments.records, problem_.fingerprint + " " + arguments.wavelet, arguments.thresholds) {}
+
+  void measure() {
+    std::vector<std::size_t> missing;
+    for (const Stratum& stratum : strata_) {
+      for (const std::size_t row : stratum.rows) {
+        if (!records_.has(row)) missing.push_back(row);
+      }
+    }
+    if (missing.empty()) return;
+    progress_.begin("factorise");
+    ComplianceSolver solver(problem_);
+    progress_.end(fmt::format("{} unknowns, {:.3g} factor entries", solver.unknowns(),
+                              static_cast<double>(solver.factor_entries())));
+    progress_.begin("columns");
+    for (std::size_t done = 0; done < missing.size();) {
+      const std::size_t count = std::min<std::size_t>(ComplianceSolver::kPatternsAtOnce, missing.size() - done);
+      measure(solver, {missing.begin() + static_cast<std::ptrdiff_t>(done),
+                       missing.begin() + static_cast<std::ptrdiff_t>(done + count)});
+      done += count;
+      progress_.update(static_cast<double>(done) / static_cast<double>(missing.size()));
+    }
+    progress_.end(fmt::format("{} solved", missing.size()));
+  }
+
+  [[nodiscard]] std::vector<SampledRate> rates() const {
+    std::vector<std::vector<CompressedColumn>> columns;
+    for (const Stratum& stratum : strata_) {
+      columns.emplace_back();
+      for (const std::size_t row : stratum.rows) columns.back().push_back(records_.at(row));
+    }
+    return estimate_rates(strata_, columns, arguments_.thresholds);
+  }
+
+  [[nodiscard]] std::size_t rows() const { return wavelet_.rows(); }
+  [[nodiscard]] std::size_t sampled() const {
+    std::size_t count = 0;
+    for (const Stratum& stratum : strata_) count += stratum.rows.size();
+    return count;
+  }
+
+ private:
+  void measure(ComplianceSolver& solver, const std::vector<std::size_t>& rows) {
+    std::vector<int> nodes;
+    for (const std::size_t row : rows) nodes.push_back(problem_.column_node[row]);
+    const Eigen::MatrixXd solved = solver.displacement(unit_patterns(problem_, nodes));
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+      std::vector<double> column = blocks_of(solved, j);
+      for (double& value : column) value *= problem_.area[nodes[j]];  // traction form
+      records_.add(rows[j], compression_.compress(column));
+    }
+  }
+
+  const Arguments& arguments_;
+  ProgressBar& progress_;
+  GreenStoreContents problem_;
+  SurfaceWavelet wavelet_;
+  std::vector<Stratum> strata_;
+  ColumnCompression compression_;
+  ColumnRecords records_;
+};
+
+int run(const Arguments& arguments) {
+  ProgressBar progress(false);
+  StreamedBody body(arguments, progress);
+  body.measure();
+  fmt::print("{}: {} free nodes, {} columns measured, one-sided, {}; +- one standard error\n",
+             arguments.scene.stem().string(), body.rows(), body.sampled(), arguments.wavelet);
+  fmt::print("  {:>8} {:>18} {:>22} {:>8}\n", "epsilon", "times fewer blocks", "RMS", "MAX");
+  for (const auto& [point, ratio_error, rms_error] : body.rates()) {
+    fmt::print("  {:>8} {:>18} {:>22} {:>8}\n", point.threshold,
+               fmt::format("{:.1f} +- {:.1f}", point.ratio, point.ratio * ratio_error),
+               fmt::format("{:.3f} % +- {:.3f} %", 100 * point.rms, 100 * point.rms * rms_error),
+               fmt::format("{:.2f} %", 100 * point.worst_column));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Measures the one-sided compression of James and Pai 2003 on a body too large for a store: Green's functions are "
+      "solved, compressed, compared and forgotten, block by block, all of them or a sample.",
+      "greenloop-columns");
+  Arguments arguments;
+  app.add_option("scene", arguments.scene, "scene.toml")->required()->check(CLI::ExistingFile);
+  app.add_option("--records", arguments.records,
+                 "CSV file of the columns measured; if there is one already, only what it lacks is solved")
+      ->required();
+  app.add_option("--columns", arguments.columns, "About how many columns to measure, spread over every mesh level")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  app.add_option("--wavelet", arguments.wavelet, "linear, butterfly, lifted butterfly or lifted linear")
+      ->capture_default_str();
+  app.add_option("--epsilon", arguments.thresholds, "Thresholds, increasing")
+      ->check(CLI::Range(1e-6, 1.0))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "greenloop-columns: {}\n", error.what());
+    return 1;
+  }
+}

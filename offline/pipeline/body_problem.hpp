@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "formats/exchange/green_store.hpp"
+#include "offline/pipeline/body_geometry.hpp"
+#include "offline/pipeline/progress_bar.hpp"
+#include "offline/scene/scene.hpp"
+
+namespace greenloop::offline {
+
+/// Part of every fingerprint: raised when a stage starts to give other results for the same scene.
+inline constexpr std::string_view pipeline_version = "greenloop 0.2.0";
+
+/// The whole file. Throws std::runtime_error if it cannot be opened.
+[[nodiscard]] std::string read_text(const std::filesystem::path& path);
+
+/// What the exact columns of a scene over the text of its mesh depend on: everything but accuracy, budget and coding.
+[[nodiscard]] std::string column_fingerprint(Scene scene, const std::string& mesh);
+
+/// Domain nodes, each of which is a row and a column.
+[[nodiscard]] std::size_t domain_size(const BodyGeometry& body);
+
+/// All that is needed to solve the body, filled with tetrahedra unless the scene brought its own. Provenance is what
+/// came out of each stage.
+[[nodiscard]] GreenStoreContents describe_problem(const Scene& scene, BodyGeometry body, const std::string& fingerprint,
+                                                  ProgressBar& progress);
+
+}  // namespace greenloop::offline
