@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "formats/aligned_bytes.hpp"
 #include "formats/crc32c.hpp"
@@ -27,6 +28,11 @@ constexpr std::size_t tail_bytes = 16;
 
 void require(bool right, const std::string& what) {
   if (!right) throw std::invalid_argument("model to be written: " + what);
+}
+
+template <class... Values>
+[[noreturn]] void refuse(fmt::format_string<Values...> what, Values&&... values) {
+  throw std::invalid_argument("model to be written: " + fmt::format(what, std::forward<Values>(values)...));
 }
 
 void require_size(const std::string& what, std::size_t size, std::size_t expected) {
@@ -54,7 +60,7 @@ Bytes narrowed(const std::vector<From>& values, const std::string& what) {
   bytes.reserve(values.size() * sizeof(To));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const auto value = static_cast<To>(values[i]);
-    require(value == values[i], fmt::format("{}[{}] = {} does not fit in {} bytes", what, i, values[i], sizeof(To)));
+    if (value != values[i]) refuse("{}[{}] = {} does not fit in {} bytes", what, i, values[i], sizeof(To));
     append(bytes, std::as_bytes(std::span(&value, 1)));
   }
   return bytes;
@@ -64,7 +70,7 @@ Bytes narrowed(const std::vector<From>& values, const std::string& what) {
 Bytes nibbles(const std::vector<std::int16_t>& values, const std::string& what) {
   Bytes bytes(values.size() / 9 * 5);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    require(values[i] >= -7 && values[i] <= 7, fmt::format("{}[{}] = {} does not fit in 4 bits", what, i, values[i]));
+    if (values[i] < -7 || values[i] > 7) refuse("{}[{}] = {} does not fit in 4 bits", what, i, values[i]);
     const std::size_t element = i % 9;
     bytes[i / 9 * 5 + element / 2] |= static_cast<std::byte>((values[i] & 15) << (4 * (element % 2)));
   }

@@ -26,6 +26,38 @@ void append(const Eigen::Matrix3d& matrix, std::vector<float>& matrices) {
   for (int k = 0; k < 9; ++k) matrices.push_back(static_cast<float>(matrix.data()[k]));
 }
 
+Eigen::Matrix3d matrix(const std::vector<float>& matrices, std::size_t i) {
+  return Eigen::Map<const Eigen::Matrix3f>(matrices.data() + 9 * i).cast<double>();
+}
+
+using RowBlocks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// A coefficient that forces on some nodes reach, and what all forces do to it.
+class FeltCoefficient {
+ public:
+  FeltCoefficient(const double* weights, std::size_t nodes)
+      : displacement_(RowBlocks::Zero(3, static_cast<Eigen::Index>(3 * nodes))) {
+    for (std::size_t k = 0; k < nodes; ++k) {
+      if (weights[k] != 0) reach_.emplace_back(static_cast<Eigen::Index>(k), weights[k]);
+    }
+  }
+
+  // forces on `other` move this one by `block`
+  void feel(const Eigen::Matrix3d& block, const FeltCoefficient& other) {
+    for (const auto& [node, weight] : other.reach_) displacement_.middleCols<3>(3 * node) += weight * block;
+  }
+
+  // adds what it moves its nodes by
+  void move(const Eigen::Matrix3d& root, RowBlocks& nodes) const {
+    const RowBlocks moved = root * displacement_;
+    for (const auto& [node, weight] : reach_) nodes.middleRows<3>(3 * node) += weight * moved;
+  }
+
+ private:
+  std::vector<std::pair<Eigen::Index, double>> reach_;
+  RowBlocks displacement_;
+};
+
 }  // namespace
 
 CompressedCompliance::CompressedCompliance(const ModelView& view) : wavelet_(view) {
@@ -105,6 +137,40 @@ void CompressedCompliance::apply_to_coefficients(std::size_t level, std::size_t 
   for (std::size_t i = 0; i < count; ++i) {
     multiply(root_.data() + 9 * i, false, columns, sum.data() + i * width, y + i * width);
   }
+}
+
+Eigen::MatrixXd CompressedCompliance::between(std::size_t level, const std::vector<std::size_t>& nodes) const {
+  const std::size_t count = rows(level), width = nodes.size();
+  std::vector<double> weights(count * width, 0.0);  // [coefficient][node]
+  for (std::size_t k = 0; k < width; ++k) weights[width * nodes[k] + k] = 1;
+  for (std::size_t l = level; l > 0; --l) wavelet_.split_forces(l, width, weights.data());
+
+  std::vector<FeltCoefficient> felt;
+  std::vector<std::size_t> place(count, count);  // in `felt`
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!any(weights.data() + i * width, width)) continue;
+    place[i] = felt.size();
+    felt.emplace_back(weights.data() + i * width, width);
+  }
+
+  for (std::size_t i = 0; i < count; ++i) {
+    if (place[i] == count) continue;
+    const Eigen::Matrix3d root = matrix(root_, i);
+    FeltCoefficient& own = felt[place[i]];
+    own.feel(matrix(diagonal_, i) * root, own);
+    for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
+      const Link& link = links_[at];
+      if (link.other >= count || place[link.other] == count) continue;
+      const Eigen::Matrix3d block = matrix(block_, link.block);
+      felt[place[link.other]].feel((link.transposed ? block.transpose() : block) * root, own);
+    }
+  }
+
+  RowBlocks result = RowBlocks::Zero(static_cast<Eigen::Index>(3 * width), static_cast<Eigen::Index>(3 * width));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (place[i] != count) felt[place[i]].move(matrix(root_, i), result);
+  }
+  return result;
 }
 
 std::vector<double> CompressedCompliance::column(std::size_t level, std::size_t j) const {

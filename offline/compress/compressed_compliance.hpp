@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -28,6 +29,10 @@ class CompressedCompliance {
 
   /// The same in wavelet coefficients: (W U^ W^T)_level T^-T f, which T_1^-1 .. T_level^-1 turn into displacements.
   void apply_to_coefficients(std::size_t level, std::size_t columns, const double* f, double* y) const;
+
+  /// U^_level between some of its nodes: 3 nodes.size() squared, m/N. Work: 9 per coupling of the coefficients that
+  /// they feel, and per node that feels one of them.
+  [[nodiscard]] Eigen::MatrixXd between(std::size_t level, const std::vector<std::size_t>& nodes) const;
 
   /// Block column j of U^_level: rows(level) blocks of 9 numbers, 3 c + r.
   [[nodiscard]] std::vector<double> column(std::size_t level, std::size_t j) const;

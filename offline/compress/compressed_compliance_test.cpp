@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <random>
 
 #include "formats/stored_blocks.hpp"
@@ -48,6 +49,32 @@ std::vector<double> noise(std::size_t count, std::uint64_t seed) {
   std::vector<double> x(count);
   for (auto& value : x) value = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
   return x;
+}
+
+TEST_CASE("between some nodes stands what their columns say") {
+  for (const layout::Wavelet kind : layout::wavelets) {
+    CAPTURE(kind);
+    const CompressedCompliance compressed(file(kind).view);
+    for (std::size_t level = 0; level < 4; ++level) {
+      CAPTURE(level);
+      const Eigen::MatrixXd all = all_columns(compressed, level);
+      std::vector<std::size_t> nodes;
+      for (std::size_t j = 1; j < compressed.rows(level); j += 3) nodes.push_back(j);
+      double difference = 0;
+      const Eigen::MatrixXd between = compressed.between(level, nodes);
+      const auto size = static_cast<Eigen::Index>(nodes.size());
+      REQUIRE(between.rows() == 3 * size);
+      REQUIRE(between.cols() == 3 * size);
+      for (Eigen::Index a = 0; a < size; ++a) {
+        for (Eigen::Index b = 0; b < size; ++b) {
+          const Eigen::Matrix3d expected =
+              all.block<3, 3>(3 * static_cast<Eigen::Index>(nodes[a]), 3 * static_cast<Eigen::Index>(nodes[b]));
+          difference = std::max(difference, (between.block<3, 3>(3 * a, 3 * b) - expected).norm());
+        }
+      }
+      CHECK(difference < 1e-13 * all.norm());
+    }
+  }
 }
 
 TEST_CASE("every level is the wavelet form evaluated densely") {

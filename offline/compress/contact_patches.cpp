@@ -87,15 +87,7 @@ void ContactPatches::add(const Eigen::MatrixXd& block, std::size_t first) {
 double ContactPatches::force_error(const CompressedCompliance& compressed, std::size_t level,
                                    std::size_t number) const {
   const Patch& patch = patches_[number];
-  Eigen::MatrixXd compliance(patch.compliance.rows(), patch.compliance.cols());
-  for (std::size_t b = 0; b < patch.rows.size(); ++b) {
-    const auto column = compressed.column(level, patch.rows[b]);
-    for (std::size_t a = 0; a < patch.rows.size(); ++a) {
-      compliance.block<3, 3>(static_cast<Eigen::Index>(3 * a), static_cast<Eigen::Index>(3 * b)) =
-          Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * patch.rows[a]);
-    }
-  }
-  return holding_force_error(patch.compliance, compliance);
+  return holding_force_error(patch.compliance, compressed.between(level, patch.rows));
 }
 
 std::vector<ContactPatches::Error> ContactPatches::force_errors(const CompressedCompliance& compressed,

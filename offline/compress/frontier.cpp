@@ -80,6 +80,23 @@ void fill_gaps(const TrialBench& bench, const ContactPatches& patches, double ch
   }
 }
 
+void leave_out_near(double chosen, std::vector<Trial>& trials) {
+  constexpr double near = 1.1;
+  std::vector<double> kept = {chosen};
+  const auto known = [&](double threshold) {
+    return std::any_of(kept.begin(), kept.end(),
+                       [&](double other) { return other < near * threshold && threshold < near * other; });
+  };
+  std::vector<Trial> apart;
+  for (Trial& trial : trials) {
+    const double threshold = trial.encoding.threshold;
+    if (threshold != chosen && known(threshold)) continue;
+    kept.push_back(threshold);
+    apart.push_back(std::move(trial));
+  }
+  trials = std::move(apart);
+}
+
 void set_field(const FieldThresholds& field, ModelData& model) {
   model.info.field_threshold = static_cast<float>(field.spread);
   model.info.field_peak_threshold = static_cast<float>(field.peak);

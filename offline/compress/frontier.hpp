@@ -37,6 +37,10 @@ struct LevelSample {
 void fill_gaps(const TrialBench& bench, const ContactPatches& patches, double chosen, double floor,
                std::vector<Trial>& trials);
 
+/// Leaves out trials whose thresholds are within a tenth of the chosen one or of another that stays: the end of a
+/// bisection, which tells nothing new.
+void leave_out_near(double chosen, std::vector<Trial>& trials);
+
 /// What was tried, by decreasing threshold, one trial each (the latest), on every constraint level: errors of coarse
 /// levels on the samples, those of the finest as tried. Fields leave out the same everywhere, so that work compares; it
 /// is counted only if the bench has a step_work. Work: an encoding, the samples' columns and the field columns per

@@ -308,6 +308,7 @@ class Build {
     const auto samples = sample_levels(input_.mesh, wavelet_, bench.compliance, model_.info.coarsest_constraint_level);
     std::vector<Trial> trials = report_.trials;
     fill_gaps(bench, patches, report_.encoding.threshold, floor, trials);
+    leave_out_near(report_.encoding.threshold, trials);
     report_.frontier = measure_frontier(bench, samples, report_.field, trials);
     for (Trial& point : report_.frontier) {
       if (point.encoding.threshold != report_.encoding.threshold) continue;

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace greenloop::offline {
 namespace {
 
 constexpr std::size_t least_rows = 16;  // of a level
 
-// the first `count` of 0 .. size - 1 in van der Corput's order, increasing
+// the first `count` of 0 .. size - 1 in van der Corput's order
 std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
   std::size_t bits = 0;
   while ((std::size_t{1} << bits) < size) ++bits;
@@ -18,7 +19,6 @@ std::vector<std::size_t> spread(std::size_t size, std::size_t count) {
     for (std::size_t bit = 0; bit < bits; ++bit) reversed |= ((k >> bit) & 1) << (bits - 1 - bit);
     if (reversed < size) chosen.push_back(reversed);
   }
-  std::sort(chosen.begin(), chosen.end());
   return chosen;
 }
 
@@ -64,6 +64,19 @@ std::vector<Stratum> stratified_sample(const SurfaceWavelet& wavelet, std::size_
     for (std::size_t& row : strata.back().rows) row += begin;
   }
   return strata;
+}
+
+std::vector<std::size_t> interleaved(const std::vector<Stratum>& strata) {
+  std::vector<std::pair<double, std::size_t>> rows;  // place in its stratum, row
+  for (const Stratum& stratum : strata) {
+    for (std::size_t i = 0; i < stratum.rows.size(); ++i) {
+      rows.emplace_back(static_cast<double>(i) / static_cast<double>(stratum.rows.size()), stratum.rows[i]);
+    }
+  }
+  std::sort(rows.begin(), rows.end());
+  std::vector<std::size_t> order;
+  for (const auto& [place, row] : rows) order.push_back(row);
+  return order;
 }
 
 std::vector<SampledRate> estimate_rates(const std::vector<Stratum>& strata,

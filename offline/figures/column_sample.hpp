@@ -12,13 +12,17 @@ namespace greenloop::offline {
 /// Rows of one mesh level, of which some are measured.
 struct Stratum {
   std::size_t size = 0;           ///< rows of the level
-  std::vector<std::size_t> rows;  ///< those measured, increasing
+  std::vector<std::size_t> rows;  ///< those measured
 };
 
 /// About `count` rows, by mesh level in proportion to the levels' sizes but at least 16 of each, or all of them. Those
-/// of a level are the first of a van der Corput sequence along it, so that they are spread along its Morton curve and a
-/// larger sample has every row of a smaller one.
+/// of a level are the first of a van der Corput sequence along it, in its order: spread along the level's Morton curve,
+/// and a larger sample begins with a smaller one.
 [[nodiscard]] std::vector<Stratum> stratified_sample(const SurfaceWavelet& wavelet, std::size_t count);
+
+/// All rows of a sample in an order whose first part has about the same share of every level: a run that ends early has
+/// measured a smaller sample.
+[[nodiscard]] std::vector<std::size_t> interleaved(const std::vector<Stratum>& strata);
 
 /// A figure of all columns estimated from a sample.
 struct SampledRate {

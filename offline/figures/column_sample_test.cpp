@@ -91,13 +91,24 @@ TEST_CASE("the standard error of a stratified mean is the textbook's") {
   CHECK(rate.point.worst_column == 0.5);
 }
 
-TEST_CASE("a larger sample has every row of a smaller one, and some of every level") {
+TEST_CASE("a larger sample begins with a smaller one and has some of every level") {
   const auto small = stratified_sample(study().wavelet, 40), large = stratified_sample(study().wavelet, 70);
   REQUIRE(small.size() == study().wavelet.finest() + 1);
   for (std::size_t s = 0; s < small.size(); ++s) {
     CHECK(small[s].rows.size() >= std::min<std::size_t>(small[s].size, 16));
-    CHECK(std::includes(large[s].rows.begin(), large[s].rows.end(), small[s].rows.begin(), small[s].rows.end()));
+    REQUIRE(large[s].rows.size() >= small[s].rows.size());
+    CHECK(std::equal(small[s].rows.begin(), small[s].rows.end(), large[s].rows.begin()));
   }
+  auto order = interleaved(small);
+  const auto half = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+  for (const Stratum& stratum : small) {
+    const auto begin = *std::min_element(stratum.rows.begin(), stratum.rows.end());
+    const auto early =
+        std::count_if(order.begin(), half, [&](std::size_t row) { return row >= begin && row < begin + stratum.size; });
+    CHECK(std::abs(early - static_cast<std::ptrdiff_t>(stratum.rows.size() / 2)) <= 1);
+  }
+  std::sort(order.begin(), order.end());
+  CHECK(std::adjacent_find(order.begin(), order.end()) == order.end());
 }
 
 TEST_CASE("records are taken up again, and not for another body") {

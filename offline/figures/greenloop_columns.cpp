@@ -1,12 +1,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <iterator>
+#include <span>
+#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "formats/exchange/green_store.hpp"
@@ -37,42 +38,34 @@ layout::Wavelet wavelet_of(const std::string& name) {
   throw std::invalid_argument("--wavelet " + name + ": there is no such wavelet");
 }
 
-GreenStoreContents read_problem(const std::filesystem::path& file, ProgressBar& progress) {
-  const Scene scene = read_scene(file);
-  const std::string fingerprint = column_fingerprint(scene, read_text(scene.mesh.path));
-  return describe_problem(scene, make_body_geometry(scene, progress), fingerprint, progress);
-}
-
 // A body whose Green's functions are solved, measured and forgotten.
 class StreamedBody {
  public:
   StreamedBody(const Arguments& arguments, ProgressBar& progress)
       : arguments_(arguments),
         progress_(progress),
-        problem_(read_problem(arguments.scene, progress)),
-        wavelet_(problem_.surface, {problem_.flags.begin(), problem_.flags.end()},
-                 {problem_.area.begin(), problem_.area.end()}, wavelet_of(arguments.wavelet)),
+        scene_(read_scene(arguments.scene)),
+        geometry_(make_body_geometry(scene_, progress)),
+        fingerprint_(column_fingerprint(scene_, read_text(scene_.mesh.path))),
+        wavelet_(geometry_.surface, geometry_.flags, geometry_.area, wavelet_of(arguments.wavelet)),
         strata_(stratified_sample(wavelet_, arguments.columns)),
         compression_(wavelet_, arguments.thresholds),
-        records_(arguments.records, problem_.fingerprint + " " + arguments.wavelet, arguments.thresholds) {}
+        records_(arguments.records, fingerprint_ + " " + arguments.wavelet, arguments.thresholds) {}
 
   void measure() {
-    std::vector<std::size_t> missing;
-    for (const Stratum& stratum : strata_) {
-      for (const std::size_t row : stratum.rows) {
-        if (!records_.has(row)) missing.push_back(row);
-      }
-    }
+    std::vector<std::size_t> missing = interleaved(strata_);
+    missing.erase(std::remove_if(missing.begin(), missing.end(), [&](std::size_t row) { return records_.has(row); }),
+                  missing.end());
     if (missing.empty()) return;
+    const GreenStoreContents problem = describe_problem(scene_, geometry_, fingerprint_, progress_);
     progress_.begin("factorise");
-    ComplianceSolver solver(problem_);
+    ComplianceSolver solver(problem);
     progress_.end(fmt::format("{} unknowns, {:.3g} factor entries", solver.unknowns(),
                               static_cast<double>(solver.factor_entries())));
     progress_.begin("columns");
     for (std::size_t done = 0; done < missing.size();) {
       const std::size_t count = std::min<std::size_t>(ComplianceSolver::kPatternsAtOnce, missing.size() - done);
-      measure(solver, {missing.begin() + static_cast<std::ptrdiff_t>(done),
-                       missing.begin() + static_cast<std::ptrdiff_t>(done + count)});
+      measure(problem, solver, std::span(missing).subspan(done, count));
       done += count;
       progress_.update(static_cast<double>(done) / static_cast<double>(missing.size()));
     }
@@ -96,20 +89,22 @@ class StreamedBody {
   }
 
  private:
-  void measure(ComplianceSolver& solver, const std::vector<std::size_t>& rows) {
+  void measure(const GreenStoreContents& problem, ComplianceSolver& solver, std::span<const std::size_t> rows) {
     std::vector<int> nodes;
-    for (const std::size_t row : rows) nodes.push_back(problem_.column_node[row]);
-    const Eigen::MatrixXd solved = solver.displacement(unit_patterns(problem_, nodes));
+    for (const std::size_t row : rows) nodes.push_back(problem.column_node[row]);
+    const Eigen::MatrixXd solved = solver.displacement(unit_patterns(problem, nodes));
     for (std::size_t j = 0; j < rows.size(); ++j) {
       std::vector<double> column = blocks_of(solved, j);
-      for (double& value : column) value *= problem_.area[nodes[j]];  // traction form
+      for (double& value : column) value *= problem.area[nodes[j]];  // traction form
       records_.add(rows[j], compression_.compress(column));
     }
   }
 
   const Arguments& arguments_;
   ProgressBar& progress_;
-  GreenStoreContents problem_;
+  Scene scene_;
+  BodyGeometry geometry_;
+  std::string fingerprint_;
   SurfaceWavelet wavelet_;
   std::vector<Stratum> strata_;
   ColumnCompression compression_;
@@ -142,7 +137,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   app.add_option("scene", arguments.scene, "scene.toml")->required()->check(CLI::ExistingFile);
   app.add_option("--records", arguments.records,
-                 "CSV file of the columns measured; if there is one already, only what it lacks is solved")
+                 "CSV file of the columns measured, one by one; what is in it already is not solved again")
       ->required();
   app.add_option("--columns", arguments.columns, "About how many columns to measure, spread over every mesh level")
       ->check(CLI::Range(1, 10'000'000))
