@@ -24,19 +24,6 @@ std::uint32_t half_octave(std::uint64_t value) {
   return 2 * top + static_cast<std::uint32_t>(value >> (top - 1) & 1);
 }
 
-std::uint32_t binary_log(std::uint64_t value) {
-  if (value == 0) return 0;
-  auto log = static_cast<std::uint32_t>(std::bit_width(value)) - 1;
-  std::uint64_t mantissa = value << (63 - log) >> 32;  // 31 binary places, 1 .. 2
-  for (int digit = 0; digit < 8; ++digit) {
-    mantissa = mantissa * mantissa >> 31;
-    const std::uint64_t carry = mantissa >> 32;
-    mantissa >>= carry;
-    log = 2 * log + static_cast<std::uint32_t>(carry);
-  }
-  return log;
-}
-
 std::uint64_t interleave_sign(std::int64_t value) {
   return static_cast<std::uint64_t>(value) << 1 ^ static_cast<std::uint64_t>(value >> 63);
 }

@@ -15,9 +15,6 @@ namespace greenloop::transport {
 /// The same with two a doubling from 2 on; 127 at most.
 [[nodiscard]] std::uint32_t half_octave(std::uint64_t value);
 
-/// log2 in 1/256, rounded down; of 0 as of 1.
-[[nodiscard]] std::uint32_t binary_log(std::uint64_t value);
-
 /// 0, -1, 1, -2, .. to 0, 1, 2, 3, .. and back.
 [[nodiscard]] std::uint64_t interleave_sign(std::int64_t value);
 [[nodiscard]] std::int64_t restore_sign(std::uint64_t value);

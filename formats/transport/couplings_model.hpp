@@ -18,7 +18,6 @@ namespace greenloop::transport {
 struct Coefficient {
   GridPoint point{};
   std::uint32_t level = 0;
-  std::int32_t size = 0;  ///< of its own diagonal block: log2 of the trace, in 1/256
 };
 
 /// Codes couplings level by level. Whether a block is stored, its nine values and its layer are predicted from the

@@ -154,16 +154,6 @@ TEST_CASE("logarithmic scales: monotone, one step at a time") {
   CHECK(half_octave(~std::uint64_t{0}) == 127);
 }
 
-TEST_CASE("binary logarithm: rounded down to 1/256, at every size") {
-  CHECK(binary_log(0) == 0);
-  CHECK(binary_log(1) == 0);
-  CHECK(binary_log(~std::uint64_t{0}) == 64 * 256 - 1);
-  for (std::uint32_t log = 0; log < 64; ++log) CHECK(binary_log(std::uint64_t{1} << log) == 256 * log);
-  for (std::uint64_t value = 3; value < (std::uint64_t{1} << 62); value += value / 3 + 1) {
-    CHECK(std::abs(binary_log(value) + 0.5 - 256 * std::log2(static_cast<double>(value))) < 0.51);
-  }
-}
-
 std::uint32_t bits(float number) { return std::bit_cast<std::uint32_t>(number); }
 
 TEST_CASE("float bits: the order is that of the numbers, any pattern comes back") {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 
 #include "formats/transport/float_bits.hpp"
@@ -10,6 +11,10 @@ namespace greenloop::transport {
 namespace {
 
 constexpr std::uint32_t length_contexts = 17;
+constexpr std::uint32_t most_step = 200;
+constexpr std::uint32_t step_of_exponent = 40 + 127 - 150;  // to_fixed's exponent over ours
+constexpr std::int64_t most_steps = 1 << 27;
+constexpr std::size_t scale_fields = sizeof(layout::Scale) / sizeof(std::uint32_t);
 
 std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t i) {
   std::uint32_t word = 0;
@@ -29,13 +34,26 @@ std::uint32_t code_word(BitCoder& coder, WordModel& words, std::span<std::byte> 
   return word;
 }
 
-// Coefficient::size of a scale
-std::int32_t own_size(std::span<const std::byte> scale) {
-  constexpr std::uint32_t reference = 127 + 16;  // steps of 2^-24
-  constexpr std::size_t diagonal = 6;
-  std::int64_t trace = 0;
-  for (const std::size_t k : {0, 3, 5}) trace += to_fixed(word_at(scale, diagonal + k), reference);
-  return static_cast<std::int32_t>(binary_log(static_cast<std::uint64_t>(std::max<std::int64_t>(trace, 1)))) - 24 * 256;
+// The last digit that all numbers of a field of scales have: they are whole numbers, below 2^25, of 2^(step - 150). 0
+// if there is none or some number does not come back from them.
+std::uint32_t common_step(std::span<const std::byte> scales, std::size_t field) {
+  const std::size_t count = scales.size() / sizeof(std::uint32_t);
+  std::uint32_t step = most_step;
+  for (std::size_t i = field; i < count; i += scale_fields) {
+    const std::uint32_t word = word_at(scales, i), digits = (word & 0x7fffff) | 0x800000;
+    if ((word & 0x7fffffff) != 0) step = std::min(step, exponent_of(word) + std::countr_zero(digits));
+  }
+  for (std::size_t i = field; i < count; i += scale_fields) {
+    const std::int64_t steps = to_fixed(word_at(scales, i), step + step_of_exponent);
+    if (std::abs(steps) > most_steps / 4 || from_fixed(steps, step + step_of_exponent) != word_at(scales, i)) return 0;
+  }
+  return step;
+}
+
+std::uint32_t code_common_step(BitCoder& coder, std::span<const std::byte> scales, std::size_t field) {
+  const auto step = static_cast<std::uint32_t>(coder.code_plain(common_step(scales, field), 8));
+  if (step > most_step) throw DamagedPacket("a digit beyond those of scales");
+  return step;
 }
 
 }  // namespace
@@ -62,10 +80,22 @@ WordModel::WordModel(std::uint32_t fields) : differences_(fields * length_contex
 
 std::uint32_t WordModel::code(BitCoder& coder, std::uint32_t field, std::uint32_t word, std::uint32_t predicted) {
   const std::int64_t from = order_of(predicted);
-  const std::uint64_t difference =
-      differences_.code(coder, interleave_sign(order_of(word) - from), field * length_contexts + length_[field] / 2);
-  length_[field] = std::min(static_cast<std::uint32_t>(std::bit_width(difference)), 33U);
-  return bits_of_order(static_cast<std::uint32_t>(from + restore_sign(difference)));
+  return bits_of_order(static_cast<std::uint32_t>(from + code_difference(coder, field, order_of(word) - from)));
+}
+
+std::uint32_t WordModel::code_steps(BitCoder& coder, std::uint32_t field, std::uint32_t step, std::uint32_t word,
+                                    std::uint32_t predicted) {
+  const std::int64_t from = to_fixed(predicted, step + step_of_exponent);
+  const std::int64_t difference = code_difference(coder, field, to_fixed(word, step + step_of_exponent) - from);
+  if (std::abs(difference) > most_steps) throw DamagedPacket("a number of more digits than there are");
+  return from_fixed(from + difference, step + step_of_exponent);
+}
+
+std::int64_t WordModel::code_difference(BitCoder& coder, std::uint32_t field, std::int64_t difference) {
+  const std::uint64_t coded =
+      differences_.code(coder, interleave_sign(difference), field * length_contexts + length_[field] / 2);
+  length_[field] = std::min(static_cast<std::uint32_t>(std::bit_width(coded)), 33U);
+  return restore_sign(coded);
 }
 
 void MeshModel::code_words(BitCoder& coder, std::uint32_t fields, std::span<std::byte> section) {
@@ -159,21 +189,25 @@ void MeshModel::code_representatives(BitCoder& coder, std::uint32_t c, std::uint
 }
 
 void MeshModel::code_scales(BitCoder& coder, std::uint32_t q, std::span<std::byte> section) {
-  constexpr std::size_t fields = sizeof(layout::Scale) / sizeof(std::uint32_t);
   const std::vector<std::size_t> nodes = domain_nodes(q);
   std::vector<GridPoint> points;
   points.reserve(nodes.size());
   const std::uint32_t exponent = largest_exponent();
   for (const std::size_t node : nodes) points.push_back(grid_point(nodes_[node], exponent));
   const auto near = neighbours_before(points);
-  WordModel words(fields);
+  std::array<std::uint32_t, scale_fields> step{};
+  for (std::size_t k = 0; k < scale_fields; ++k) step[k] = code_common_step(coder, section, k);
+  WordModel words(scale_fields);
   for (std::size_t i = 0; i < section.size() / sizeof(layout::Scale); ++i) {
     const std::uint32_t like = i < near.size() ? near[i][0] : no_neighbour;
-    for (std::uint32_t k = 0; k < fields; ++k) {
-      code_word(coder, words, section, fields * i + k, k,
-                like == no_neighbour ? 0 : word_at(section, fields * like + k));
+    for (std::uint32_t k = 0; k < scale_fields; ++k) {
+      const std::size_t at = scale_fields * i + k;
+      const std::uint32_t given = word_at(section, at),
+                          predicted = like == no_neighbour ? 0 : word_at(section, scale_fields * like + k);
+      set_word(section, at,
+               step[k] == 0 ? words.code(coder, k, given, predicted)
+                            : words.code_steps(coder, k, step[k], given, predicted));
     }
-    if (i < nodes.size()) nodes_[nodes[i]].size = own_size(section.subspan(sizeof(layout::Scale) * i));
   }
 }
 
@@ -182,7 +216,7 @@ std::vector<Coefficient> MeshModel::coefficients(std::uint32_t q) const {
   std::vector<Coefficient> coefficients;
   for (std::uint32_t r = 0; r <= q; ++r) {
     for (const std::size_t node : domain_nodes(r)) {
-      coefficients.push_back({.point = grid_point(nodes_[node], exponent), .level = r, .size = nodes_[node].size});
+      coefficients.push_back({.point = grid_point(nodes_[node], exponent), .level = r});
     }
   }
   return coefficients;

@@ -34,7 +34,13 @@ class WordModel {
   explicit WordModel(std::uint32_t fields);
   std::uint32_t code(BitCoder& coder, std::uint32_t field, std::uint32_t word, std::uint32_t predicted);
 
+  /// The same for floating-point numbers that are whole numbers of 2^(step - 150), differences in these steps.
+  std::uint32_t code_steps(BitCoder& coder, std::uint32_t field, std::uint32_t step, std::uint32_t word,
+                           std::uint32_t predicted);
+
  private:
+  std::int64_t code_difference(BitCoder& coder, std::uint32_t field, std::int64_t difference);
+
   AdaptiveInteger differences_;
   std::vector<std::uint32_t> length_;  // of the last difference, by fields
 };
@@ -53,7 +59,8 @@ class MeshModel {
   /// Representatives(c, q): from the node itself and its parents. After Nodes(q).
   void code_representatives(BitCoder& coder, std::uint32_t c, std::uint32_t q, std::span<std::byte> section);
 
-  /// Scales(q): from the nearest coefficient before. After Nodes(q).
+  /// Scales(q): from the nearest coefficient before, in steps of the last digit if all of a field's numbers have it.
+  /// After Nodes(q).
   void code_scales(BitCoder& coder, std::uint32_t q, std::span<std::byte> section);
 
   /// BaseTriangles and the like: words from those `fields` before.
@@ -68,7 +75,6 @@ class MeshModel {
     std::array<std::uint32_t, 3> position{};  // bits
     std::uint32_t flags = 0;
     std::array<std::uint32_t, 2> parent{layout::none, layout::none};  // file indices
-    std::int32_t size = 0;                                            // Coefficient::size
   };
   [[nodiscard]] std::uint32_t largest_exponent() const;
   [[nodiscard]] std::array<std::uint32_t, 3> predicted_position(std::size_t node, std::uint32_t exponent) const;

@@ -19,7 +19,7 @@
 namespace greenloop::transport {
 
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'Z', '\n'};
-inline constexpr std::uint16_t version_major = 1;
+inline constexpr std::uint16_t version_major = 2;
 
 /// A packet decodes to at most this many bytes for each of its own.
 inline constexpr std::uint64_t most_expansion = 256;

@@ -72,7 +72,7 @@ void encode_couplings(const WaveletCompliance& compliance, const Encoding& encod
     to.scales.clear();
     for (auto& layer : to.couplings) layer = {.begin = {0}, .index = {}, .value = {}};
     for (std::size_t j = 0; j + 1 < from.begin.size(); ++j, ++column) {
-      to.scales.push_back(compliance.scales[column].stored());
+      to.scales.push_back(compliance.scales[column].stored(encoding.quantum));
       for (std::size_t b = from.begin[j]; b < from.begin[j + 1]; ++b) {
         if (static_cast<double>(from.norm[b]) < encoding.threshold) continue;
         Values values;

@@ -209,5 +209,26 @@ TEST_CASE("a value beyond what can be stored is refused with the remedy") {
                        std::runtime_error);
 }
 
+// whole numbers of 2^-digits, zeros without a sign
+bool is_multiple(const float (&matrix)[6], int digits) {
+  return std::all_of(std::begin(matrix), std::end(matrix), [&](float value) {
+    const double units = std::ldexp(static_cast<double>(value), digits);
+    return units == std::round(units) && (value != 0 || !std::signbit(value));
+  });
+}
+
+TEST_CASE("stored scales have few digits and are as exact as the couplings beside them") {
+  Eigen::Matrix3d diagonal, conditional;
+  diagonal << 9, 2, -1e-9, 2, 7, -1, -1e-9, -1, 5;
+  conditional << 2.3, 0, -1e-9, 0, 1.7, -0.3, -1e-9, -0.3, 1.1;
+  const CoefficientScale scale(diagonal, conditional, 0);
+  constexpr double quantum = 0.01;
+  const layout::Scale stored = scale.stored(quantum);
+  CHECK(is_multiple(stored.root, 19));  // the inverse root's norm is 1.5
+  CHECK(is_multiple(stored.diagonal, 9));
+  CHECK((symmetric_matrix(stored.root) - scale.root()).cwiseAbs().maxCoeff() < 0x1p-19);
+  CHECK((symmetric_matrix(stored.diagonal) - scale.diagonal()).cwiseAbs().maxCoeff() < 0.125 * quantum);
+}
+
 }  // namespace
 }  // namespace greenloop::offline

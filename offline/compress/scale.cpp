@@ -1,6 +1,7 @@
 #include "offline/compress/scale.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -12,6 +13,12 @@ void store(const Eigen::Matrix3d& symmetric, float (&six)[6]) {
   for (int i = 0; i < 3; ++i) {
     for (int j = i; j < 3; ++j) six[k++] = static_cast<float>(symmetric(i, j));
   }
+}
+
+// to multiples of the next power of two below `step`, zeros without a sign
+Eigen::Matrix3d rounded(const Eigen::Matrix3d& matrix, double step) {
+  const double unit = std::exp2(std::floor(std::log2(step)));
+  return unit * ((matrix / unit).array().round() + 0.0).matrix();
 }
 
 }  // namespace
@@ -30,10 +37,13 @@ CoefficientScale::CoefficientScale(const Eigen::Matrix3d& diagonal, const Eigen:
   diagonal_ = inverse_ * diagonal * inverse_;
 }
 
-layout::Scale CoefficientScale::stored() const {
+layout::Scale CoefficientScale::stored(double quantum) const {
+  constexpr double root_share = 0x1p-18;   // of the least eigenvalue
+  constexpr double diagonal_share = 0.25;  // of the quantum
+  const double least = 1 / inverse_.norm();
   layout::Scale scale{};
-  store(root_, scale.root);
-  store(0.5 * (diagonal_ + diagonal_.transpose()), scale.diagonal);
+  store(rounded(root_, root_share * least), scale.root);
+  store(rounded(0.5 * (diagonal_ + diagonal_.transpose()), diagonal_share * quantum), scale.diagonal);
   return scale;
 }
 

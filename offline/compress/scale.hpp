@@ -19,8 +19,9 @@ class CoefficientScale {
   [[nodiscard]] const Eigen::Matrix3d& inverse() const { return inverse_; }
   [[nodiscard]] const Eigen::Matrix3d& diagonal() const { return diagonal_; }  ///< scaled: identity or larger
 
-  /// As the model file stores it.
-  [[nodiscard]] layout::Scale stored() const;
+  /// As the model file stores it: rounded, so that it takes fewer bytes to transmit, the root to round-off, the
+  /// diagonal to what is little beside `quantum`, that of the couplings' values.
+  [[nodiscard]] layout::Scale stored(double quantum) const;
 
  private:
   Eigen::Matrix3d root_, inverse_, diagonal_;
