@@ -130,9 +130,10 @@ static_assert(sizeof(Info) == 256);
 
 // Fields are sums of *field columns*: what a unit force on a touchable node of constraint level c moves, in
 // coefficients, W U W^T T^-T. They are not stored but made of the couplings when a body is created. Of the block b_i of
-// a coefficient of level l a column keeps, rounded to 8 or, as two blocks, 16 significant bits,
+// a coefficient of level l that the displacement of a node with node_read depends on a column keeps, rounded to 8 or,
+// as two blocks, 16 significant bits,
 //   |b_i| >= field_threshold 2^l (sum_k 4^-l(k) |b_k|^2)^1/2   or   |b_i| >= field_peak_threshold |U_jj|
-// with the Frobenius norm and the compliance U_jj of the node itself.
+// with the Frobenius norm, the sum over such coefficients, and the compliance U_jj of the node itself.
 
 /// The model cut off after this level: the compliance between the averages of level q, which are the forces and the
 /// displacements of constraint level q. Errors against the exact one, all relative.
@@ -147,8 +148,8 @@ struct Level {
   float rms_error;                     ///< ||U^ - U||_F / ||U||_F, all couplings
   float worst_column_error;            ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius, all couplings
   float patch_force_error;   ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
-  float field_rms_error;     ///< rms_error of fields
-  float field_column_error;  ///< worst_column_error of fields
+  float field_rms_error;     ///< rms_error of fields, at nodes with node_read
+  float field_column_error;  ///< worst_column_error of fields, errors at nodes with node_read
   std::uint32_t reserved;
 };
 static_assert(sizeof(Level) == 64);

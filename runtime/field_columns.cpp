@@ -162,6 +162,7 @@ void FieldColumnMaker::carve(Arena& arena, const ModelView& view) noexcept {
   mirrored_begin_ = arena.take<std::uint32_t>(view.domain_count + std::uint64_t{1});
   mirrored_ = arena.take<MirroredBlock>(block_count(view, 0, layout::layers));
   sum_ = arena.take_zeroed<Block>(view.domain_count);
+  read_ = arena.take<std::uint8_t>(view.domain_count);
   wanted_ = arena.take<std::uint8_t>(view.domain_count);
 }
 
@@ -188,6 +189,24 @@ void FieldColumnMaker::list_mirrored() noexcept {
   visit([&](std::uint32_t row, const MirroredBlock& block) { mirrored_[mirrored_begin_[row]++] = block; });
   std::memmove(mirrored_begin_ + 1, mirrored_begin_, sizeof(std::uint32_t) * view.domain_count);
   mirrored_begin_[0] = 0;
+}
+
+void FieldColumnMaker::mark_read(const Refinement& refinement, Touched& touched) noexcept {
+  const ModelView& view = *view_;
+  std::memset(read_, 0, view.domain_count);
+  for (std::uint32_t place = 0; place < view.domain_count; ++place) {
+    const LevelView& level = view.level[refinement.level[place]];
+    if ((level.nodes[place - level.domain_begin].flags & layout::node_read) == 0) {
+      continue;
+    }
+    touch(refinement, view.levels - 1, &place, 1, touched);
+    for (std::uint32_t q = 0; q < view.levels; ++q) {
+      for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+        read_[touched.list[q][k]] = 1;
+      }
+    }
+    clear(touched);
+  }
 }
 
 void FieldColumnMaker::mark_representatives(std::uint32_t c) noexcept {
@@ -273,7 +292,7 @@ FieldColumnMaker::Limits FieldColumnMaker::limits(const Refinement& refinement, 
   const auto square = [](float value) { return double{value} * double{value}; };
   double energy = 0;
   for (std::uint32_t i = 0; i < view_->domain_count; ++i) {
-    energy += spread(refinement.level[i]) * square_norm(sum_[i]);
+    energy += read_[i] * spread(refinement.level[i]) * square_norm(sum_[i]);
   }
   return {square(view_->info->field_threshold) * energy, square(view_->info->field_peak_threshold) * own};
 }
@@ -285,7 +304,7 @@ void FieldColumnMaker::keep_level(std::uint32_t q, const Limits& limits, const R
   for (std::uint32_t i = level.domain_begin; i < domain_up_to(*view_, q); ++i) {
     const double norm = square_norm(sum_[i]);
     counts.finite = counts.finite && norm <= DBL_MAX;
-    if (norm > 0 && (norm >= least || norm >= limits.norm)) {
+    if (norm > 0 && read_[i] != 0 && (norm >= least || norm >= limits.norm)) {
       for (std::uint32_t half = 0; half < view_->info->field_halves; ++half) {
         const ColumnBlock block = take_half(sum_[i], level.node_begin + (i - level.domain_begin));
         counts.finite = counts.finite && is_finite(block);
@@ -305,6 +324,7 @@ FieldColumnMaker::Counts FieldColumnMaker::make(const Refinement& refinement, To
   Counts counts;
   columns_.block = room.block;
   list_mirrored();
+  mark_read(refinement, touched);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     mark_representatives(c);
     std::uint32_t* begin = begin_[c];

@@ -10,10 +10,10 @@
 
 namespace greenloop {
 
-// What a unit force on a touchable node of a constraint level moves, in wavelet coefficients: the columns that fields
-// are sums of (James & Pai 2003, section 5.4). Made of all couplings at start-up and thresholded as layout.hpp says, so
-// that a step reads a fraction of what the two-sided form would make it read. Values are upper halves of floats, which
-// load without conversion.
+// What a unit force on a touchable node of a constraint level moves, in wavelet coefficients, as far as the nodes that
+// are read depend on these: the columns that fields are sums of (James & Pai 2003, section 5.4). Made of all couplings
+// at start-up and thresholded as layout.hpp says, so that a step reads a fraction of what the two-sided form would make
+// it read. Values are upper halves of floats, which load without conversion.
 
 /// A block of a column, m/N.
 struct alignas(8) ColumnBlock {
@@ -90,6 +90,12 @@ class FieldColumnMaker {
 
   [[nodiscard]] const FieldColumns& columns() const { return columns_; }
 
+  /// Finds what read() returns; make does so too. touched: clear, and so again afterwards. Start-up; linear.
+  void mark_read(const Refinement& refinement, Touched& touched) noexcept;
+
+  /// [domain] 1 for coefficients that the displacement of a node with layout::node_read depends on, else 0.
+  [[nodiscard]] const std::uint8_t* read() const { return read_; }
+
  private:
   // least square norms of blocks that are kept
   struct Limits {
@@ -111,6 +117,7 @@ class FieldColumnMaker {
   std::uint32_t* mirrored_begin_ = nullptr;  // [domain + 1]
   MirroredBlock* mirrored_ = nullptr;
   Block* sum_ = nullptr;            // [domain], 0 between columns
+  std::uint8_t* read_ = nullptr;    // [domain]
   std::uint8_t* wanted_ = nullptr;  // [domain] the node at this place stands for a touchable node
 };
 

@@ -123,7 +123,8 @@ TEST_CASE("columns hold the blocks that the thresholds keep, rounded to 8 signif
        {synthetic_model({.levels = 4}),
         synthetic_model({.levels = 3, .wavelet = layout::Wavelet::linear, .field_threshold = 0.01}),
         synthetic_model({.levels = 4, .coarsest_constraint_level = 1, .field_threshold = 0}),
-        synthetic_model({.levels = 4, .field_halves = 2})}) {
+        synthetic_model({.levels = 4, .field_halves = 2}), synthetic_model({.levels = 4, .read_above = 0.6}),
+        synthetic_model({.levels = 4, .wavelet = layout::Wavelet::butterfly, .read_above = 0.6})}) {
     const TestModel model(encode(data));
     const ModelView& view = model.view();
     const PlacedBody placed(view, 5);

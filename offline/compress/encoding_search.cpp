@@ -54,7 +54,7 @@ Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const
   trial.rms = error.rms();
   trial.worst_column = error.worst_column();
   if (trial.meets(bench.accuracy)) {
-    const FieldSample field(compressed, bench.columns);
+    const FieldSample field(compressed, read_rows(model.view), bench.columns);
     trial.field = field.choose(field_safety * bench.accuracy.rms, bench.accuracy.worst_column);
     data.levels.back().counts.longest_field_column = data.info.field_halves * field.measure(trial.field).longest;
   } else {

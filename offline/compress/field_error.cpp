@@ -13,10 +13,11 @@ double FieldError::add(std::span<const double> found, const double* exact, doubl
       block_error += (found[k] - exact[k]) * (found[k] - exact[k]);
       block_norm += exact[k] * exact[k];
     }
+    largest = std::max(largest, block_norm);
+    if (!rows_.empty() && rows_[i / 9] == 0) continue;
     error += block_error;
     norm += block_norm;
     largest_error = std::max(largest_error, block_error);
-    largest = std::max(largest, block_norm);
   }
   error_energy_ += area * area * error;
   exact_energy_ += area * area * norm;
@@ -25,6 +26,6 @@ double FieldError::add(std::span<const double> found, const double* exact, doubl
   return column_error;
 }
 
-double FieldError::rms() const { return std::sqrt(error_energy_ / exact_energy_); }
+double FieldError::rms() const { return exact_energy_ > 0 ? std::sqrt(error_energy_ / exact_energy_) : 0; }
 
 }  // namespace greenloop::offline

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "offline/compress/field_error.hpp"
 
@@ -20,8 +21,9 @@ double norm(const double* block) {
 
 }  // namespace
 
-FieldSample::FieldSample(const CompressedCompliance& compliance, const std::vector<SampleColumn>& columns)
-    : wavelet_(compliance.wavelet()), exact_(columns) {
+FieldSample::FieldSample(const CompressedCompliance& compliance, FieldRows read,
+                         const std::vector<SampleColumn>& columns)
+    : wavelet_(compliance.wavelet()), read_(std::move(read)), exact_(columns) {
   const std::size_t finest = compliance.finest(), rows = compliance.rows(finest);
   for (std::size_t level = 0; level <= finest; ++level) {
     level_weight_.resize(compliance.rows(level), std::ldexp(1.0, -static_cast<int>(level)));
@@ -33,14 +35,15 @@ FieldSample::FieldSample(const CompressedCompliance& compliance, const std::vect
     own[0] = own[4] = own[8] = 1;
     compliance.apply_to_coefficients(finest, 3, unit.data(), made.coefficients.data());
     own[0] = own[4] = own[8] = 0;
+    auto displaced = made.coefficients;
+    for (std::size_t level = 1; level <= finest; ++level) wavelet_.merge(level, 9, displaced.data());
+    made.own = norm(displaced.data() + 9 * column.row);
     for (std::size_t i = 0; i < rows; ++i) {
+      if (read_.coefficients[i] == 0) std::fill_n(made.coefficients.data() + 9 * i, 9, 0.0);
       const double weighted = level_weight_[i] * norm(made.coefficients.data() + 9 * i);
       made.spread_norm += weighted * weighted;
     }
     made.spread_norm = std::sqrt(made.spread_norm);
-    auto displaced = made.coefficients;
-    for (std::size_t level = 1; level <= finest; ++level) wavelet_.merge(level, 9, displaced.data());
-    made.own = norm(displaced.data() + 9 * column.row);
     columns_.push_back(std::move(made));
   }
 }
@@ -64,7 +67,7 @@ std::vector<double> FieldSample::keep(std::size_t column, const FieldThresholds&
 }
 
 FieldSample::Outcome FieldSample::measure(const FieldThresholds& thresholds) const {
-  FieldError error;
+  FieldError error(read_.nodes);
   Outcome outcome;
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     std::uint32_t kept = 0;

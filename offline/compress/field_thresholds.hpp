@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "offline/compress/compressed_compliance.hpp"
+#include "offline/compress/model_field.hpp"
 
 namespace greenloop::offline {
 
@@ -24,8 +25,9 @@ struct SampleColumn {
 /// Sample columns of a compressed compliance as fields would be made of them, to choose thresholds with.
 class FieldSample {
  public:
-  /// Columns of the finest level. `columns` must outlive this. Work: that of the columns.
-  FieldSample(const CompressedCompliance& compliance, const std::vector<SampleColumn>& columns);
+  /// Columns of the finest level; what is not read of them is left out. `columns` must outlive this. Work: that of the
+  /// columns.
+  FieldSample(const CompressedCompliance& compliance, FieldRows read, const std::vector<SampleColumn>& columns);
 
   struct Outcome {
     double rms = 0, worst_column = 0;  ///< FieldError of the sample
@@ -47,6 +49,7 @@ class FieldSample {
     double spread_norm = 0, own = 0;
   };
   const SurfaceWavelet& wavelet_;
+  FieldRows read_;
   const std::vector<SampleColumn>& exact_;
   std::vector<double> level_weight_;  // by row: 2^-level
   std::vector<Column> columns_;

@@ -25,7 +25,7 @@ const Case& one() {
 }
 
 TEST_CASE("nothing left out is as accurate as all couplings; more left out less so, of fewer blocks") {
-  const FieldSample field(one().compliance, one().sample.columns());
+  const FieldSample field(one().compliance, read_rows(one().file.view), one().sample.columns());
   FieldError all;
   for (const auto& column : one().sample.columns()) {
     all.add(one().compliance.column(3, column.row), column.exact.data(), column.area);
@@ -43,7 +43,7 @@ TEST_CASE("nothing left out is as accurate as all couplings; more left out less 
 }
 
 TEST_CASE("the thresholds chosen are the largest that meet both errors") {
-  const FieldSample field(one().compliance, one().sample.columns());
+  const FieldSample field(one().compliance, read_rows(one().file.view), one().sample.columns());
   const auto chosen = field.choose(0.02, 0.1);
   const auto outcome = field.measure(chosen);
   CHECK(outcome.rms <= 0.02);
@@ -67,7 +67,7 @@ TEST_CASE("a body's columns are those of the sample, rounded to 8 bits") {
     REQUIRE(fields.has_column(3, column.row));
     error.add(fields.column(one().compliance.wavelet(), 3, column.row), column.exact.data(), column.area);
   }
-  const FieldSample field(one().compliance, one().sample.columns());
+  const FieldSample field(one().compliance, read_rows(one().file.view), one().sample.columns());
   const auto expected = field.measure(thresholds);
   CHECK(error.rms() == doctest::Approx(expected.rms).epsilon(0.02));
   CHECK(error.worst_column() == doctest::Approx(expected.worst_column).epsilon(0.05));

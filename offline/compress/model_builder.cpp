@@ -53,7 +53,8 @@ ConstraintLevelReport measure_coarse(const CompressionInput& input, const Surfac
   const CompressedCompliance compressed(cut);
   const ModelField fields(cut);
   ContactPatches patches(row_positions(input.mesh, wavelet, level), ExactSample::most_patches);
-  FieldError error, field_error;
+  const FieldRows read = read_rows(cut);
+  FieldError error, field_error(read.nodes);
   const std::size_t rows = wavelet.row_end(level);
   Eigen::MatrixXd blocks(3 * rows, 3);
   for (std::size_t j = 0; j < rows; ++j) {
@@ -147,6 +148,9 @@ class Build {
     const bool fine =
         input.accuracy.rms < least_rms_of_one_half || input.accuracy.worst_column < least_column_of_one_half;
     model_.info.field_halves = fine ? 2 : 1;
+    for (const std::size_t node : wavelet_.nodes()) {
+      read_.push_back((input.flags[node] & layout::node_read) != 0 ? 1 : 0);
+    }
     report_.dense_bytes = 36 * wavelet_.rows() * wavelet_.rows();
   }
 
@@ -243,7 +247,7 @@ class Build {
       model_.info.field_peak_threshold = static_cast<float>(thresholds.peak);
       const EncodedModel encoded(model_);
       const ModelField fields(encoded.view);
-      measured.field = {};
+      measured.field = FieldError(read_);
       measured.field_counts = fields.counts();
       visit_exact_columns(input_, part(0.85, 0.9), [&](std::size_t row, const auto& exact, double area) {
         if (!fields.has_column(wavelet_.finest(), row)) return;
@@ -324,6 +328,7 @@ class Build {
   const CompressionInput& input_;
   const Progress& progress_;
   SurfaceWavelet wavelet_;
+  std::vector<std::uint8_t> read_;  // by rows
   ExactSample sample_;
   ModelData model_;
   CompressionReport report_;

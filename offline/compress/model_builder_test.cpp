@@ -129,6 +129,37 @@ TEST_CASE("fields of every level meet the accuracy, measured on a body's columns
   }
 }
 
+TEST_CASE("fields are as accurate as asked where they are read and shorter than those of the whole body") {
+  test::Body part = body();
+  const auto is_read = [&](std::size_t node) { return part.mesh.positions[node].x() > 0.6; };
+  for (std::size_t node = 0; node < part.flags.size(); ++node) {
+    if (!is_read(node)) part.flags[node] &= ~std::uint32_t{layout::node_read};
+  }
+  const BuiltModel model = build_model(input_of(part, accuracy), {});
+  const test::File stored(model.model);
+  CHECK(stored.view.domain_count == file().view.domain_count);
+  CHECK(model.report.levels.back().field_blocks < built().report.levels.back().field_blocks / 2);
+  const ModelField fields(stored.view);
+  const SurfaceWavelet wavelet(stored.view);
+  double error = 0, exact = 0, unread_error = 0;
+  for (std::size_t j = 0; j < part.column_nodes.size(); ++j) {
+    const auto column = fields.column(wavelet, wavelet.finest(), j);
+    const double area = part.area[part.column_nodes[j]];
+    for (std::size_t i = 0; i < part.column_nodes.size(); ++i) {
+      const Eigen::Matrix3d wanted =
+          part.compliance.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j));
+      const double difference =
+          area * area * (Eigen::Map<const Eigen::Matrix3d>(column.data() + 9 * i) - wanted).squaredNorm();
+      const bool read = is_read(part.column_nodes[i]);
+      (read ? error : unread_error) += difference;
+      if (read) exact += area * area * wanted.squaredNorm();
+    }
+  }
+  CHECK(std::sqrt(error / exact) <= accuracy.rms);
+  CHECK(std::sqrt(error / exact) == doctest::Approx(model.report.levels.back().field_rms_error).epsilon(1e-3));
+  CHECK(unread_error > 100 * error);
+}
+
 TEST_CASE("forces of all patches meet their accuracy, and it is used up") {
   const SurfaceWavelet wavelet(body().mesh, body().flags, body().area, layout::Wavelet::lifted_linear);
   ContactPatches patches(row_positions(body().mesh, wavelet, 3), ExactSample::most_patches);

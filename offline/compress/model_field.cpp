@@ -1,5 +1,6 @@
 #include "offline/compress/model_field.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <utility>
@@ -48,6 +49,20 @@ struct Maker {
 }  // namespace
 
 FieldColumnMaker::Counts count_field_columns(const ModelView& view) { return Maker(view).make({}); }
+
+FieldRows read_rows(const ModelView& view) {
+  FieldRows read{{}, std::vector<std::uint8_t>(view.domain_count, 0)};
+  Maker maker(view);
+  maker.columns.mark_read(maker.refinement, maker.touched);
+  std::copy_n(maker.columns.read(), view.domain_count, read.coefficients.begin());
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      read.nodes.push_back((level.nodes[i].flags & layout::node_read) != 0 ? 1 : 0);
+    }
+  }
+  return read;
+}
 
 ModelField::ModelField(const ModelView& view) {
   Maker maker(view);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "formats/aligned_bytes.hpp"
@@ -13,6 +14,15 @@ namespace greenloop::offline {
 /// How many blocks the field columns have that a body of the loop makes of a model, whatever the model says of it.
 /// Throws std::runtime_error if a number is not finite. Work: that of FieldColumnMaker::make.
 [[nodiscard]] FieldColumnMaker::Counts count_field_columns(const ModelView& view);
+
+/// What fields are read of, 1 for each domain row or coefficient, else 0.
+struct FieldRows {
+  std::vector<std::uint8_t> nodes;         ///< with layout::node_read
+  std::vector<std::uint8_t> coefficients;  ///< that the displacement of such a node depends on
+};
+
+/// Of a model's finest level. Linear.
+[[nodiscard]] FieldRows read_rows(const ModelView& view);
 
 /// The field columns that a body of the loop makes of a model, bit by bit.
 class ModelField {

@@ -34,7 +34,7 @@ class SampledBody {
     area_.resize(mesh_.positions.size());
     for (std::size_t node = 0; node < area_.size(); ++node) {
       const bool domain = (input.flags[node] & layout::node_domain) != 0;
-      flags_.push_back(input.flags[node] | (domain ? std::uint32_t{layout::node_touchable} : 0));
+      flags_.push_back(input.flags[node] | (domain ? layout::node_touchable | layout::node_read : 0U));
     }
     for (std::size_t row = 0; row < rows; ++row) area_[nodes_[row]] = wavelet.integrals(level)[row];
     read_columns(static_cast<Eigen::Index>(3 * rows));

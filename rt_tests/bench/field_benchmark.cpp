@@ -11,6 +11,7 @@
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/stepper.hpp"
 #include "rt_tests/bench/thread_time.hpp"
+#include "runtime/domain.hpp"
 #include "runtime/field.hpp"
 #include "runtime/testing/placed_body.hpp"
 
@@ -21,12 +22,24 @@ constexpr std::uint64_t seed = 20030101;
 constexpr std::size_t columns_in_turn = 512;  ///< dense columns that take turns: more than a second-level cache holds
 constexpr std::size_t fewest_sets = 4, most_sets = 64;
 
-/// Sums of squares of the field's error and answer, and the worst errors of forces.
+bool is_read(const ModelView& view, std::uint32_t node) {
+  std::uint32_t q = 0;
+  while (node >= nodes_up_to(view, q)) {
+    ++q;
+  }
+  return (view.level[q].nodes[node - view.level[q].node_begin].flags & layout::node_read) != 0;
+}
+
+/// Sums of squares of the field's error and answer where it is read, and the worst errors of forces.
 struct ErrorSum {
+  const ModelView& view;
   double error = 0, exact = 0, worst_force = 0, worst_total = 0;
 
   void add(const Solution& truth, const std::vector<int>& row_node, Stepper& answer) {
     for (std::size_t r = 0; r < row_node.size(); ++r) {
+      if (!is_read(view, static_cast<std::uint32_t>(row_node[r]))) {
+        continue;
+      }
       const Eigen::Vector3d u = truth.displacement.segment<3>(3 * static_cast<Eigen::Index>(r));
       const Eigen::Map<const Eigen::Vector3f> found(answer.displacement() + 4 * static_cast<std::size_t>(row_node[r]));
       error += (found.cast<double>() - u).squaredNorm();
@@ -87,6 +100,7 @@ class FieldSums {
 
 /// Everything one contact count is measured with.
 struct Bench {
+  const ModelView* view;
   const std::vector<std::vector<Contact>>& sets;
   const ExactColumns& columns;
   const std::vector<int>& row_node;
@@ -159,7 +173,7 @@ void descend(Bench& bench, std::size_t rounds, FieldFigures& figures) {
   std::vector<std::uint64_t> budget(bench.sets.size(), UINT64_MAX);
   while (true) {
     Rung rung;
-    ErrorSum errors;
+    ErrorSum errors{*bench.view};
     std::vector<double> work, time;
     for (std::size_t i = 0; i < bench.sets.size(); ++i) {
       const StepReport report = bench.cached.step(bench.sets[i], budget[i]);
@@ -201,9 +215,9 @@ FieldFigures measure_field(const Model& model, const GreenStore& store, std::siz
   const ExactColumns columns(store, sets);
   // room for every set's factor on every level it may descend to
   Stepper cached(model, figures.contacts, sets.size() * model.level_count());
-  Bench bench{sets, columns, store.contents().row_node, {}, {}, cached};
+  Bench bench{&model.view(), sets, columns, store.contents().row_node, {}, {}, cached};
 
-  ErrorSum errors;
+  ErrorSum errors{model.view()};
   std::vector<double> work;
   for (const auto& set : sets) {
     if (cached.step(set).status > Status::coarser) {
