@@ -87,7 +87,9 @@ TEST_CASE("micrometres of 1 Pa and kilometres of 100 GPa answer as metres of 100
     const Answers scaled = answers(units);
     const double force = difference(scaled.force, metres.force), field = difference(scaled.field, metres.field);
     MESSAGE("length ", units.length, " m: forces differ by ", force, ", fields by ", field);
-    CHECK(force < 1e-4);
+    // round-off of the units decides to which of two quanta a value halfway between them goes: one such value moves
+    // forces and compliances by one or two ten-thousandths
+    CHECK(force < 4e-4);
     CHECK(difference(scaled.compliance, metres.compliance) < 4e-4);
     // round-off of the units decides which blocks near its threshold a field column keeps
     CHECK(field < 2 * test::default_accuracy.worst_column);
