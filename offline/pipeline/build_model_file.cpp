@@ -20,6 +20,7 @@
 #include "offline/compress/wavelet_choice.hpp"
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/pipeline/body_problem.hpp"
+#include "offline/pipeline/store_room.hpp"
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/solve/green_functions.hpp"
@@ -52,27 +53,17 @@ json up_to_date_record(const BuildRequest& request, const std::string& wanted) {
   }
 }
 
-/// Before anything is solved: a store of `nodes` columns needs room where it is to stand.
-void require_disk_space(const std::filesystem::path& store, std::size_t nodes) {
-  const double needed = 9.0 * sizeof(double) * static_cast<double>(nodes) * static_cast<double>(nodes);
-  const auto folder = std::filesystem::absolute(store).parent_path();
-  const auto free = static_cast<double>(std::filesystem::space(folder).available);
-  if (needed <= free) return;
-  throw std::runtime_error(fmt::format(
-      "{}: the Green's functions of {} nodes take {:.1f} GB, its disk has {:.1f} GB free; name a file on a larger disk "
-      "with --store or take fewer levels",
-      store.string(), nodes, 1e-9 * needed, 1e-9 * free));
-}
-
 /// The store of the scene's columns: the one on disk if it is that, else a new one with nothing solved.
 GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene, const std::string& columns,
                                 ProgressBar& progress) {
   if (std::filesystem::exists(request.store)) {
     auto store = GreenStore::open(request.store, GreenStore::Access::kReadWrite);
+    const auto missing = store.missing_columns().size();
     if (store.contents().fingerprint == columns) {
+      require_store_room(request.store, static_cast<std::size_t>(store.row_count()), missing);
       return store;
     }
-    const bool empty = static_cast<int>(store.missing_columns().size()) == store.column_count();
+    const bool empty = missing == static_cast<std::size_t>(store.column_count());
     if (!request.overwrite_store && !empty) {
       throw std::runtime_error(
           fmt::format("{}: holds the Green's functions of another scene, mesh or version; name another file with "
@@ -81,7 +72,7 @@ GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene,
     }
   }
   auto body = make_body_geometry(scene, progress);
-  require_disk_space(request.store, domain_size(body));
+  require_store_room(request.store, domain_size(body), domain_size(body));  // before the body is filled and solved
   return GreenStore::create(request.store, describe_problem(scene, std::move(body), columns, progress));
 }
 

@@ -1,0 +1,32 @@
+#include "offline/pipeline/store_room.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+namespace greenloop::offline {
+namespace {
+
+std::string size_text(double bytes) {
+  return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+}  // namespace
+
+void require_store_room(const std::filesystem::path& store, std::size_t rows, std::size_t columns) {
+  constexpr double block = 9 * sizeof(double);
+  std::error_code error;
+  const auto disk = std::filesystem::space(std::filesystem::absolute(store).parent_path(), error);
+  if (error) return;
+  const double needed = block * static_cast<double>(rows) * static_cast<double>(columns);
+  const auto free = static_cast<double>(disk.available);
+  if (needed <= free) return;
+  throw std::runtime_error(
+      fmt::format("{}: {} columns of Green's functions to solve need {}, its disk has {} free; make room there, name a "
+                  "file on a larger disk with --store, or take fewer [remesh] levels",
+                  store.string(), columns, size_text(needed), size_text(free)));
+}
+
+}  // namespace greenloop::offline
