@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -10,6 +11,14 @@
 
 namespace greenloop::offline {
 namespace {
+
+// as a process leaves it that is killed while it writes
+void drop_unfinished_line(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t last = text.rfind('\n');
+  std::filesystem::resize_file(file, last == std::string::npos ? 0 : last + 1);
+}
 
 std::string kept_name(double threshold) { return fmt::format("kept {}", threshold); }
 std::string error_name(double threshold) { return fmt::format("error energy {}", threshold); }
@@ -19,7 +28,8 @@ std::string worst_name(double threshold) { return fmt::format("worst {}", thresh
 
 ColumnRecords::ColumnRecords(const std::filesystem::path& file, std::string body, const std::vector<double>& thresholds)
     : body_(std::move(body)) {
-  const bool resumed = std::filesystem::exists(file);
+  if (std::filesystem::exists(file)) drop_unfinished_line(file);
+  const bool resumed = std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
   if (resumed) load(file, thresholds);
   stream_.open(file, std::ios::app);
   if (!resumed) {
