@@ -185,7 +185,11 @@ greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* c
           report.error,
           report.work,
           report.cached_factor ? 1 : 0,
-          report.changed_nodes};
+          report.changed_nodes,
+          report.glide,
+          report.level_difference,
+          report.switch_work,
+          report.pending_work};
 }
 
 const char* greenloop_rule_text(greenloop_rule rule) { return rule_text(static_cast<VerifyRule>(rule)).meaning; }

@@ -58,6 +58,10 @@ struct StepReport {
   std::uint64_t work = 0;              ///< units spent, never more than the budget
   bool cached_factor = false;          ///< the capacitance factor came from the cache, unchanged
   std::uint32_t changed_nodes = 0;     ///< nodes put into a cached factor and taken out of it, to make this one
+  float glide = 1;             ///< 0..1, share of constraint_level in the forces; the rest is of the level before it
+  float level_difference = 0;  ///< N, the older level's forces minus the newer one's, Euclidean norm; 0: no glide
+  float switch_work = 0;       ///< J, elastic energy that this step's change of `glide` put into the body
+  std::uint64_t pending_work = 0;  ///< units, at most, until the factor of a finer level is complete; 0: none is made
 };
 
 /// What Limits cost, in closed form, before anything is allocated.

@@ -130,6 +130,10 @@ typedef struct greenloop_report {
   uint64_t work;             /* units spent, never more than the budget */
   int cached_factor;         /* 1: the capacitance factor came from the cache, unchanged */
   uint32_t changed_nodes;    /* nodes put into a cached factor and taken out of it, to make this one */
+  float glide;               /* 0..1, share of constraint_level in the forces; the rest is of the level before it */
+  float level_difference;    /* N, the older level's forces minus the newer one's, Euclidean norm; 0: no glide */
+  float switch_work;         /* J, elastic energy that this step's change of `glide` put into the body */
+  uint64_t pending_work;     /* units, at most, until the factor of a finer level is complete; 0: none is made */
 } greenloop_report;
 
 /* Verifies every field of a model file once. bytes: GREENLOOP_ALIGNMENT-aligned. The model is usable only if the rule
