@@ -145,6 +145,8 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
   body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
+  body.pending.carve(arena, view, sizes.set_columns);
+  body.glide.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.glide_cycles);
 }
 
 void count_stored(const ModelView& view, std::uint32_t* stored) {

@@ -10,6 +10,8 @@
 #include "runtime/factor_cache.hpp"
 #include "runtime/factor_update.hpp"
 #include "runtime/field_columns.hpp"
+#include "runtime/glide.hpp"
+#include "runtime/pending_factor.hpp"
 #include "runtime/plan.hpp"
 #include "runtime/requirement.hpp"
 #include "runtime/sparse_forces.hpp"
@@ -39,6 +41,8 @@ struct Body {
   Float4* solution = nullptr;      ///< the same in the order of a factor
   Float4* force = nullptr;         ///< [domain], zero between steps
   FactorCache cache;
+  PendingFactor pending;
+  Glide glide;
   const std::byte* last_red_zone = nullptr;
 };
 

@@ -86,14 +86,14 @@ constexpr const char* create_error_texts[] = {
     "the body was created",
     "the arena is too small: give it as many bytes as were requested",
     "the arena is not 64-byte aligned",
-    "the limits are out of range: 1..4096 contacts, 1..1024 cached factors",
+    "the limits are out of range: 1..4096 contacts, 1..1024 cached factors, at most 256 cycles of a glide",
     "the model is not one of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks",
     "the model's field columns hold more blocks than it says, or numbers that are not finite: build it again",
 };
 
 constexpr const char* status_texts[] = {
     "answered at the finest level",
-    "answered within the budget at a coarser level",
+    "answered within the budget at a coarser level, or gliding to the finest",
     "held: a contact's displacement is NaN or infinite",
     "held: a contact names no node of the model, or there are more contacts than the limits allow",
     "held: a contact names a node that the scene did not declare touchable",
@@ -152,9 +152,12 @@ int greenloop_position(const greenloop_model* model, uint32_t node, float* posit
 namespace {
 
 Limits limits_of(greenloop_limits limits) {
-  return {.max_contacts = limits.max_contacts,
-          .cached_factors = limits.cached_factors,
-          .forces_only = limits.forces_only != 0};
+  Limits same{.max_contacts = limits.max_contacts,
+              .cached_factors = limits.cached_factors,
+              .forces_only = limits.forces_only != 0};
+  same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
+  same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
+  return same;
 }
 
 }  // namespace

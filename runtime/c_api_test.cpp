@@ -13,7 +13,8 @@
 namespace greenloop {
 namespace {
 
-constexpr greenloop_limits limits{.max_contacts = 9, .cached_factors = 2, .forces_only = 0};
+constexpr greenloop_limits limits{
+    .max_contacts = 9, .cached_factors = 2, .forces_only = 0, .glide_cycles = 5, .refining_work = 0};
 
 // a body made and stepped through C alone
 class CBody {
@@ -64,7 +65,8 @@ std::vector<Contact> to_cpp(const std::vector<greenloop_contact>& contacts) {
 TEST_CASE("C and C++ give the same answers, bit for bit") {
   CBody c;
   const TestModel model(c.bytes());
-  TestBody body(model, {.max_contacts = limits.max_contacts, .cached_factors = limits.cached_factors});
+  TestBody body(model,
+                {.max_contacts = limits.max_contacts, .cached_factors = limits.cached_factors, .glide_cycles = 5});
   CHECK(c.need.bytes == body.requirement().bytes);
   CHECK(c.need.least_work == body.requirement().least_work);
   CHECK(std::memcmp(c.need.worst_work, body.requirement().worst_work, sizeof c.need.worst_work) == 0);
@@ -74,6 +76,7 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
   CHECK(greenloop_node_count_to(&c.model, 3) == 0);
   std::mt19937_64 random(31);
   std::set<int> met;
+  bool glided = false;
   for (int i = 0; i < 500; ++i) {
     const auto contacts = random_contacts(random, model.touchable());
     const std::uint64_t work = c.need.least_work - 1 + random() % c.need.worst_work[2];
@@ -89,12 +92,18 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
     CHECK(report.work == expected.work);
     CHECK((report.cached_factor == 1) == expected.cached_factor);
     CHECK(report.changed_nodes == expected.changed_nodes);
+    CHECK(report.glide == expected.glide);
+    CHECK(report.level_difference == expected.level_difference);
+    CHECK(report.switch_work == expected.switch_work);
+    CHECK(report.pending_work == expected.pending_work);
+    glided |= report.glide < 1;
     met.insert(report.status);
     if (report.status <= GREENLOOP_COARSER) {
       CHECK(std::memcmp(force.data(), body.force().data(), sizeof(float) * force.size()) == 0);
       CHECK(std::memcmp(c.field(), body.field().data(), body.field().size_bytes()) == 0);
     }
   }
+  CHECK(glided);
   CHECK(met.count(GREENLOOP_OK) == 1);
   CHECK(met.count(GREENLOOP_COARSER) == 1);
   CHECK(met.count(GREENLOOP_HELD_NOT_FINITE) == 1);
@@ -136,7 +145,24 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(greenloop_create(&c.model, {0, 1, 0}, arena.data(), c.need.bytes).error == GREENLOOP_CREATE_BAD_LIMITS);
+  CHECK(greenloop_create(&c.model, {0, 1, 0, 1, 0}, arena.data(), c.need.bytes).error == GREENLOOP_CREATE_BAD_LIMITS);
+}
+
+TEST_CASE("no cycles of a glide stand for the default") {
+  CBody c;
+  const auto bytes = [&c](std::uint32_t cycles) { return greenloop_required(&c.model, {9, 2, 0, cycles, 0}).bytes; };
+  CHECK(bytes(0) == bytes(Limits{}.glide_cycles));
+  CHECK(bytes(256) > 0);
+  CHECK(bytes(257) == 0);
+}
+
+TEST_CASE("no refining work stands for no bound of it") {
+  CBody c;
+  const auto worst = [&c](std::uint64_t work) {
+    return greenloop_required(&c.model, {9, 2, 0, 0, work}).worst_work[0];
+  };
+  CHECK(worst(0) == worst(~std::uint64_t{0}));
+  CHECK(worst(1) < worst(0));
 }
 
 TEST_CASE("a model whose field columns are more than it says makes no body") {

@@ -89,13 +89,53 @@ struct CapacitanceColumns {
   const std::uint32_t* place;  ///< [count] of their nodes in the domain, in any order
 };
 
-/// The first `computed` columns, from the diagonal down, of the capacitance matrix in force form: block (i, j) is the
+/// The lower half of the capacitance matrix in force form: block (i, j) is the
 /// displacement of the average of column i per force at column j (James & Pai 2003, sections 3.2 and 5.4), by all
 /// layers; it is symmetric. Every block between two touched coefficients is read once per batch of columns. touched: by
 /// the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after. For the loop; work:
 /// assemble_capacitance_work.
-void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, std::uint32_t computed,
-                          const Touched& touched, CapacitanceScratch& scratch, Float4* force, std::uint32_t stride,
-                          Float4* a) noexcept;
+void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, const Touched& touched,
+                          CapacitanceScratch& scratch, Float4* force, std::uint32_t stride, Float4* a) noexcept;
+
+// The first columns of the same, in pieces: begin, add the blocks, store the columns, release. Until it is released,
+// `scratch` and the touched coefficients belong to it.
+
+struct PartialCapacitance {
+  CapacitanceColumns set{};
+  std::uint32_t computed = 0;  ///< columns, no more than batch_width
+  // the coefficient whose blocks are added next
+  std::uint32_t level = 0;
+  std::uint32_t layer = 0;
+  std::uint32_t next = 0;
+
+  [[nodiscard]] bool has_blocks_left() const noexcept { return level <= set.level; }
+};
+
+/// Work units of begin_capacitance.
+constexpr std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) {
+  return 5 * counts.visits + 16 * counts.coefficients + 84 * counts.slots;
+}
+
+/// Finds the functionals, and adds the diagonal. partial: its set and number of columns. For the loop.
+void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch, Float4* force,
+                       PartialCapacitance& partial) noexcept;
+
+/// Adds the blocks of as many coefficients as `allowance` holds at 20 units for each that is stored, 54 for each
+/// between two touched coefficients and 9 for each sum that one adds to; returns the units spent. For the loop.
+std::uint64_t add_capacitance_blocks(const ModelView& view, const Touched& touched, CapacitanceScratch& scratch,
+                                     std::uint64_t allowance, PartialCapacitance& partial) noexcept;
+
+/// Work units of store_capacitance_column.
+constexpr std::uint64_t store_capacitance_work(const CapacitanceCounts& counts) {
+  return 3 * counts.slots + 9 * counts.coefficients;
+}
+
+/// Writes the three columns of j, from the diagonal down. column: `stride` floats each, row 3 i of column i. For the
+/// loop.
+void store_capacitance_column(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t j,
+                              std::uint32_t stride, Float4* column) noexcept;
+
+/// Gives the scratch free. For the loop; work: within begin_capacitance's.
+void release_capacitance(const Touched& touched, CapacitanceScratch& scratch) noexcept;
 
 }  // namespace greenloop

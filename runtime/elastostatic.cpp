@@ -23,6 +23,8 @@ struct Plan {
   std::uint64_t work = 0;   ///< spent on deciding
   std::uint64_t field = 0;  ///< work of the field
   bool fits = false;
+  std::uint32_t wanted_level = layout::none;  ///< finest that nothing but its factor kept from answering
+  SetCounts wanted;
 };
 
 // the finest level of the nodes that the response has room for; none if that is no level
@@ -60,7 +62,7 @@ void plan_factor(Body& body, Plan& plan) {
   clear(body.touched);
   touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
   count_factor(body.set, body.touched, body.cost[c], body.stored, plan.counts);
-  plan.changes = find_changes(body.cache, body.set);
+  find_changes(body.cache, body.set, plan.changes);
   plan.work += touch_work(plan.counts) + find_changes_work(body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
   if (plan.changes.base != nullptr) {
@@ -68,6 +70,7 @@ void plan_factor(Body& body, Plan& plan) {
     plan.changes.base = update < plan.factor ? plan.changes.base : nullptr;
     plan.factor = update < plan.factor ? update : plan.factor;
   }
+  plan.factor += drop_batch_work(body.pending);
 }
 
 // resolves the contacts at the finest level that fits the budget with the field as it was asked for, else at the
@@ -88,7 +91,7 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
     plan.cached = body.cache.find(body.set);
     plan.work += resolve_work(body.counts, plan.counts);
     plan.factor = 0;
-    plan.changes = {};
+    plan.changes.base = nullptr;
     if (plan.cached == nullptr) {
       plan_factor(body, plan);
     }
@@ -97,6 +100,10 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
     plan.fits = plan.work + forces + plan.field <= budget;
     if (plan.fits) {
       return plan;
+    }
+    if (plan.wanted_level == layout::none && plan.work + force_work(plan.counts) + plan.field <= budget) {
+      plan.wanted_level = c;
+      plan.wanted = plan.counts;
     }
   }
   while (!plan.fits && wants_field && plan.field_levels.details > 0) {
@@ -112,8 +119,8 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
   const std::uint32_t columns = body.set.columns;
-  assemble_capacitance(body.refinement, {body.set.level, columns, body.set.column}, columns, body.touched,
-                       body.capacitance, body.force, body.cache.stride(), factor.matrix);
+  assemble_capacitance(body.refinement, {body.set.level, columns, body.set.column}, body.touched, body.capacitance,
+                       body.force, body.cache.stride(), factor.matrix);
   factor.changes = 0;
   for (std::uint32_t k = 0; k < columns; ++k) {
     factor.node[k] = body.set.column[k];
@@ -123,6 +130,7 @@ Factor* factorise(Body& body) {
 }
 
 Factor* make_factor(Body& body, const FactorChanges& changes) {
+  drop_batch(body);
   if (changes.base == nullptr) {
     return factorise(body);
   }
@@ -199,8 +207,62 @@ StepReport held(Status status, std::uint64_t work) {
   return report;
 }
 
+// the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
+const float* solve_older_level(Body& body, std::span<const Contact> contacts, std::uint64_t budget,
+                               std::uint64_t& work) {
+  if (!body.glide.follows() || work + older_forces_work(body.counts, contacts.size()) > budget) {
+    return nullptr;
+  }
+  resolve_contacts(contacts, *body.view, body.facts, body.glide.older_level(), body.set);
+  work += resolve_contacts_work(contacts.size()) + FactorCache::find_work(body.counts.cached_factors, body.set.columns);
+  Factor* const factor = body.cache.find(body.set);
+  if (factor == nullptr) {
+    return nullptr;
+  }
+  body.cache.use(*factor);
+  work += solve_work(contacts.size(), body.set.columns);
+  if (!solve_forces(body, contacts, *factor)) {
+    return nullptr;
+  }
+  float* const force = body.glide.older_force();
+  share_forces(reinterpret_cast<const float*>(body.column_force), contacts.size(), body.set, force);
+  return force;
+}
+
+// blends the level's forces with those of the level before, if that is another
+void glide_forces(Body& body, std::span<const Contact> contacts, std::uint64_t budget, float* force,
+                  StepReport& report) {
+  body.glide.advance(contacts, report.constraint_level);
+  const float* const older = solve_older_level(body, contacts, budget, report.work);
+  const GlideReport glide = body.glide.blend(contacts, older, force);
+  report.glide = glide.share;
+  report.level_difference = glide.difference;
+  report.switch_work = glide.switch_work;
+}
+
+// what is left of the budget goes into the factor that a finer level lacked
+void prepare_finer_level(Body& body, std::span<const Contact> contacts, const Plan& plan, std::uint64_t budget,
+                         StepReport& report) {
+  if (plan.wanted_level == layout::none || plan.wanted_level <= report.constraint_level) {
+    return;
+  }
+  const std::uint64_t resolving = resolve_contacts_work(contacts.size());
+  const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
+  if (report.work + resolving > limit) {
+    report.pending_work = pending_work(body.counts, plan.wanted);
+    return;
+  }
+  resolve_contacts(contacts, *body.view, body.facts, plan.wanted_level, body.set);
+  report.work += resolving;
+  const std::uint64_t left = limit - report.work;
+  const std::uint64_t most = most_slice_work(body.counts, plan.wanted) + drop_batch_work(body.pending);
+  const PendingProgress progress = continue_factor(body, plan.wanted, left < most ? left : most);
+  report.work += progress.work;
+  report.pending_work = progress.pending;
+}
+
 StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& plan, std::uint64_t work,
-                  const Response& response) {
+                  std::uint64_t budget, const Response& response) {
   const ModelView& view = *body.view;
   Factor* factor = plan.cached;
   if (factor == nullptr) {
@@ -225,10 +287,14 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   report.field_level = plan.field_levels.details;
   report.error = view.level[body.set.level].counts->worst_column_error;
   report.work = work;
+  glide_forces(body, contacts, budget, response.force.data(), report);
+  body.cache.use(*factor);
+  prepare_finer_level(body, contacts, plan, budget, report);
   report.cached_factor = plan.cached != nullptr;
   report.changed_nodes = plan.changes.base != nullptr ? plan.changes.added + plan.changes.removed : 0;
-  const bool finest = body.set.level + 1 == view.levels && plan.field_levels.details == plan.field_levels.nodes;
-  report.status = finest ? Status::ok : Status::coarser;
+  const bool finest =
+      report.constraint_level + 1 == view.levels && plan.field_levels.details == plan.field_levels.nodes;
+  report.status = finest && report.glide == 1 ? Status::ok : Status::coarser;
   return report;
 }
 
@@ -295,10 +361,11 @@ StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, 
     return held(checked, report.work);
   }
   if (contacts.empty()) {
+    body.glide.release();
     release(body, response, report);
   } else {
     const Plan plan = make_plan(body, contacts, budget.work - report.work, response);
-    report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, response)
+    report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, budget.work, response)
                        : held(Status::held_over_budget, report.work + plan.work);
   }
   assert(Arena::intact(body.last_red_zone));

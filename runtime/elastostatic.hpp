@@ -15,6 +15,8 @@ struct Limits {
   std::uint32_t max_contacts = 64;   ///< 1..4096, contacts per step
   std::uint32_t cached_factors = 8;  ///< 1..1024, capacitance factors kept
   bool forces_only = false;          ///< no fields: little memory, and no columns to be made at the start
+  std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
+  std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
 };
 
 /// Work a step may spend, in work units: one unit is one multiply-add of the algorithm (one block times a vector is 9).
@@ -29,10 +31,10 @@ struct Contact {
 };
 
 enum class Status : std::uint8_t {
-  ok,                 ///< answered at the finest constraint level and with all details of the nodes that were asked for
-  coarser,            ///< answered within the budget at a coarser level
-  held_not_finite,    ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
-  held_out_of_range,  ///< a contact names no node of the model, or more contacts than Limits allow
+  ok,       ///< answered at the finest constraint level alone and with all details of the nodes that were asked for
+  coarser,  ///< answered within the budget at a coarser level, or gliding to the finest
+  held_not_finite,     ///< a contact's displacement is NaN or infinite: nothing changed, the last good response is held
+  held_out_of_range,   ///< a contact names no node of the model, or more contacts than Limits allow
   held_not_touchable,  ///< a contact names a node that the scene did not declare touchable
   held_duplicate,      ///< two contacts name the same node
   held_response_size,  ///< a response buffer has the wrong size or alignment
@@ -58,9 +60,9 @@ struct StepReport {
   std::uint64_t work = 0;              ///< units spent, never more than the budget
   bool cached_factor = false;          ///< the capacitance factor came from the cache, unchanged
   std::uint32_t changed_nodes = 0;     ///< nodes put into a cached factor and taken out of it, to make this one
-  float glide = 1;             ///< 0..1, share of constraint_level in the forces; the rest is of the level before it
-  float level_difference = 0;  ///< N, the older level's forces minus the newer one's, Euclidean norm; 0: no glide
-  float switch_work = 0;       ///< J, elastic energy that this step's change of `glide` put into the body
+  float glide = 1;                     ///< share of constraint_level in the forces; the rest is of the level before it
+  float level_difference = 0;  ///< N, largest component of the older level's forces minus the newer one's; 0: no glide
+  double switch_work = 0;      ///< J, elastic energy that this step's change of `glide` put into the body
   std::uint64_t pending_work = 0;  ///< units, at most, until the factor of a finer level is complete; 0: none is made
 };
 

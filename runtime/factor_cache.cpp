@@ -25,16 +25,21 @@ bool belongs_to(const Factor& factor, const ContactSet& set) {
 
 }  // namespace
 
+void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
+  const std::uint64_t stride = padded_order(3 * columns_of_a_set);
+  column = arena.take<std::uint32_t>(columns_of_a_set);
+  node = arena.take<std::uint32_t>(columns_of_a_set);
+  position = arena.take<std::uint32_t>(columns_of_a_set);
+  matrix = arena.take<Float4>(stride * stride / 4);
+}
+
 void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept {
   stride_ = padded_order(3 * columns);
   factors_ = factors;
   factor_ = arena.take_zeroed<Factor>(factors);
   for (std::uint32_t i = 0; i < factors; ++i) {
     Factor factor;
-    factor.column = arena.take<std::uint32_t>(columns);
-    factor.node = arena.take<std::uint32_t>(columns);
-    factor.position = arena.take<std::uint32_t>(columns);
-    factor.matrix = arena.take<Float4>(std::uint64_t{stride_} * stride_ / 4);
+    factor.carve(arena, columns);
     if (factor_ != nullptr) {
       factor_[i] = factor;
     }
@@ -69,7 +74,7 @@ Factor& FactorCache::make_room(const ContactSet& set) noexcept {
 
 void FactorCache::keep(Factor& factor, const ContactSet& set) noexcept {
   factor.key = key_of(set);
-  factor.used = ++uses_;
+  use(factor);
   factor.level = set.level;
   factor.columns = set.columns;
   std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.columns);

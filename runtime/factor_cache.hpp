@@ -19,6 +19,9 @@ struct Factor {
   std::uint32_t* node = nullptr;      ///< [columns] the same in the order of the matrix
   std::uint32_t* position = nullptr;  ///< [columns] of each column in the matrix
   Float4* matrix = nullptr;           ///< see cholesky_factor
+
+  /// Arrays out of `arena` for sets of so many columns; null while it counts.
+  void carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept;
 };
 
 /// Factors by contact set; the least recently used one makes room (James & Pai 2003, section 3.2).
@@ -43,6 +46,9 @@ class FactorCache {
 
   /// An empty place for the factors of `set`: the least recently used. It is found only after `keep`.
   [[nodiscard]] Factor& make_room(const ContactSet& set) noexcept;
+
+  /// Marks a factor as the most recently used.
+  void use(Factor& factor) noexcept { factor.used = ++uses_; }
 
   /// Marks the factors of `set` as complete and the most recently used.
   void keep(Factor& factor, const ContactSet& set) noexcept;

@@ -8,101 +8,76 @@
 namespace greenloop {
 namespace {
 
-// what tells the factor from the set; base stays null if that is too much
-FactorChanges changes_of(Factor& factor, const ContactSet& set) {
-  FactorChanges changes;
+std::uint32_t distance(std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; }
+
+// rows of the capacitance matrix between the new node `t` and those of the factor, the last of which are the new nodes
+// after it, backwards
+void write_border(const NewNode& place, std::uint32_t stride, const float* column, float* border) {
+  const auto [t, added, kept] = place;
+  for (std::uint32_t r = 0; r < 3; ++r, border += stride) {
+    const float* own = column + std::size_t{r} * stride;
+    std::memcpy(border, own + std::size_t{3} * added, sizeof(float) * 3 * kept);
+    std::uint32_t at = 3 * kept;
+    for (std::uint32_t s = added; --s > t; at += 3) {
+      std::memcpy(border + at, own + std::size_t{3} * s, sizeof(float) * 3);
+    }
+    for (std::uint32_t c = 0; c <= r; ++c) {
+      border[at + c] = column[std::size_t{c} * stride + std::size_t{3} * t + r];
+    }
+  }
+}
+
+}  // namespace
+
+void FactorUpdateScratch::carve(Arena& arena, std::uint32_t columns) noexcept {
+  const std::uint64_t stride = padded_order(3 * columns);
+  order = arena.take<std::uint32_t>(columns);
+  column = arena.take<Float4>(3 * stride / 4);
+  border = arena.take<Float4>(3 * stride / 4);
+}
+
+void list_changes(Factor& factor, const ContactSet& set, FactorChanges& changes) noexcept {
+  changes.base = nullptr;
+  changes.added = changes.removed = changes.missing = 0;
   std::uint32_t i = 0;
   std::uint32_t k = 0;
   while (i < factor.columns || k < set.columns) {
     const bool leaves = k == set.columns || (i < factor.columns && factor.column[i] < set.column[k]);
     const bool enters = i == factor.columns || (k < set.columns && set.column[k] < factor.column[i]);
-    if ((leaves && changes.removed == FactorChanges::most) || (enters && changes.added == FactorChanges::most)) {
-      return {};
+    if (leaves && changes.removed == FactorChanges::most) {
+      return;
     }
     if (leaves) {
       changes.out[changes.removed++] = factor.column[i++];
     } else if (enters) {
-      changes.in[changes.added++] = set.column[k++];
+      if (changes.added < FactorChanges::most) {
+        changes.in[changes.added++] = set.column[k];
+      }
+      ++changes.missing;
+      ++k;
     } else {
       ++i;
       ++k;
     }
   }
   changes.base = &factor;
-  return changes;
 }
 
-std::uint32_t distance(std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; }
-
-void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) {
-  const std::uint32_t order = padded_order(3 * from.columns);
-  for (std::uint32_t j = 0; j < order; ++j) {
-    const std::size_t begin = std::size_t{j} * stride / 4 + j / 4;
-    std::memcpy(to.matrix + begin, from.matrix + begin, sizeof(Float4) * (order / 4 - j / 4));
-  }
-  std::memcpy(to.node, from.node, sizeof(std::uint32_t) * from.columns);
-  to.columns = from.columns;
-}
-
-void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* scratch) {
-  std::uint32_t at = 0;
-  while (factor.node[at] != node) {
-    ++at;
-  }
-  cholesky_remove(3 * factor.columns, 3 * at, 3, stride, factor.matrix, scratch);
-  --factor.columns;
-  std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
-}
-
-// rows of the capacitance matrix between the new node `t` and those of the factor, of which `t` are new themselves
-void write_border(std::uint32_t t, std::uint32_t added, std::uint32_t kept, std::uint32_t stride, const float* columns,
-                  float* border) {
-  for (std::uint32_t r = 0; r < 3; ++r, border += stride) {
-    const float* own = columns + (std::size_t{3} * t + r) * stride;
-    std::memcpy(border, own + std::size_t{3} * added, sizeof(float) * 3 * kept);
-    for (std::uint32_t s = 0; s < 3 * t; ++s) {
-      border[std::size_t{3} * kept + s] = columns[std::size_t{s} * stride + std::size_t{3} * t + r];
-    }
-    for (std::uint32_t c = 0; c <= r; ++c) {
-      border[std::size_t{3} * (kept + t) + c] = columns[(std::size_t{3} * t + c) * stride + std::size_t{3} * t + r];
-    }
-  }
-}
-
-void list_positions(const ContactSet& set, Factor& factor) {
-  for (std::uint32_t i = 0; i < factor.columns; ++i) {
-    set.place_of_column[factor.node[i]] = i;
-  }
-  for (std::uint32_t k = 0; k < set.columns; ++k) {
-    factor.position[k] = set.place_of_column[set.column[k]];
-    set.place_of_column[set.column[k]] = layout::none;
-  }
-}
-
-}  // namespace
-
-void FactorUpdateScratch::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
-  const std::uint64_t stride = padded_order(3 * columns_of_a_set);
-  order = arena.take<std::uint32_t>(columns_of_a_set);
-  columns = arena.take<Float4>(std::uint64_t{3} * FactorChanges::most * stride / 4);
-  border = arena.take<Float4>(3 * stride / 4);
-}
-
-FactorChanges find_changes(const FactorCache& cache, const ContactSet& set) noexcept {
-  FactorChanges nearest;
+void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges& nearest) noexcept {
+  nearest.base = nullptr;
+  FactorChanges changes;
   for (std::uint32_t i = 0; i < cache.size(); ++i) {
     Factor& factor = cache[i];
     if (factor.key == 0 || factor.level != set.level || factor.changes >= FactorChanges::most_in_a_row ||
         distance(factor.columns, set.columns) > FactorChanges::most) {
       continue;
     }
-    const FactorChanges changes = changes_of(factor, set);
-    if (changes.base != nullptr &&
+    list_changes(factor, set, changes);
+    if (changes.base != nullptr && changes.missing == changes.added &&
         (nearest.base == nullptr || changes.added + changes.removed < nearest.added + nearest.removed)) {
       nearest = changes;
     }
   }
-  return nearest;
 }
 
 std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, const ColumnCost* cost) noexcept {
@@ -115,6 +90,47 @@ std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& chan
   }
   return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
          changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
+}
+
+void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept {
+  const std::uint32_t order = padded_order(3 * from.columns);
+  for (std::uint32_t j = 0; j < order; ++j) {
+    const std::size_t begin = std::size_t{j} * stride / 4 + j / 4;
+    std::memcpy(to.matrix + begin, from.matrix + begin, sizeof(Float4) * (order / 4 - j / 4));
+  }
+  std::memcpy(to.node, from.node, sizeof(std::uint32_t) * from.columns);
+  to.columns = from.columns;
+  to.changes = from.changes;
+}
+
+void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
+  std::uint32_t at = 0;
+  while (factor.node[at] != node) {
+    ++at;
+  }
+  cholesky_remove(3 * factor.columns, 3 * at, 3, stride, factor.matrix, border);
+  --factor.columns;
+  std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
+}
+
+bool append_node(const NewNode& place, std::uint32_t node, std::uint32_t stride, Factor& factor,
+                 FactorUpdateScratch& scratch) noexcept {
+  write_border(place, stride, reinterpret_cast<const float*>(scratch.column), reinterpret_cast<float*>(scratch.border));
+  if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, scratch.border)) {
+    return false;
+  }
+  factor.node[factor.columns++] = node;
+  return true;
+}
+
+void list_positions(const ContactSet& set, Factor& factor) noexcept {
+  for (std::uint32_t i = 0; i < factor.columns; ++i) {
+    set.place_of_column[factor.node[i]] = i;
+  }
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    factor.position[k] = set.place_of_column[set.column[k]];
+    set.place_of_column[set.column[k]] = layout::none;
+  }
 }
 
 Factor* update_factor(FactorCache& cache, const ContactSet& set, const FactorChanges& changes,
@@ -132,15 +148,17 @@ Factor* update_factor(FactorCache& cache, const ContactSet& set, const FactorCha
   const std::uint32_t kept = factor.columns;
   std::memcpy(scratch.order, changes.in, sizeof(std::uint32_t) * changes.added);
   std::memcpy(scratch.order + changes.added, factor.node, sizeof(std::uint32_t) * kept);
-  assemble_capacitance(source.refinement, {set.level, set.columns, scratch.order}, changes.added, source.touched,
-                       source.scratch, source.force, stride, scratch.columns);
-  for (std::uint32_t t = 0; t < changes.added; ++t) {
-    write_border(t, changes.added, kept, stride, reinterpret_cast<const float*>(scratch.columns),
-                 reinterpret_cast<float*>(scratch.border));
-    if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, scratch.border)) {
-      return nullptr;
-    }
-    factor.node[factor.columns++] = changes.in[t];
+  PartialCapacitance entering{{set.level, set.columns, scratch.order}, changes.added};
+  begin_capacitance(source.refinement, source.touched, source.scratch, source.force, entering);
+  add_capacitance_blocks(*source.refinement.view, source.touched, source.scratch, ~std::uint64_t{0}, entering);
+  bool definite = true;
+  for (std::uint32_t t = changes.added; definite && t-- > 0;) {
+    store_capacitance_column(source.scratch, entering, t, stride, scratch.column);
+    definite = append_node({t, changes.added, kept}, changes.in[t], stride, factor, scratch);
+  }
+  release_capacitance(source.touched, source.scratch);
+  if (!definite) {
+    return nullptr;
   }
   list_positions(set, factor);
   return &factor;

@@ -22,6 +22,7 @@ struct FactorChanges {
   Factor* base = nullptr;  ///< null: no factor is near enough
   std::uint32_t added = 0;
   std::uint32_t removed = 0;
+  std::uint32_t missing = 0;     ///< nodes to be added in all; `added` are the first `most` of them
   std::uint32_t in[most] = {};   ///< places of the added nodes, increasing
   std::uint32_t out[most] = {};  ///< of the removed ones
 };
@@ -29,15 +30,19 @@ struct FactorChanges {
 /// Memory of update_factor.
 struct FactorUpdateScratch {
   std::uint32_t* order = nullptr;  ///< [columns] added nodes, then those of the factor
-  Float4* columns = nullptr;       ///< [3 * FactorChanges::most * stride / 4]
+  Float4* column = nullptr;        ///< [3 * stride / 4] of the node that enters
   Float4* border = nullptr;        ///< [3 * stride / 4]
 
   /// Arrays out of `arena` for sets of `columns`; null while it counts.
   void carve(Arena& arena, std::uint32_t columns) noexcept;
 };
 
+/// What tells a factor from a set of its level; base stays null if more than FactorChanges::most nodes have to leave.
+/// For the loop; work: two units a column and one for each change.
+void list_changes(Factor& factor, const ContactSet& set, FactorChanges& changes) noexcept;
+
 /// The cached factor of the set's level that fewest nodes tell from it. For the loop; work: find_changes_work.
-[[nodiscard]] FactorChanges find_changes(const FactorCache& cache, const ContactSet& set) noexcept;
+void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges& nearest) noexcept;
 
 /// Work units of find_changes.
 constexpr std::uint64_t find_changes_work(std::uint64_t factors, std::uint64_t columns) {
@@ -55,6 +60,29 @@ struct CapacitanceSource {
   CapacitanceScratch& scratch;
   Float4* force;  ///< [domain], 0 before and after
 };
+
+/// Copies what a factor holds into another with room for it. For the loop; work: half the square of its order.
+void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept;
+
+/// Takes a node out of a factor. border: of a FactorUpdateScratch. For the loop; work: cholesky_remove_work, and a unit
+/// a column.
+void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
+
+/// The place of a new node: the `t`-th of `added`, of which the last enters first, after the `kept` ones of a factor.
+struct NewNode {
+  std::uint32_t t;
+  std::uint32_t added;
+  std::uint32_t kept;
+};
+
+/// Borders a factor by a node. scratch.column: column t of the capacitance matrix of the new nodes, then the kept ones,
+/// from the diagonal down. False if it is not positive definite; then it is spoilt. For the loop; work:
+/// cholesky_append_work.
+[[nodiscard]] bool append_node(const NewNode& place, std::uint32_t node, std::uint32_t stride, Factor& factor,
+                               FactorUpdateScratch& scratch) noexcept;
+
+/// Lists where the set's columns stand in its factor. For the loop; work: two units a column.
+void list_positions(const ContactSet& set, Factor& factor) noexcept;
 
 /// Makes the set's factor out of changes.base, in the place of the least recently used one. Null if it is not positive
 /// definite. To be kept afterwards. For the loop; work: update_factor_work.

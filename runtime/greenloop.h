@@ -101,6 +101,8 @@ typedef struct greenloop_limits {
   uint32_t max_contacts;   /* 1..4096, contacts per step */
   uint32_t cached_factors; /* 1..1024, capacitance factors kept */
   int forces_only;         /* 1: no fields, little memory, and no columns to be made at the start */
+  uint32_t glide_cycles;   /* 1..256, steps in which the forces go over to another level; 1: at once; 0: 16 */
+  uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
 } greenloop_limits;
 
 /* What those limits cost. Work is counted in units: see docs/runtime.md. */
@@ -130,9 +132,9 @@ typedef struct greenloop_report {
   uint64_t work;             /* units spent, never more than the budget */
   int cached_factor;         /* 1: the capacitance factor came from the cache, unchanged */
   uint32_t changed_nodes;    /* nodes put into a cached factor and taken out of it, to make this one */
-  float glide;               /* 0..1, share of constraint_level in the forces; the rest is of the level before it */
-  float level_difference;    /* N, the older level's forces minus the newer one's, Euclidean norm; 0: no glide */
-  float switch_work;         /* J, elastic energy that this step's change of `glide` put into the body */
+  float glide;               /* share of constraint_level in the forces; the rest is of the level before it */
+  float level_difference;    /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
+  double switch_work;        /* J, elastic energy that this step's change of `glide` put into the body */
   uint64_t pending_work;     /* units, at most, until the factor of a finer level is complete; 0: none is made */
 } greenloop_report;
 

@@ -3,6 +3,7 @@
 #include "runtime/cholesky.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/factor_cache.hpp"
+#include "runtime/glide.hpp"
 
 namespace greenloop {
 namespace {
@@ -45,9 +46,17 @@ std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexce
          assemble_capacitance_work(capacitance) + cholesky_factor_work(order);
 }
 
+std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept {
+  return resolve_contacts_work(contacts) + FactorCache::find_work(model.cached_factors, contacts) +
+         solve_work(contacts, contacts);
+}
+
+std::uint64_t solve_work(std::uint64_t contacts, std::uint64_t columns) noexcept {
+  return merge_work(contacts, columns) + 6 * columns + cholesky_solve_work(static_cast<std::uint32_t>(3 * columns));
+}
+
 std::uint64_t force_work(const SetCounts& set) noexcept {
-  return merge_work(set.contacts, set.columns) + 6 * set.columns +
-         cholesky_solve_work(static_cast<std::uint32_t>(3 * set.columns));
+  return solve_work(set.contacts, set.columns) + Glide::blend_work(set.contacts);
 }
 
 std::uint64_t count_field_work(const SetCounts& set) noexcept { return 2 * set.columns; }

@@ -17,6 +17,8 @@ struct ModelCounts {
   std::uint32_t levels = 0;
   std::uint32_t max_contacts = 0;
   std::uint32_t cached_factors = 0;
+  std::uint32_t glide_cycles = 1;
+  std::uint64_t refining_work = 0;
   std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
   bool butterfly = false;              ///< has_stencils
   bool forces_only = false;
@@ -49,7 +51,13 @@ struct SetCounts {
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
-/// Work units of the forces, given the factor.
+/// Work units of solving for the forces of a set with its factor.
+[[nodiscard]] std::uint64_t solve_work(std::uint64_t contacts, std::uint64_t columns) noexcept;
+
+/// Bound of the work units of the forces of the level before, if their factor is cached.
+[[nodiscard]] std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept;
+
+/// Work units of the forces, given the factor, and of their glide.
 [[nodiscard]] std::uint64_t force_work(const SetCounts& set) noexcept;
 
 /// Work units of counting the blocks of a field.

@@ -2,6 +2,7 @@
 
 #include "runtime/domain.hpp"
 #include "runtime/factor_update.hpp"
+#include "runtime/pending_factor.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/support.hpp"
 
@@ -17,6 +18,8 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   counts.levels = view.levels;
   counts.max_contacts = limits.max_contacts;
   counts.cached_factors = limits.cached_factors;
+  counts.glide_cycles = limits.glide_cycles;
+  counts.refining_work = limits.refining_work;
   counts.butterfly = has_stencils(view);
   counts.forces_only = limits.forces_only;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
@@ -28,11 +31,18 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   }
 }
 
+// a step's work with what it may spend on the factor of a finer level
+std::uint64_t with_refining(std::uint64_t answer, std::uint64_t finer_factor, std::uint64_t refining_work) {
+  const std::uint64_t whole = answer + finer_factor;
+  const std::uint64_t refined = whole < refining_work ? whole : refining_work;
+  return answer > refined ? answer : refined;
+}
+
 }  // namespace
 
 bool in_range(const Limits& limits) noexcept {
   return limits.max_contacts >= 1 && limits.max_contacts <= 4096 && limits.cached_factors >= 1 &&
-         limits.cached_factors <= 1024;
+         limits.cached_factors <= 1024 && limits.glide_cycles >= 1 && limits.glide_cycles <= 256;
 }
 
 void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes, Requirement& requirement) noexcept {
@@ -48,6 +58,9 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
   sizes.longest_column = couplings.longest_column;
   sizes.set_columns = view.domain_count < limits.max_contacts ? view.domain_count : limits.max_contacts;
   const std::uint32_t finest = view.levels - 1;
+  std::uint64_t dropped = 0;       // batch of a finer level
+  std::uint64_t finer_factor = 0;  // of a finer level, that the rest of a budget is spent on
+  const std::uint64_t older = limits.glide_cycles > 1 ? older_forces_work(sizes.counts, sizes.set_columns) : 0;
   std::uint64_t plans = check_contacts_work(limits.max_contacts);
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const ReachBound reach = bound_reach(view, c, sizes.most_neighbours);
@@ -63,13 +76,18 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     sizes.functional = functional > sizes.functional ? functional : sizes.functional;
     plans +=
         resolve_work(sizes.counts, most) + touch_work(most) + find_changes_work(limits.cached_factors, most.columns);
-    const std::uint64_t forces = factor_work(sizes.counts, most) + force_work(most);
-    requirement.worst_work[c] = plans + forces + field(finest);
+    dropped = 2 * most.coefficients > dropped ? 2 * most.coefficients : dropped;
+    const std::uint64_t forces = dropped + factor_work(sizes.counts, most) + force_work(most);
+    const std::uint64_t answer = plans + forces + field(finest) + older;
+    requirement.worst_work[c] = with_refining(answer, finer_factor, limits.refining_work);
+    const std::uint64_t slice =
+        resolve_contacts_work(limits.max_contacts) + most_slice_work(sizes.counts, most) + dropped;
+    finer_factor = slice > finer_factor ? slice : finer_factor;
     // the coarsest level comes last: there the field is cut as well
     const std::uint64_t cuts = finest * count_field_work(most);
     requirement.least_work = plans + cuts + forces + field(0);
     if (c == view.info->coarsest_constraint_level) {
-      requirement.worst_work[c] += cuts;
+      requirement.worst_work[c] = with_refining(answer + cuts, finer_factor, limits.refining_work);
     }
   }
   const std::uint64_t entries = sizes.set_columns * sizes.functional;

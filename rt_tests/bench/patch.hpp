@@ -26,8 +26,8 @@ struct Patch {
 
   /// The lower triangle of the capacitance matrix.
   void assemble(std::vector<Float4>& matrix) {
-    assemble_capacitance(body.refinement, {level, body.set.columns, body.set.column}, body.set.columns, body.touched,
-                         body.capacitance, body.force, stride(), matrix.data());
+    assemble_capacitance(body.refinement, {level, body.set.columns, body.set.column}, body.touched, body.capacitance,
+                         body.force, stride(), matrix.data());
   }
 
   std::vector<Contact> set;

@@ -40,18 +40,21 @@ class Digest {
   std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
-void note(const StepReport& report, ScriptOutcome& outcome) {
+void note(const StepReport& report, const StepReport& last, ScriptOutcome& outcome) {
   ++outcome.by_status[static_cast<std::size_t>(report.status)];
   outcome.work += report.work;
   if (report.status <= Status::coarser) {
     outcome.cached += report.cached_factor ? 1 : 0;
     outcome.levels |= 1U << report.constraint_level;
+    const bool finer = report.constraint_level > last.constraint_level;
+    outcome.refined += finer && last.pending_work > 0 && report.cached_factor ? 1 : 0;
   }
 }
 
 ScriptOutcome run_script(RecordedScript& script, Elastostatic& body, std::span<float> field, bool flip) {
   ScriptOutcome outcome;
   Digest digest;
+  StepReport last;
   std::array<float, 3 * (RecordedScript::most_contacts + 1)> force_memory{};
   for (std::uint32_t i = 0; i < RecordedScript::cycles; ++i) {
     const RecordedScript::Cycle cycle = script.next();
@@ -61,9 +64,14 @@ ScriptOutcome run_script(RecordedScript& script, Elastostatic& body, std::span<f
     if (flip && i == RecordedScript::cycles / 2) {
       field[0] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(field[0]) ^ 1U);
     }
-    note(report, outcome);
+    note(report, last, outcome);
+    last = report;
     digest.add(static_cast<std::uint64_t>(report.status) << 32 | report.constraint_level << 8 | report.field_level);
     digest.add(report.work << 1 | (report.cached_factor ? 1 : 0));
+    digest.add(std::bit_cast<std::uint32_t>(report.glide));
+    digest.add(std::bit_cast<std::uint32_t>(report.level_difference));
+    digest.add(std::bit_cast<std::uint64_t>(report.switch_work));
+    digest.add(report.pending_work);
     digest.add(force);
     digest.add(field);
   }
@@ -228,13 +236,13 @@ std::uint32_t RecordedScript::below(std::uint32_t bound) noexcept {
 
 float RecordedScript::uniform() noexcept { return static_cast<float>(random() >> 40) * 0x1p-23F - 1; }
 
-bool ScriptOutcome::complete(std::uint32_t levels) const noexcept {
+bool ScriptOutcome::complete(std::uint32_t model_levels) const noexcept {
   const auto count = [this](Status status) { return by_status[static_cast<std::size_t>(status)]; };
-  const std::uint32_t every_level = (1U << levels) - 1;
+  const std::uint32_t every_level = (1U << model_levels) - 1;
   return count(Status::ok) > 1000 && count(Status::coarser) > 1000 && count(Status::held_not_finite) > 0 &&
          count(Status::held_out_of_range) > 0 && count(Status::held_not_touchable) > 0 &&
          count(Status::held_duplicate) > 0 && count(Status::held_over_budget) > 0 && count(Status::held_overflow) > 0 &&
-         cached > 1000 && this->levels == every_level;
+         cached > 1000 && refined > 10 && levels == every_level;
 }
 
 RecordedRun run_recorded_script(std::span<const std::byte> bytes, std::span<std::byte> arena, std::span<float> field,

@@ -69,18 +69,19 @@ class RecordedScript {
 struct ScriptOutcome {
   std::uint64_t digest = 0;  ///< of every report, force and field
   std::array<std::uint32_t, 10> by_status{};
-  std::uint32_t cached = 0;  ///< answers from a cached factor
-  std::uint32_t levels = 0;  ///< bit c: some contacts were resolved at level c
-  std::uint64_t work = 0;    ///< units in all
+  std::uint32_t cached = 0;   ///< answers from a cached factor
+  std::uint32_t levels = 0;   ///< bit c: some contacts were resolved at level c
+  std::uint32_t refined = 0;  ///< answers at a finer level than the last, whose factor was made in slices
+  std::uint64_t work = 0;     ///< units in all
 
-  /// Whether the script met all it is meant to meet on a model of `levels` levels.
-  [[nodiscard]] bool complete(std::uint32_t levels) const noexcept;
+  /// Whether the script met all it is meant to meet on a model of that many levels.
+  [[nodiscard]] bool complete(std::uint32_t model_levels) const noexcept;
 };
 
 /// The digests of the script on write_recorded_model's models: what every target has to find.
-inline constexpr std::uint64_t recorded_digest = 0x6d9a3391ba5d0593;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0x000580bf527bfff9;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0x66a281f907f9eeaa;
+inline constexpr std::uint64_t recorded_digest = 0x0f830f3041ee58f8;  ///< lifted Linear wavelets
+inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0x158b4ff52f372b46;
+inline constexpr std::uint64_t recorded_butterfly_digest = 0xb4d7709336a0da6d;
 
 /// A body that ran the whole script, or why it did not.
 struct RecordedRun {

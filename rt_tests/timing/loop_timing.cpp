@@ -101,8 +101,8 @@ void time_kernels(const TestModel& model) {
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
-    assemble_capacitance(body.refinement, {c, body.set.columns, body.set.column}, body.set.columns, body.touched,
-                         body.capacitance, body.force, 48, matrix.data());
+    assemble_capacitance(body.refinement, {c, body.set.columns, body.set.column}, body.touched, body.capacitance,
+                         body.force, 48, matrix.data());
   });
   const double transform = median_nanoseconds(20, [&](int) {
     inverse_transform(view, body.parents, {c, c}, {x.data(), body.field_touched});

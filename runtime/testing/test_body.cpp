@@ -42,6 +42,25 @@ StepReport TestBody::step(std::span<const Contact> contacts, std::uint64_t work,
   return body_.step(contacts, {work}, {force_, with_field ? field() : std::span<float>()});
 }
 
+ModelData indefinite_model(const SyntheticOptions& options) {
+  ModelData data = synthetic_model(options);
+  data.info.quantum[0] = 1;
+  std::uint32_t place = 0;
+  for (LevelData& level : data.levels) {
+    CouplingsData& couplings = level.couplings[0];
+    const auto columns = static_cast<std::uint32_t>(couplings.begin.size() - 1);
+    couplings = {.begin = std::vector<std::uint32_t>(columns + std::size_t{1}, 0), .index = {}, .value = {}};
+    for (std::uint32_t j = 1; &level == &data.levels.back() && j < columns; ++j) {
+      couplings.index.push_back(place + j - 1);
+      couplings.begin[j + std::size_t{1}] = j;
+    }
+    couplings.value.resize(9 * couplings.index.size(), 30000);
+    place += columns;
+  }
+  allow_all_field_blocks(data);
+  return data;
+}
+
 std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes) {
   for (const std::byte byte : bytes) {
     hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3;

@@ -47,6 +47,10 @@ class TestBody {
   Elastostatic body_;
 };
 
+/// A model whose couplings on the finest level are too strong for their scales: there, neighbours in the file have no
+/// positive definite capacitance matrix.
+[[nodiscard]] ModelData indefinite_model(const SyntheticOptions& options);
+
 /// FNV-1a over the bytes, to be chained.
 std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes);
 

@@ -21,6 +21,9 @@ enum ExitStatus : int { passed, clock_is_wrong, does_not_run, not_a_check, diges
 constexpr std::uint32_t bar = 100'000;  // instructions: a quarter of 1 ms at 400 MHz, one instruction a cycle
 constexpr Budget budget{20'000};        // units, measured to stay below the bar whatever is touched
 
+constexpr std::uint64_t refining_work = 12'500;  // the same
+constexpr std::uint32_t most_steps_to_the_finest = 40;
+
 constexpr std::size_t most_nodes = 300;
 alignas(64) std::byte arena[452 * 1024];
 alignas(16) float field[4 * most_nodes];
@@ -107,7 +110,9 @@ void print_line(const Motion& motion, const Timing& timing) {
   print(timing.worst_work);
   print("; finest level ");
   print(timing.finest);
-  print(", not answered ");
+  print(" from step ");
+  print(timing.refined);
+  print(" on, not answered ");
   print(timing.held);
   print(", late ");
   print(timing.late);
@@ -121,7 +126,7 @@ int run_loop(bool slow) {
                                 {"a node in 16 ms", 16, false},
                                 {"a node in every step", 1, false},
                                 {"pressed at the finest level", 0, true}};
-  constexpr Limits limits{.max_contacts = contacts_per_step, .cached_factors = 4};
+  constexpr Limits limits{.max_contacts = contacts_per_step, .cached_factors = 4, .refining_work = refining_work};
   const auto opened = Model::open(std::as_bytes(std::span(body_model)));
   if (!opened || opened.model.node_count() > most_nodes) {
     return does_not_run;
@@ -141,8 +146,10 @@ int run_loop(bool slow) {
     const Timing timing =
         run_timed_loop(created.body, budget, list_nodes(opened.model.view()), displacement, motion, slow);
     print_line(motion, timing);
-    const bool met = timing.worst <= bar && timing.held == 0 && timing.late == 0 &&
-                     (!motion.factor_at_hand || timing.finest == timing.cycles);
+    const bool stays = motion.cycles_per_node == 0;
+    const bool refined = timing.refined <= (motion.factor_at_hand ? 0 : most_steps_to_the_finest) &&
+                         timing.finest == timing.cycles - timing.refined;
+    const bool met = timing.worst <= bar && timing.held == 0 && timing.late == 0 && (!stays || refined);
     status = met ? status : over_the_bar;
   }
   return status;

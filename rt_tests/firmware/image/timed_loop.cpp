@@ -35,7 +35,9 @@ void move_contacts() {
 
 void note(const StepReport& report, std::uint32_t instructions) {
   Timing& timing = loop.timing;
-  timing.finest += report.status == Status::ok ? 1 : 0;
+  if (report.status == Status::ok && timing.finest++ == 0) {
+    timing.refined = cycle;
+  }
   timing.held += report.status > Status::coarser ? 1 : 0;
   timing.worst_work = std::max(timing.worst_work, report.work);
   loop.instructions[cycle] = instructions;
@@ -70,6 +72,7 @@ Timing run_timed_loop(Elastostatic& body, Budget budget, std::span<const std::ui
   loop.field = field;
   loop.motion = motion;
   loop.steps_per_cycle = slow ? 10 : 1;
+  loop.timing.refined = timed_cycles;
   cycle = 0;
   if (motion.factor_at_hand) {
     move_contacts();
