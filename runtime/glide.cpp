@@ -25,11 +25,12 @@ std::uint32_t Glide::last_place(std::uint32_t node) const noexcept {
 }
 
 bool Glide::persists(std::span<const Contact> contacts) const noexcept {
-  bool any = false;
+  std::size_t common = 0;
   for (const Contact& contact : contacts) {
-    any |= last_place(contact.node) != layout::none;
+    common += last_place(contact.node) != layout::none ? 1 : 0;
   }
-  return any;
+  const std::size_t larger = contacts.size() > contacts_ ? contacts.size() : contacts_;
+  return 4 * common >= 3 * larger && common > 0;
 }
 
 void Glide::turn_back() noexcept {

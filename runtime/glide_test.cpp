@@ -212,7 +212,7 @@ std::vector<Contact> row(std::uint32_t first, std::uint32_t count) {
 
 TEST_CASE("contacts that persist glide, those that join are answered by the new level, those that left are forgotten") {
   const auto before = row(0, 12);
-  const auto after = row(2, 14);  // 10 of them persist
+  const auto after = row(2, 13);  // 10 of them persist
   TwoLevels body;
   CHECK(body.step(before, 1, false).share == 1);
   const std::vector<float> finest = body.force;
@@ -228,6 +228,11 @@ TEST_CASE("contacts that persist glide, those that join are answered by the new 
   }
   CHECK(body.step(after, 0, false).share == 1);
   CHECK(body.step(after, 0, false).difference == 0);
+  // fewer than three quarters persist: forces change with the contacts, also in the middle of a glide
+  CHECK(body.step(row(6, 13), 1, true).share == 1);
+  CHECK(body.step(row(6, 13), 0, true).share < 1);
+  CHECK(body.step(row(10, 13), 0, true).share == 1);
+  CHECK(body.step(before, 0, true).share == 1);
   // a body that is let go, or held by other nodes, has nothing to glide from
   CHECK(body.step(before, 1, true).share < 1);
   body.glide.release();

@@ -78,17 +78,14 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
         resolve_work(sizes.counts, most) + touch_work(most) + find_changes_work(limits.cached_factors, most.columns);
     dropped = 2 * most.coefficients > dropped ? 2 * most.coefficients : dropped;
     const std::uint64_t forces = dropped + factor_work(sizes.counts, most) + force_work(most);
-    const std::uint64_t answer = plans + forces + field(finest) + older;
+    // at the coarsest level the field is cut as well
+    const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
+    const std::uint64_t answer = plans + cuts + forces + field(finest) + older;
     requirement.worst_work[c] = with_refining(answer, finer_factor, limits.refining_work);
+    requirement.least_work = plans + cuts + forces + field(0);
     const std::uint64_t slice =
         resolve_contacts_work(limits.max_contacts) + most_slice_work(sizes.counts, most) + dropped;
     finer_factor = slice > finer_factor ? slice : finer_factor;
-    // the coarsest level comes last: there the field is cut as well
-    const std::uint64_t cuts = finest * count_field_work(most);
-    requirement.least_work = plans + cuts + forces + field(0);
-    if (c == view.info->coarsest_constraint_level) {
-      requirement.worst_work[c] = with_refining(answer + cuts, finer_factor, limits.refining_work);
-    }
   }
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = entries < view.domain_count ? entries : view.domain_count;

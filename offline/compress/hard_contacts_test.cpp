@@ -253,8 +253,8 @@ TEST_CASE("all nodes in contact: forces within 8 % of the exact ones, coarser an
   }
 }
 
-// budgets that answer these contacts on each constraint level with a fresh factor, fine to coarse, as far as a budget
-// may be so small
+// for bodies that prepare no finer level: budgets that answer these contacts on each constraint level with a fresh
+// factor, fine to coarse, as far as a budget may be so small
 std::vector<std::uint64_t> budgets(const Case& one, const std::vector<Contact>& contacts, const Limits& limits) {
   std::vector<std::uint64_t> result = {any_budget};
   for (std::uint32_t level = one.model.view().levels; level-- > 0;) {
@@ -274,7 +274,8 @@ TEST_CASE("on every constraint level contacts resist, and a closed path of displ
   for (const auto& one : cases()) {
     for (int trial = 0; trial < 8; ++trial) {
       auto contacts = random.contacts(one.body, 2 + random.below(24));
-      const Limits limits{.max_contacts = static_cast<std::uint32_t>(contacts.size()), .cached_factors = 1};
+      const Limits limits{
+          .max_contacts = static_cast<std::uint32_t>(contacts.size()), .cached_factors = 1, .refining_work = 0};
       std::uint32_t level = one.model.view().levels;
       for (const std::uint64_t budget : budgets(one, contacts, limits)) {
         --level;

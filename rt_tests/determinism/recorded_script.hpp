@@ -79,9 +79,9 @@ struct ScriptOutcome {
 };
 
 /// The digests of the script on write_recorded_model's models: what every target has to find.
-inline constexpr std::uint64_t recorded_digest = 0x0f830f3041ee58f8;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0x158b4ff52f372b46;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0xb4d7709336a0da6d;
+inline constexpr std::uint64_t recorded_digest = 0xfbec035cb3e1816d;  ///< lifted Linear wavelets
+inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xade9be64c533f98d;
+inline constexpr std::uint64_t recorded_butterfly_digest = 0x425df6346ae688cc;
 
 /// A body that ran the whole script, or why it did not.
 struct RecordedRun {
