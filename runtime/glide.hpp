@@ -20,8 +20,8 @@ struct GlideReport {
 /// both are symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new - f_old) . u.
 /// Else the last known difference is kept and let go in the same parts: the stiffness is the newer level's at once.
 /// Differences belong to nodes: contacts that are new have none. There is no glide, and one under way ends, where fewer
-/// than three quarters of the contacts persist: forces change with the contacts then, and a difference of other contacts
-/// would only falsify them.
+/// than three quarters of the contacts persist: forces change with the contacts then, and a difference of other
+/// contacts would only falsify them.
 class Glide {
  public:
   /// Arrays out of `arena`; null while it counts. cycles: of a whole glide, at least 1; with 1 there is none.
