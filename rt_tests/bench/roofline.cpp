@@ -136,7 +136,7 @@ class RooflineRun {
     add({.kernel = "capacitance matrix",
          .contacts = patch.set.size(),
          .bytes = coupling_bytes(patch.body) + triangle,
-         .flops = capacitance_flops(patch.body)},
+         .flops = capacitance_flops(patch)},
         [&] { return time_once([&] { patch.assemble(matrix); }); });
     std::vector<Float4> factor;
     bool good = true;
@@ -187,12 +187,27 @@ class RooflineRun {
     return static_cast<double>(bytes);
   }
 
-  // at most, as declared
-  double capacitance_flops(const Body& body) const {
+  // of scaling blocks, adding them to sums and making elements of these, batch by batch as assemble_capacitance does
+  double capacitance_flops(Patch& patch) const {
+    Body& body = patch.body;
+    CapacitanceScratch& scratch = body.capacitance;
     SetCounts counts;
-    counts.columns = body.set.columns;
     count_factor(body.set, body.touched, body.cost[body.set.level], body.stored, counts);
-    return 2.0 * static_cast<double>(assemble_capacitance_work(capacitance_counts(counts)));
+    const std::uint64_t width = batch_width(scratch.room, counts.coefficients);
+    std::uint64_t operations = 0;
+    for (std::uint64_t first = 0; first < body.set.columns; first += width) {
+      PartialCapacitance batch;
+      batch.set = {patch.level, body.set.columns - static_cast<std::uint32_t>(first), body.set.column + first};
+      batch.computed = static_cast<std::uint32_t>(std::min<std::uint64_t>(width, batch.set.count));
+      begin_capacitance(body.refinement, body.touched, scratch, body.force, batch);
+      operations += add_capacitance_blocks(*view_, body.touched, scratch, UINT64_MAX, batch) - 20 * counts.stored;
+      for (std::uint32_t i = 0; i < batch.set.count; ++i) {
+        const std::uint64_t weights = scratch.begin[i + 1] - scratch.begin[i];
+        operations += 9 * weights * std::min(i + 1, batch.computed);
+      }
+      release_capacitance(body.touched, scratch);
+    }
+    return 2.0 * static_cast<double>(operations);
   }
 
   const ModelView* view_;

@@ -31,6 +31,8 @@ TEST_CASE("every kernel has a point, with the bytes and flops that its order tak
   CHECK(point("triangular solution", 4).bytes == 2 * triangle + 16 * order);
   CHECK(point("triangular solution", 4).flops == 2 * order * order);
   CHECK(point("capacitance matrix", 4).bytes > triangle);
+  constexpr double elements = 10, of_a_weight = 18;
+  CHECK(point("capacitance matrix", 4).flops > 2 * of_a_weight * elements);  // one to a sum, one from it
   const RooflinePoint one = point("field columns", 1), four = point("field columns", 4);
   CHECK(one.flops > 0);
   CHECK(four.flops > 2 * one.flops);
