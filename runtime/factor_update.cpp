@@ -133,6 +133,28 @@ void list_positions(const ContactSet& set, Factor& factor) noexcept {
   }
 }
 
+namespace {
+
+// borders a factor by the nodes that enter, the last of them first; false if it is not positive definite
+bool enter_nodes(const ContactSet& set, const FactorChanges& changes, const CapacitanceSource& source,
+                 std::uint32_t stride, Factor& factor, FactorUpdateScratch& scratch) {
+  const std::uint32_t kept = factor.columns;
+  std::memcpy(scratch.order, changes.in, sizeof(std::uint32_t) * changes.added);
+  std::memcpy(scratch.order + changes.added, factor.node, sizeof(std::uint32_t) * kept);
+  PartialCapacitance columns{{set.level, set.columns, scratch.order}, changes.added};
+  begin_capacitance(source.refinement, source.touched, source.scratch, source.force, columns);
+  add_capacitance_blocks(*source.refinement.view, source.touched, source.scratch, ~std::uint64_t{0}, columns);
+  bool definite = true;
+  for (std::uint32_t t = changes.added; definite && t-- > 0;) {
+    store_capacitance_column(source.scratch, columns, t, stride, scratch.column);
+    definite = append_node({t, changes.added, kept}, changes.in[t], stride, factor, scratch);
+  }
+  release_capacitance(source.touched, source.scratch);
+  return definite;
+}
+
+}  // namespace
+
 Factor* update_factor(FactorCache& cache, const ContactSet& set, const FactorChanges& changes,
                       const CapacitanceSource& source, FactorUpdateScratch& scratch) noexcept {
   const std::uint32_t stride = cache.stride();
@@ -145,19 +167,7 @@ Factor* update_factor(FactorCache& cache, const ContactSet& set, const FactorCha
   for (std::uint32_t t = 0; t < changes.removed; ++t) {
     remove_node(changes.out[t], stride, factor, scratch.border);
   }
-  const std::uint32_t kept = factor.columns;
-  std::memcpy(scratch.order, changes.in, sizeof(std::uint32_t) * changes.added);
-  std::memcpy(scratch.order + changes.added, factor.node, sizeof(std::uint32_t) * kept);
-  PartialCapacitance entering{{set.level, set.columns, scratch.order}, changes.added};
-  begin_capacitance(source.refinement, source.touched, source.scratch, source.force, entering);
-  add_capacitance_blocks(*source.refinement.view, source.touched, source.scratch, ~std::uint64_t{0}, entering);
-  bool definite = true;
-  for (std::uint32_t t = changes.added; definite && t-- > 0;) {
-    store_capacitance_column(source.scratch, entering, t, stride, scratch.column);
-    definite = append_node({t, changes.added, kept}, changes.in[t], stride, factor, scratch);
-  }
-  release_capacitance(source.touched, source.scratch);
-  if (!definite) {
+  if (changes.added > 0 && !enter_nodes(set, changes, source, stride, factor, scratch)) {
     return nullptr;
   }
   list_positions(set, factor);
