@@ -15,17 +15,6 @@ namespace {
 
 constexpr std::uint32_t cycles = 16;
 
-// `count` touchable nodes from the `first` on, held
-std::vector<Contact> patch(const TestModel& model, std::size_t first, std::size_t count) {
-  const auto nodes = model.touchable();
-  std::vector<Contact> contacts;
-  for (std::size_t i = first; i < first + count; ++i) {
-    const auto u = static_cast<float>(1 + i % 5);
-    contacts.push_back({nodes[i % nodes.size()], {1e-4F * u, -2e-4F, 5e-5F * u}});
-  }
-  return contacts;
-}
-
 // what each constraint level alone answers, and the budget with which a body that has cached nothing does so
 struct LevelAnswer {
   std::vector<float> force;

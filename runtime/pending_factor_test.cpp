@@ -15,16 +15,6 @@
 namespace greenloop {
 namespace {
 
-std::vector<Contact> patch(const TestModel& model, std::size_t first, std::size_t count) {
-  const auto nodes = model.touchable();
-  std::vector<Contact> contacts;
-  for (std::size_t i = first; i < first + count; ++i) {
-    const auto u = static_cast<float>(1 + i % 5);
-    contacts.push_back({nodes[i % nodes.size()], {1e-4F * u, -2e-4F, 5e-5F * u}});
-  }
-  return contacts;
-}
-
 // worst difference over the largest force
 double difference(std::span<const float> a, std::span<const float> b) {
   double worst = 0;

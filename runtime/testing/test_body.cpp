@@ -42,6 +42,16 @@ StepReport TestBody::step(std::span<const Contact> contacts, std::uint64_t work,
   return body_.step(contacts, {work}, {force_, with_field ? field() : std::span<float>()});
 }
 
+std::vector<Contact> patch(const TestModel& model, std::size_t first, std::size_t count) {
+  const auto nodes = model.touchable();
+  std::vector<Contact> contacts;
+  for (std::size_t i = first; i < first + count; ++i) {
+    const auto u = static_cast<float>(1 + i % 5);
+    contacts.push_back({nodes[i % nodes.size()], {1e-4F * u, -2e-4F, 5e-5F * u}});
+  }
+  return contacts;
+}
+
 ModelData indefinite_model(const SyntheticOptions& options) {
   ModelData data = synthetic_model(options);
   data.info.quantum[0] = 1;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -46,6 +47,9 @@ class TestBody {
   std::vector<float> force_;
   Elastostatic body_;
 };
+
+/// `count` touchable nodes from the `first` on, held at displacements that differ.
+[[nodiscard]] std::vector<Contact> patch(const TestModel& model, std::size_t first, std::size_t count);
 
 /// A model whose couplings on the finest level are too strong for their scales: there, neighbours in the file have no
 /// positive definite capacitance matrix.
