@@ -75,11 +75,7 @@ const Model& model_in(const greenloop_model* model) {
 
 const layout::NodeRecord* find_node(const greenloop_model* model, std::uint32_t node) {
   const ModelView& view = model_in(model).view();
-  if (node >= view.node_count) {
-    return nullptr;
-  }
-  const LevelView& level = view.level[level_of(view, node)];
-  return level.nodes + (node - level.node_begin);
+  return node < view.node_count ? &node_record(view, node) : nullptr;
 }
 
 constexpr const char* create_error_texts[] = {

@@ -15,6 +15,23 @@ inline std::uint32_t level_of(const ModelView& view, std::uint32_t node) noexcep
   return level;
 }
 
+/// What the file says of a node. Work: that of level_of.
+inline const layout::NodeRecord& node_record(const ModelView& view, std::uint32_t node) noexcept {
+  const LevelView& level = view.level[level_of(view, node)];
+  return level.nodes[node - level.node_begin];
+}
+
+/// Calls visit(node, record) for every node, in the order of the file.
+template <class Visit>
+void visit_nodes(const ModelView& view, Visit visit) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+      visit(level.node_begin + i, level.nodes[i]);
+    }
+  }
+}
+
 /// Whether a node's displacement is stored.
 inline bool in_domain(const ModelView& view, std::uint32_t node) noexcept {
   const LevelView& level = view.level[level_of(view, node)];

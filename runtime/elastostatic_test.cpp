@@ -90,8 +90,7 @@ TEST_CASE("nothing dropped and 16 bits reproduce the exact compliance to quantis
   const ModelView& view = model.view();
   TestBody body(model, {.max_contacts = 8, .cached_factors = 1});
   const auto position = [&view](std::uint32_t node) {
-    const LevelView& level = view.level[level_of(view, node)];
-    const float* x = level.nodes[node - level.node_begin].position;
+    const float* x = node_record(view, node).position;
     return Eigen::Vector3d(x[0], x[1], x[2]);
   };
   const auto compliance = [&](std::uint32_t i, std::uint32_t j) {

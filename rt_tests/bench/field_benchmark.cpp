@@ -23,11 +23,7 @@ constexpr std::size_t columns_in_turn = 512;  ///< dense columns that take turns
 constexpr std::size_t fewest_sets = 4, most_sets = 64;
 
 bool is_read(const ModelView& view, std::uint32_t node) {
-  std::uint32_t q = 0;
-  while (node >= nodes_up_to(view, q)) {
-    ++q;
-  }
-  return (view.level[q].nodes[node - view.level[q].node_begin].flags & layout::node_read) != 0;
+  return (node_record(view, node).flags & layout::node_read) != 0;
 }
 
 /// Sums of squares of the field's error and answer where it is read, and the worst errors of forces.

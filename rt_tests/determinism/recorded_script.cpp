@@ -5,26 +5,12 @@
 #include <cfloat>
 #include <limits>
 
+#include "runtime/domain.hpp"
+
 namespace greenloop {
 namespace {
 
-template <class Visit>
-void visit_nodes(const ModelView& view, Visit visit) {
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      visit(level.node_begin + i, level.nodes[i]);
-    }
-  }
-}
-
-const float* position(const ModelView& view, std::uint32_t node) {
-  std::uint32_t q = view.levels - 1;
-  while (view.level[q].node_begin > node) {
-    --q;
-  }
-  return view.level[q].nodes[node - view.level[q].node_begin].position;
-}
+const float* position(const ModelView& view, std::uint32_t node) { return node_record(view, node).position; }
 
 class Digest {
  public:

@@ -11,10 +11,7 @@ namespace {
 
 constexpr std::size_t patch_sets = 4;  // disjoint sets that a patch has room for
 
-const float* position(const ModelView& view, std::uint32_t node) {
-  const LevelView& level = view.level[level_of(view, node)];
-  return level.nodes[node - level.node_begin].position;
-}
+const float* position(const ModelView& view, std::uint32_t node) { return node_record(view, node).position; }
 
 float square_distance(const float* a, const float* b) {
   float sum = 0;
@@ -22,17 +19,6 @@ float square_distance(const float* a, const float* b) {
     sum += (a[r] - b[r]) * (a[r] - b[r]);
   }
   return sum;
-}
-
-// calls visit(node, record) for every node of a model, in the order of the file
-template <class Visit>
-void visit_nodes(const ModelView& view, Visit visit) {
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      visit(level.node_begin + i, level.nodes[i]);
-    }
-  }
 }
 
 // the generator of a kind's script

@@ -38,11 +38,7 @@ double median_nanoseconds(int batch, Work work) {
 
 // nodes near each other: those closest to a random one
 std::vector<Contact> patch(const TestModel& model, std::mt19937_64& random, std::size_t count) {
-  const auto& view = model.view();
-  const auto position = [&view](std::uint32_t node) {
-    const LevelView& level = view.level[level_of(view, node)];
-    return level.nodes[node - level.node_begin].position;
-  };
+  const auto position = [&model](std::uint32_t node) { return node_record(model.view(), node).position; };
   std::vector<std::uint32_t> nodes = model.touchable();
   const float* centre = position(nodes[random() % nodes.size()]);
   const auto distance = [&](std::uint32_t node) {
