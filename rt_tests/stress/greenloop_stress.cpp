@@ -9,8 +9,8 @@
 
 #include "formats/describe.hpp"
 #include "formats/model_file.hpp"
+#include "offline/pipeline/progress_bar.hpp"
 #include "rt_tests/stress/heaviest_step.hpp"
-#include "rt_tests/stress/progress_bar.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 
 namespace {
@@ -74,15 +74,20 @@ StressReport stress(const Arguments& arguments) {
   if (limits.max_contacts == 0) {
     limits.max_contacts = opened.model.view().info->max_contacts;
   }
-  greenloop::ProgressBar bar(report.options.cycles);
-  report.options.progress = [&bar](ScriptKind kind, std::uint64_t done) { bar.show(name(kind), done); };
+  greenloop::offline::ProgressBar bar(arguments.json);
+  bar.begin("stress");
+  report.options.progress = [&](ScriptKind kind, std::uint64_t done) {
+    bar.update(static_cast<double>(done) / static_cast<double>(report.options.cycles), name(kind));
+  };
   const auto begin = std::chrono::steady_clock::now();
   report.result = greenloop::run_stress(opened.model, report.options);
   const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
   report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
+  bar.end(fmt::format("{} cycles", report.result.cycles));
   if (arguments.count_instructions) {
-    bar.show("counting instructions", report.result.cycles);
+    bar.begin("instructions");
     report.instructions_max = greenloop::instructions_of_heaviest_step(opened.model, limits);
+    bar.end("of the heaviest step");
   }
   return report;
 }
