@@ -161,8 +161,8 @@ int main(int argc, char** argv) {
   CLI::App app(
       "Measures the one-sided compression of James and Pai 2003 on a body too large for a store: Green's functions are "
       "solved, compressed, compared and forgotten, block by block, all of them or a sample. Needs memory for the "
-      "factor "
-      "(3.4 GB for 40,962 vertices), and disk only for the records; a run that was killed goes on where it stopped.",
+      "factor (3.4 GB for 40,962 vertices), and disk only for the records; a run that was killed goes on where it "
+      "stopped.",
       "greenloop-columns");
   Arguments arguments;
   app.add_option("scene", arguments.scene, "scene.toml")->required()->check(CLI::ExistingFile);
