@@ -110,7 +110,7 @@ void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, Cont
   set.sorting = arena.take<std::uint32_t>(contacts);
   set.members = arena.take<std::uint32_t>(contacts);
   set.place = arena.take<std::uint32_t>(contacts);
-  set.place_of_column = arena.take<std::uint32_t>(view.domain_count);
+  set.index_of_place = arena.take<std::uint32_t>(view.domain_count);
 }
 
 void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch& scratch) {
@@ -146,6 +146,7 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.force = arena.take_zeroed<Float4>(view.domain_count);
   body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
   body.pending.carve(arena, view, sizes.set_columns);
+  body.mixture.carve(arena, sizes.counts.max_contacts);
   body.glide.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.glide_cycles);
 }
 
@@ -167,7 +168,7 @@ void fill_costs(const ModelView& view, const Tables& tables, std::uint32_t* degr
   for (std::uint32_t c = 0; c < view.levels; ++c) {
     add_degrees(view, c, degree);
     for (std::uint32_t place = 0; tables.cost[c] != nullptr && place < domain_up_to(view, c); ++place) {
-      tables.cost[c][place] = column_cost(body.refinement, c, place, degree, body.touched);
+      tables.cost[c][place] = column_cost(body.refinement, make_column(c, place), degree, body.touched);
     }
   }
 }
@@ -176,9 +177,9 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
   tables.refinement.fill(view);
   list_node_facts(view, body.facts);
   count_stored(view, body.stored);
-  fill_costs(view, tables, body.set.place_of_column, body);
+  fill_costs(view, tables, body.set.index_of_place, body);
   for (std::uint32_t j = 0; j < view.domain_count; ++j) {
-    body.set.place_of_column[j] = layout::none;
+    body.set.index_of_place[j] = layout::none;
     body.capacitance.slot[j] = layout::none;
   }
 }
@@ -208,7 +209,7 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   body.view = &view;
   body.counts = sizes.counts;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
-    body.cost[q] = tables.cost[q];
+    body.cost.level[q] = tables.cost[q];
   }
   body.refinement = tables.refinement.refinement(view, body.lifting);
   body.parents = tables.parent_offsets;

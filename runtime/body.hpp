@@ -11,6 +11,7 @@
 #include "runtime/factor_update.hpp"
 #include "runtime/field_columns.hpp"
 #include "runtime/glide.hpp"
+#include "runtime/mixture.hpp"
 #include "runtime/pending_factor.hpp"
 #include "runtime/plan.hpp"
 #include "runtime/requirement.hpp"
@@ -31,7 +32,7 @@ struct Body {
   std::uint8_t* field_touched = nullptr;            ///< see compute_field
   const ParentOffsets* parents = nullptr;           ///< [domain]
   std::uint32_t* stored = nullptr;                  ///< [domain] blocks of all layers in a coefficient's column
-  const ColumnCost* cost[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]
+  ColumnCosts cost;
   NodeFacts* facts = nullptr;                       ///< [node_count]
   ContactSet set;
   Touched touched;  ///< by the set
@@ -43,6 +44,7 @@ struct Body {
   FactorCache cache;
   PendingFactor pending;
   Glide glide;
+  Mixture mixture;
   const std::byte* last_red_zone = nullptr;
 };
 

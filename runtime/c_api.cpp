@@ -180,6 +180,8 @@ greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* c
       {reinterpret_cast<const Contact*>(contacts), count}, {work}, {{force, 3 * count}, {displacement, floats}});
   return {static_cast<greenloop_status>(report.status),
           report.constraint_level,
+          report.finer_level,
+          report.finer_contacts,
           report.field_level,
           report.error,
           report.work,

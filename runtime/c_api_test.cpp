@@ -87,6 +87,8 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
     const StepReport expected = body.step(to_cpp(contacts), work, with_field);
     REQUIRE(static_cast<int>(report.status) == static_cast<int>(expected.status));
     CHECK(report.constraint_level == expected.constraint_level);
+    CHECK(report.finer_level == expected.finer_level);
+    CHECK(report.finer_contacts == expected.finer_contacts);
     CHECK(report.field_level == expected.field_level);
     CHECK(report.error == expected.error);
     CHECK(report.work == expected.work);

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "runtime/cholesky.hpp"
+#include "runtime/column.hpp"
 
 namespace greenloop {
 namespace {
@@ -15,7 +16,7 @@ Block scaled(Float4 factor, const Block& block) {
 // gives every coefficient that the set touches a slot; returns their number
 std::uint32_t assign_slots(const ModelView& view, const Touched& touched, CapacitanceScratch& scratch) {
   std::uint32_t slots = 0;
-  for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       const std::uint32_t coefficient = touched.list[q][k];
@@ -27,22 +28,22 @@ std::uint32_t assign_slots(const ModelView& view, const Touched& touched, Capaci
 }
 
 void release_slots(const Touched& touched, CapacitanceScratch& scratch) {
-  for (std::uint32_t q = 0; q <= touched.constraint_level; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       scratch.slot[touched.list[q][k]] = layout::none;
     }
   }
 }
 
-// the functional of the node at `place`, from `begin`; returns its end
-std::uint32_t write_functional(const Refinement& refinement, std::uint32_t c, std::uint32_t place, std::uint32_t begin,
+// the functional of a column, from `begin`; returns its end
+std::uint32_t write_functional(const Refinement& refinement, std::uint32_t column, std::uint32_t begin,
                                CapacitanceScratch& scratch, Float4* force) {
   Touched& touched = scratch.touched;
-  touch(refinement, c, &place, 1, touched);
-  force[place] = splat3(1.0F);
+  touch(refinement, &column, 1, touched);
+  force[column_place(column)] = splat3(1.0F);
   transform_forces(refinement, touched, force);
   std::uint32_t end = begin;
-  for (std::uint32_t q = 0; q <= c; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       const std::uint32_t coefficient = touched.list[q][k];
       scratch.coefficients[end++] = {scratch.slot[coefficient], force[coefficient][0]};
@@ -181,7 +182,7 @@ std::uint32_t list_functionals(const Refinement& refinement, const CapacitanceCo
   const std::uint32_t slots = assign_slots(*refinement.view, touched, scratch);
   scratch.begin[0] = 0;
   for (std::uint32_t i = 0; i < set.count; ++i) {
-    scratch.begin[i + 1] = write_functional(refinement, set.level, set.place[i], scratch.begin[i], scratch, force);
+    scratch.begin[i + 1] = write_functional(refinement, set.column[i], scratch.begin[i], scratch, force);
   }
   list_slot_columns(set.count, slots, scratch);
   return slots;
@@ -207,12 +208,12 @@ void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) 
   }
 }
 
-ColumnCost column_cost(const Refinement& refinement, std::uint32_t c, std::uint32_t place, const std::uint32_t* degree,
+ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const std::uint32_t* degree,
                        Touched& touched) noexcept {
-  touch(refinement, c, &place, 1, touched);
+  touch(refinement, &column, 1, touched);
   ColumnCost cost;
   cost.visits = static_cast<std::uint32_t>(touched.visits);
-  for (std::uint32_t q = 0; q <= c; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     cost.coefficients += touched.count[q];
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       cost.blocks += degree[touched.list[q][k]];
@@ -231,7 +232,7 @@ void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns
     const std::uint32_t left = set.count - batch.first;
     batch.count = left < width ? left : static_cast<std::uint32_t>(width);
     begin_batch(batch, slots, scratch);
-    for (std::uint32_t q = 0; q <= set.level; ++q) {
+    for (std::uint32_t q = 0; q <= touched.finest; ++q) {
       const LevelView& level = view.level[q];
       add_diagonal(level, touched.list[q], touched.count[q], batch, scratch);
       for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
@@ -252,9 +253,10 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
                        PartialCapacitance& partial) noexcept {
   const Batch batch{0, partial.computed};
   begin_batch(batch, list_functionals(refinement, partial.set, touched, scratch, force), scratch);
-  for (std::uint32_t q = 0; q <= partial.set.level; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     add_diagonal(refinement.view->level[q], touched.list[q], touched.count[q], batch, scratch);
   }
+  partial.finest = touched.finest;
   partial.level = partial.layer = partial.next = 0;
 }
 

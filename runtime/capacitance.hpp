@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "runtime/arena.hpp"
+#include "runtime/column.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/couplings.hpp"
 #include "runtime/sparse_forces.hpp"
@@ -16,11 +17,20 @@ struct PointCoefficient {
   float weight;
 };
 
-/// What a node costs as a column of the capacitance matrix.
+/// What a column of the capacitance matrix costs.
 struct ColumnCost {
   std::uint32_t coefficients = 0;  ///< of its functional
   std::uint32_t blocks = 0;        ///< stored blocks in the lists of those, over all layers
   std::uint32_t visits = 0;        ///< of touch
+};
+
+/// The costs of all columns.
+struct ColumnCosts {
+  const ColumnCost* level[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]
+
+  [[nodiscard]] const ColumnCost& of(std::uint32_t column) const noexcept {
+    return level[column_level(column)][column_place(column)];
+  }
 };
 
 /// A column that depends on a coefficient, and the weight.
@@ -53,9 +63,9 @@ struct CapacitanceScratch {
 /// K(q)]. Start-up.
 void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept;
 
-/// What the node at `place` of K(c) costs. degree: by levels 0..c, as add_degrees counts. Start-up.
-[[nodiscard]] ColumnCost column_cost(const Refinement& refinement, std::uint32_t c, std::uint32_t place,
-                                     const std::uint32_t* degree, Touched& touched) noexcept;
+/// What a column of level c costs. degree: by levels 0..c, as add_degrees counts. Start-up.
+[[nodiscard]] ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const std::uint32_t* degree,
+                                     Touched& touched) noexcept;
 
 /// What the work of assemble_capacitance follows from.
 struct CapacitanceCounts {
@@ -82,11 +92,10 @@ constexpr std::uint64_t assemble_capacitance_work(const CapacitanceCounts& count
          counts.columns * (3 * counts.slots + 9 * counts.coefficients);
 }
 
-/// Columns of a constraint level as rows and columns of a capacitance matrix.
+/// Rows and columns of a capacitance matrix.
 struct CapacitanceColumns {
-  std::uint32_t level;
   std::uint32_t count;
-  const std::uint32_t* place;  ///< [count] of their nodes in the domain, in any order
+  const std::uint32_t* column;  ///< [count] in any order
 };
 
 /// The lower half of the capacitance matrix in force form: block (i, j) is the
@@ -103,12 +112,13 @@ void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns
 struct PartialCapacitance {
   CapacitanceColumns set{};
   std::uint32_t computed = 0;  ///< columns, no more than batch_width
+  std::uint32_t finest = 0;    ///< level of a coefficient
   // the coefficient whose blocks are added next
   std::uint32_t level = 0;
   std::uint32_t layer = 0;
   std::uint32_t next = 0;
 
-  [[nodiscard]] bool has_blocks_left() const noexcept { return level <= set.level; }
+  [[nodiscard]] bool has_blocks_left() const noexcept { return level <= finest; }
 };
 
 /// Work units of begin_capacitance.

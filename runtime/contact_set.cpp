@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/domain.hpp"
+#include "runtime/merge_sort.hpp"
 
 namespace greenloop {
 namespace {
@@ -23,30 +24,6 @@ Status check_contact(const Contact& contact, std::uint32_t node_count, const Nod
     return Status::held_not_finite;
   }
   return facts[contact.node].marked ? Status::held_duplicate : Status::ok;
-}
-
-// one pass of a merge sort: runs of `width` in `from` become runs of twice that in `to`
-void merge_runs(const std::uint32_t* from, std::uint32_t count, std::uint32_t width, std::uint32_t* to) {
-  for (std::uint32_t begin = 0; begin < count; begin += 2 * width) {
-    const std::uint32_t middle = begin + width < count ? begin + width : count;
-    const std::uint32_t end = begin + 2 * width < count ? begin + 2 * width : count;
-    std::uint32_t left = begin;
-    std::uint32_t right = middle;
-    for (std::uint32_t k = begin; k < end; ++k) {
-      const bool take_left = right == end || (left < middle && from[left] < from[right]);
-      to[k] = take_left ? from[left++] : from[right++];
-    }
-  }
-}
-
-// sorts `column`; both arrays are overwritten
-void sort_columns(ContactSet& set) {
-  for (std::uint32_t width = 1; width < set.columns; width *= 2) {
-    merge_runs(set.column, set.columns, width, set.sorting);
-    std::uint32_t* const sorted = set.sorting;
-    set.sorting = set.column;
-    set.column = sorted;
-  }
 }
 
 }  // namespace
@@ -77,33 +54,38 @@ Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_coun
   return status;
 }
 
+std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node, std::uint32_t level) noexcept {
+  const std::uint32_t mesh_level = facts[node].mesh_level;
+  const std::uint32_t representative =
+      view.representatives[level][mesh_level][node - view.level[mesh_level].node_begin];
+  return make_column(level, domain_place(view, facts[representative].mesh_level, representative));
+}
+
 void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
-                      std::uint32_t level, ContactSet& set) noexcept {
-  set.level = level;
+                      const Resolution& resolution, ContactSet& set) noexcept {
   set.columns = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::uint32_t node = contacts[i].node;
-    const std::uint32_t mesh_level = facts[node].mesh_level;
-    const std::uint32_t representative =
-        view.representatives[level][mesh_level][node - view.level[mesh_level].node_begin];
-    const std::uint32_t column = domain_place(view, facts[representative].mesh_level, representative);
-    set.place[i] = column;
-    if (set.place_of_column[column] == layout::none) {
-      set.place_of_column[column] = 0;
+    const bool fine = resolution.fine != nullptr && resolution.fine[i];
+    const std::uint32_t column =
+        column_of(view, facts, contacts[i].node, fine ? view.levels - 1 : resolution.level);
+    set.place[i] = column_place(column);
+    std::uint32_t& index = set.index_of_place[column_place(column)];
+    if (index == layout::none) {
+      index = 0;
       set.column[set.columns++] = column;
     }
   }
-  sort_columns(set);
+  merge_sort(set.columns, set.column, set.sorting, [](std::uint32_t a, std::uint32_t b) { return a < b; });
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    set.place_of_column[set.column[k]] = k;
+    set.index_of_place[column_place(set.column[k])] = k;
     set.members[k] = 0;
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    set.place[i] = set.place_of_column[set.place[i]];
+    set.place[i] = set.index_of_place[set.place[i]];
     ++set.members[set.place[i]];
   }
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    set.place_of_column[set.column[k]] = layout::none;
+    set.index_of_place[column_place(set.column[k])] = layout::none;
   }
 }
 

@@ -5,7 +5,9 @@
 #include <span>
 
 #include "formats/view.hpp"
+#include "runtime/column.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/merge_sort.hpp"
 
 namespace greenloop {
 
@@ -14,6 +16,7 @@ struct NodeFacts {
   std::uint8_t mesh_level = 0;
   bool touchable = false;  ///< a node of every constraint level stands for it
   bool marked = false;     ///< by check_contacts, while it looks for duplicates
+  bool fine = false;       ///< by Mixture: in the last choice
 };
 
 /// Facts of every node; facts: [node_count]. Start-up; linear in nodes.
@@ -34,30 +37,40 @@ constexpr float without_denormals(float displacement) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(displacement) & (tiny - 1));
 }
 
-/// The contacts of a step as columns of one constraint level: the places, in the domain, of the nodes that stand for
-/// them. Contacts that share a column are merged.
-struct ContactSet {
+/// The constraint levels that contacts are resolved at.
+struct Resolution {
   std::uint32_t level = 0;
-  std::uint32_t columns = 0;                 ///< columns that hold them
-  std::uint32_t* column = nullptr;           ///< [columns] increasing
-  std::uint32_t* place = nullptr;            ///< [contacts] of each contact's column in `column`
-  std::uint32_t* members = nullptr;          ///< [columns] contacts merged into it
-  std::uint32_t* sorting = nullptr;          ///< [contacts] scratch
-  std::uint32_t* place_of_column = nullptr;  ///< [domain] scratch, `layout::none` between calls
+  const bool* fine = nullptr;  ///< [contacts] resolved at the finest level instead; null: none of them
+};
+
+/// The contacts of a step as columns: the nodes, of one constraint level or of two, that stand for them. Contacts that
+/// share a column are merged.
+struct ContactSet {
+  std::uint32_t columns = 0;                ///< columns that hold them
+  std::uint32_t* column = nullptr;          ///< [columns] increasing, of distinct places
+  std::uint32_t* place = nullptr;           ///< [contacts] of each contact's column in `column`
+  std::uint32_t* members = nullptr;         ///< [columns] contacts merged into it
+  std::uint32_t* sorting = nullptr;         ///< [contacts] scratch
+  std::uint32_t* index_of_place = nullptr;  ///< [domain] scratch, `layout::none` between calls
+
+  /// Constraint levels of its columns; of a set that has some.
+  [[nodiscard]] std::uint32_t coarsest() const noexcept { return column_level(column[0]); }
+  [[nodiscard]] std::uint32_t finest() const noexcept { return column_level(column[columns - 1]); }
 };
 
 /// Bound of the work units of resolve_contacts: linear but for a merge sort.
 constexpr std::uint64_t resolve_contacts_work(std::uint64_t contacts) {
-  std::uint64_t passes = 0;
-  while ((std::uint64_t{1} << passes) < contacts) {
-    ++passes;
-  }
-  return (4 + passes) * contacts;
+  return 4 * contacts + merge_sort_work(contacts);
 }
 
-/// Resolves checked contacts at `level`, which must have representatives.
+/// The column that stands for a touchable node on a constraint level. For the loop; work: constant.
+[[nodiscard]] std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node,
+                                      std::uint32_t level) noexcept;
+
+/// Resolves checked contacts at levels that have representatives. Of contacts that share a representative all or none
+/// are fine: then no place has two columns, since a node that can be held stands for itself on every level of its own.
 void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
-                      std::uint32_t level, ContactSet& set) noexcept;
+                      const Resolution& resolution, ContactSet& set) noexcept;
 
 /// Work units of average_displacements and of share_forces.
 constexpr std::uint64_t merge_work(std::uint64_t contacts, std::uint64_t columns) { return 6 * (contacts + columns); }

@@ -20,16 +20,16 @@ struct Memory {
         place(contacts),
         members(contacts),
         sorting(contacts),
-        place_of_column(view.node_count, layout::none) {
+        index_of_place(view.node_count, layout::none) {
     list_node_facts(view, facts.data());
     set.column = column.data();
     set.place = place.data();
     set.members = members.data();
     set.sorting = sorting.data();
-    set.place_of_column = place_of_column.data();
+    set.index_of_place = index_of_place.data();
   }
   std::vector<NodeFacts> facts;
-  std::vector<std::uint32_t> column, place, members, sorting, place_of_column;
+  std::vector<std::uint32_t> column, place, members, sorting, index_of_place;
   ContactSet set;
 };
 
@@ -48,7 +48,7 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
     Memory memory(view, contacts.size());
     REQUIRE(check_contacts(contacts, view.node_count, memory.facts.data()) == Status::ok);
     for (std::uint32_t c = 0; c < 4; ++c) {
-      resolve_contacts(contacts, view, memory.facts.data(), c, memory.set);
+      resolve_contacts(contacts, view, memory.facts.data(), {c}, memory.set);
       const ContactSet& set = memory.set;
       REQUIRE(set.columns <= contacts.size());
       CHECK(std::adjacent_find(set.column, set.column + set.columns, std::greater_equal<>()) ==
@@ -65,7 +65,7 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
       for (std::size_t i = 0; i < contacts.size(); ++i) {
         const std::uint32_t q = memory.facts[contacts[i].node].mesh_level;
         const std::uint32_t node = view.representatives[c][q][contacts[i].node - view.level[q].node_begin];
-        CHECK(set.column[set.place[i]] == domain_place(view, node));
+        CHECK(set.column[set.place[i]] == make_column(c, domain_place(view, node)));
         sum[set.place[i]] += contacts[i].displacement[0];
         ++count[set.place[i]];
         for (std::size_t r = 0; r < 3; ++r) {
@@ -78,7 +78,7 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
         CHECK(mean[3 * k + 2] == -2.0F);
         CHECK(total[3 * k] == doctest::Approx(force[3 * k]).epsilon(1e-6));
       }
-      CHECK(std::all_of(memory.place_of_column.begin(), memory.place_of_column.end(),
+      CHECK(std::all_of(memory.index_of_place.begin(), memory.index_of_place.end(),
                         [](std::uint32_t place) { return place == layout::none; }));
     }
   }
@@ -115,7 +115,7 @@ TEST_CASE("displacements far below the size of an atom count as none") {
   const TestModel model({.levels = 1});
   Memory memory(model.view(), 1);
   const std::vector<Contact> contacts = {{model.touchable()[0], {1e-40F, -1e-26F, 1e-20F}}};
-  resolve_contacts(contacts, model.view(), memory.facts.data(), 0, memory.set);
+  resolve_contacts(contacts, model.view(), memory.facts.data(), {0}, memory.set);
   float mean[3];
   average_displacements(contacts, memory.set, mean);
   CHECK(mean[0] == 0);

@@ -8,24 +8,11 @@
 #include "runtime/body.hpp"
 #include "runtime/cholesky.hpp"
 #include "runtime/field.hpp"
+#include "runtime/planner.hpp"
 
 namespace greenloop {
 
 namespace {
-
-// how a step will be answered
-struct Plan {
-  SetCounts counts;
-  Factor* cached = nullptr;
-  FactorChanges changes;     ///< base: the factor to update, or null: make a fresh one
-  std::uint64_t factor = 0;  ///< work of the factor, unless it is cached
-  FieldLevels field_levels;
-  std::uint64_t work = 0;   ///< spent on deciding
-  std::uint64_t field = 0;  ///< work of the field
-  bool fits = false;
-  std::uint32_t wanted_level = layout::none;  ///< finest that nothing but its factor kept from answering
-  SetCounts wanted;
-};
 
 // the finest level of the nodes that the response has room for; none if that is no level
 std::uint32_t finest_displaced(const Body& body, const Response& response) {
@@ -50,76 +37,11 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
   return response.force.size() == 3 * contacts && field_fits ? Status::ok : Status::held_response_size;
 }
 
-// as much of the field as a plan asks for
-std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
-  return field_work(body.counts, plan.counts, plan.field_levels,
-                    count_field_blocks(body.columns, body.set, plan.field_levels.details));
-}
-
-// touches the coefficients of the set and chooses how to make its factor
-void plan_factor(Body& body, Plan& plan) {
-  const std::uint32_t c = body.set.level;
-  clear(body.touched);
-  touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
-  count_factor(body.set, body.touched, body.cost[c], body.stored, plan.counts);
-  find_changes(body.cache, body.set, plan.changes);
-  plan.work += touch_work(plan.counts) + find_changes_work(body.counts.cached_factors, plan.counts.columns);
-  plan.factor = factor_work(body.counts, plan.counts);
-  if (plan.changes.base != nullptr) {
-    const std::uint64_t update = update_factor_work(plan.counts, plan.changes, body.cost[c]);
-    plan.changes.base = update < plan.factor ? plan.changes.base : nullptr;
-    plan.factor = update < plan.factor ? update : plan.factor;
-  }
-  plan.factor += drop_batch_work(body.pending);
-}
-
-// resolves the contacts at the finest level that fits the budget with the field as it was asked for, else at the
-// coarsest one with as many details as fit; leaves the coefficients of that level touched unless its factor is cached
-Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, const Response& response) {
-  const ModelView& view = *body.view;
-  Plan plan;
-  const bool wants_field = !response.displacement.empty();
-  const std::uint32_t finest = wants_field ? finest_displaced(body, response) : view.levels - 1;
-  plan.field_levels = {finest, finest};
-  const std::uint32_t coarsest = view.info->coarsest_constraint_level;
-  std::uint64_t forces = 0;
-  for (std::uint32_t c = view.levels; c-- > coarsest;) {
-    resolve_contacts(contacts, view, body.facts, c, body.set);
-    plan.counts = {};
-    plan.counts.contacts = contacts.size();
-    plan.counts.columns = body.set.columns;
-    plan.cached = body.cache.find(body.set);
-    plan.work += resolve_work(body.counts, plan.counts);
-    plan.factor = 0;
-    plan.changes.base = nullptr;
-    if (plan.cached == nullptr) {
-      plan_factor(body, plan);
-    }
-    forces = force_work(plan.counts) + plan.factor;
-    plan.field = wants_field ? planned_field_work(body, plan) : 0;
-    plan.fits = plan.work + forces + plan.field <= budget;
-    if (plan.fits) {
-      return plan;
-    }
-    if (plan.wanted_level == layout::none && plan.work + force_work(plan.counts) + plan.field <= budget) {
-      plan.wanted_level = c;
-      plan.wanted = plan.counts;
-    }
-  }
-  while (!plan.fits && wants_field && plan.field_levels.details > 0) {
-    --plan.field_levels.details;
-    plan.work += count_field_work(plan.counts);
-    plan.field = planned_field_work(body, plan);
-    plan.fits = plan.work + forces + plan.field <= budget;
-  }
-  return plan;
-}
-
 // fresh factors of body.set; null if its capacitance matrix is not positive definite
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
   const std::uint32_t columns = body.set.columns;
-  assemble_capacitance(body.refinement, {body.set.level, columns, body.set.column}, body.touched, body.capacitance,
+  assemble_capacitance(body.refinement, {columns, body.set.column}, body.touched, body.capacitance,
                        body.force, body.cache.stride(), factor.matrix);
   factor.changes = 0;
   for (std::uint32_t k = 0; k < columns; ++k) {
@@ -169,22 +91,24 @@ bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& f
   return sum <= body.force_limit;
 }
 
+// whether a contact of the set is resolved at the finest level
+bool is_finest(const Body& body, std::size_t contact) {
+  return column_level(body.set.column[body.set.place[contact]]) + 1 == body.counts.levels;
+}
+
 void answer_field(Body& body, std::span<const Contact> contacts, const FieldLevels& levels,
                   std::span<float> displacement) {
   const ModelView& view = *body.view;
   const FieldModel model{view, body.columns, body.parents};
-  const NodeForces forces{body.set.level, body.set.columns, body.set.column,
-                          reinterpret_cast<const float*>(body.column_force)};
+  const ColumnForces forces{body.set.columns, body.set.column, reinterpret_cast<const float*>(body.column_force)};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   compute_field(model, forces, levels, body.field_touched, x);
-  if (body.set.level + 1 == view.levels) {
-    // held nodes stand where they are held: only the others need the approximation
-    for (const Contact& contact : contacts) {
-      const float* held = contact.displacement;
-      if (contact.node < body.counts.nodes[levels.nodes]) {
-        x[contact.node] =
-            Float4{without_denormals(held[0]), without_denormals(held[1]), without_denormals(held[2]), 0.0F};
-      }
+  // nodes that are held by themselves stand where they are held: only the others need the approximation
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const float* held = contacts[i].displacement;
+    if (is_finest(body, i) && contacts[i].node < body.counts.nodes[levels.nodes]) {
+      x[contacts[i].node] =
+          Float4{without_denormals(held[0]), without_denormals(held[1]), without_denormals(held[2]), 0.0F};
     }
   }
 }
@@ -196,7 +120,7 @@ void release(const Body& body, const Response& response, StepReport& report) {
     std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
     report.work += response.displacement.size() / 4;
   }
-  report.constraint_level = view.levels - 1;
+  report.constraint_level = report.finer_level = view.levels - 1;
   report.field_level = response.displacement.empty() ? view.levels - 1 : finest_displaced(body, response);
 }
 
@@ -213,7 +137,7 @@ const float* solve_older_level(Body& body, std::span<const Contact> contacts, st
   if (!body.glide.follows() || work + older_forces_work(body.counts, contacts.size()) > budget) {
     return nullptr;
   }
-  resolve_contacts(contacts, *body.view, body.facts, body.glide.older_level(), body.set);
+  resolve_contacts(contacts, *body.view, body.facts, {body.glide.older_level()}, body.set);
   work += resolve_contacts_work(contacts.size()) + FactorCache::find_work(body.counts.cached_factors, body.set.columns);
   Factor* const factor = body.cache.find(body.set);
   if (factor == nullptr) {
@@ -232,7 +156,7 @@ const float* solve_older_level(Body& body, std::span<const Contact> contacts, st
 // blends the level's forces with those of the level before, if that is another
 void glide_forces(Body& body, std::span<const Contact> contacts, std::uint64_t budget, float* force,
                   StepReport& report) {
-  body.glide.advance(contacts, report.constraint_level);
+  body.glide.advance(contacts, body.set);
   const float* const older = solve_older_level(body, contacts, budget, report.work);
   const GlideReport glide = body.glide.blend(contacts, older, force);
   report.glide = glide.share;
@@ -243,20 +167,21 @@ void glide_forces(Body& body, std::span<const Contact> contacts, std::uint64_t b
 // what is left of the budget goes into the factor that a finer level lacked
 void prepare_finer_level(Body& body, std::span<const Contact> contacts, const Plan& plan, std::uint64_t budget,
                          StepReport& report) {
-  if (plan.wanted_level == layout::none || plan.wanted_level <= report.constraint_level) {
+  const bool finer = plan.wanted.resolution.level > report.constraint_level || plan.wanted.resolution.fine != nullptr;
+  if (!plan.wanted.exists || !finer) {
     return;
   }
   const std::uint64_t resolving = resolve_contacts_work(contacts.size());
   const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
   if (report.work + resolving > limit) {
-    report.pending_work = pending_work(body.counts, plan.wanted);
+    report.pending_work = pending_work(body.counts, plan.wanted.counts);
     return;
   }
-  resolve_contacts(contacts, *body.view, body.facts, plan.wanted_level, body.set);
+  resolve_contacts(contacts, *body.view, body.facts, plan.wanted.resolution, body.set);
   report.work += resolving;
   const std::uint64_t left = limit - report.work;
-  const std::uint64_t most = most_slice_work(body.counts, plan.wanted) + drop_batch_work(body.pending);
-  const PendingProgress progress = continue_factor(body, plan.wanted, left < most ? left : most);
+  const std::uint64_t most = most_slice_work(body.counts, plan.wanted.counts) + drop_batch_work(body.pending);
+  const PendingProgress progress = continue_factor(body, plan.wanted.counts, left < most ? left : most);
   report.work += progress.work;
   report.pending_work = progress.pending;
 }
@@ -283,9 +208,13 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
     answer_field(body, contacts, plan.field_levels, response.displacement);
   }
   StepReport report;
-  report.constraint_level = body.set.level;
+  report.constraint_level = body.set.coarsest();
+  report.finer_level = body.set.finest();
+  for (std::uint32_t k = 0; k < body.set.columns; ++k) {
+    report.finer_contacts += column_level(body.set.column[k]) == report.finer_level ? body.set.members[k] : 0;
+  }
   report.field_level = plan.field_levels.details;
-  report.error = view.level[body.set.level].counts->worst_column_error;
+  report.error = view.level[report.constraint_level].counts->worst_column_error;
   report.work = work;
   glide_forces(body, contacts, budget, response.force.data(), report);
   body.cache.use(*factor);
@@ -364,7 +293,9 @@ StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, 
     body.glide.release();
     release(body, response, report);
   } else {
-    const Plan plan = make_plan(body, contacts, budget.work - report.work, response);
+    const bool wants_field = !response.displacement.empty();
+    const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
+    const Plan plan = make_plan(body, contacts, budget.work - report.work, wants_field, displaced);
     report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, budget.work, response)
                        : held(Status::held_over_budget, report.work + plan.work);
   }

@@ -54,7 +54,9 @@ struct Response {
 
 struct StepReport {
   Status status = Status::ok;
-  std::uint32_t constraint_level = 0;  ///< level at which the contacts were resolved
+  std::uint32_t constraint_level = 0;  ///< level at which the contacts were resolved, of a mixed set the coarser one
+  std::uint32_t finer_level = 0;       ///< of a mixed set the finer one, else the same
+  std::uint32_t finer_contacts = 0;    ///< contacts that were resolved at finer_level
   std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
   float error = 0;                     ///< Level::worst_column_error of that constraint level, as measured offline
   std::uint64_t work = 0;              ///< units spent, never more than the budget
@@ -71,7 +73,7 @@ struct Requirement {
   std::size_t bytes = 0;  ///< of the arena
   std::size_t alignment = 64;
   std::uint64_t least_work = 0;  ///< the smallest budget `step` accepts: coarsest level, all contacts, coarsest field
-  std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step that is resolved at that constraint level
+  std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step by its StepReport::finer_level
 };
 
 enum class CreateError : std::uint8_t {
@@ -99,7 +101,7 @@ class Elastostatic {
   [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
 
   /// One cycle of the loop: finds the forces that hold `contacts` where they are and the displacement of every node,
-  /// at the finest level whose closed-form work fits the budget. No heap, lock, system call, exception or clock;
+  /// as finely as fits the budget by closed-form work (docs/runtime.md, "Budgets"). No heap, lock, system call, exception or clock;
   /// same model, limits, history, contacts and budget give the same bits. Work: at most budget.work.
   StepReport step(std::span<const Contact> contacts, Budget budget, const Response& response) noexcept;
 

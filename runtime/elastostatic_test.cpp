@@ -190,7 +190,7 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
       const StepReport report = fresh.step(contacts, budget, with_field);
       REQUIRE(report.status <= Status::coarser);
       CHECK(report.work <= budget);
-      CHECK(report.work <= need.worst_work[report.constraint_level]);
+      CHECK(report.work <= need.worst_work[report.finer_level]);
       CHECK((report.status == Status::ok) == (report.constraint_level == 3 && report.field_level == 3));
       CHECK(report.error == model.view().level[report.constraint_level].counts->worst_column_error);
       const std::uint32_t now = 4 * report.constraint_level + report.field_level;

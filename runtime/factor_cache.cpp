@@ -10,7 +10,7 @@ namespace {
 // FNV-1a over whole words, never 0
 std::uint64_t key_of(const ContactSet& set) {
   constexpr std::uint64_t prime = 0x100000001b3;
-  std::uint64_t key = (0xcbf29ce484222325 ^ set.level) * prime;
+  std::uint64_t key = 0xcbf29ce484222325;
   for (std::uint32_t k = 0; k < set.columns; ++k) {
     key = (key ^ set.column[k]) * prime;
     key ^= key >> 29;
@@ -19,7 +19,7 @@ std::uint64_t key_of(const ContactSet& set) {
 }
 
 bool belongs_to(const Factor& factor, const ContactSet& set) {
-  return factor.level == set.level && factor.columns == set.columns &&
+  return factor.columns == set.columns &&
          std::memcmp(factor.column, set.column, sizeof(std::uint32_t) * set.columns) == 0;
 }
 
@@ -75,7 +75,6 @@ Factor& FactorCache::make_room(const ContactSet& set) noexcept {
 void FactorCache::keep(Factor& factor, const ContactSet& set) noexcept {
   factor.key = key_of(set);
   use(factor);
-  factor.level = set.level;
   factor.columns = set.columns;
   std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.columns);
 }

@@ -10,9 +10,8 @@ namespace greenloop {
 
 /// The factors of one capacitance matrix and the contact set they belong to.
 struct Factor {
-  std::uint64_t key = 0;   ///< of level and columns; 0: empty
+  std::uint64_t key = 0;   ///< of the columns; 0: empty
   std::uint64_t used = 0;  ///< when it was last used
-  std::uint32_t level = 0;
   std::uint32_t columns = 0;
   std::uint32_t changes = 0;          ///< nodes that came and went since it was made afresh
   std::uint32_t* column = nullptr;    ///< [columns] increasing

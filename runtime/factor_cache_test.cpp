@@ -34,7 +34,9 @@ class SmallCache {
  private:
   static ContactSet set_of(std::vector<std::uint32_t>& columns, std::uint32_t level) {
     ContactSet set;
-    set.level = level;
+    for (std::uint32_t& column : columns) {
+      column = make_column(level, column);
+    }
     set.columns = static_cast<std::uint32_t>(columns.size());
     set.column = columns.data();
     return set;
@@ -81,7 +83,6 @@ TEST_CASE("room that was made but not kept is empty") {
   cache.use({1});
   std::uint32_t column = 2;
   ContactSet set;
-  set.level = 2;
   set.columns = 1;
   set.column = &column;
   static_cast<void>(cache.cache.make_room(set));

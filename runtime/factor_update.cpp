@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "runtime/cholesky.hpp"
+#include "runtime/column.hpp"
 
 namespace greenloop {
 namespace {
@@ -68,7 +69,7 @@ void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges
   FactorChanges changes;
   for (std::uint32_t i = 0; i < cache.size(); ++i) {
     Factor& factor = cache[i];
-    if (factor.key == 0 || factor.level != set.level || factor.changes >= FactorChanges::most_in_a_row ||
+    if (factor.key == 0 || factor.changes >= FactorChanges::most_in_a_row ||
         distance(factor.columns, set.columns) > FactorChanges::most) {
       continue;
     }
@@ -80,13 +81,13 @@ void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges
   }
 }
 
-std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, const ColumnCost* cost) noexcept {
+std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, const ColumnCosts& cost) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
   CapacitanceCounts capacitance = capacitance_counts(set);
   capacitance.columns = changes.added;
   capacitance.blocks = 0;
   for (std::uint32_t t = 0; t < changes.added; ++t) {
-    capacitance.blocks += cost[changes.in[t]].blocks;
+    capacitance.blocks += cost.of(changes.in[t]).blocks;
   }
   return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
          changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
@@ -125,11 +126,12 @@ bool append_node(const NewNode& place, std::uint32_t node, std::uint32_t stride,
 
 void list_positions(const ContactSet& set, Factor& factor) noexcept {
   for (std::uint32_t i = 0; i < factor.columns; ++i) {
-    set.place_of_column[factor.node[i]] = i;
+    set.index_of_place[column_place(factor.node[i])] = i;
   }
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    factor.position[k] = set.place_of_column[set.column[k]];
-    set.place_of_column[set.column[k]] = layout::none;
+    std::uint32_t& index = set.index_of_place[column_place(set.column[k])];
+    factor.position[k] = index;
+    index = layout::none;
   }
 }
 
@@ -141,7 +143,7 @@ bool enter_nodes(const ContactSet& set, const FactorChanges& changes, const Capa
   const std::uint32_t kept = factor.columns;
   std::memcpy(scratch.order, changes.in, sizeof(std::uint32_t) * changes.added);
   std::memcpy(scratch.order + changes.added, factor.node, sizeof(std::uint32_t) * kept);
-  PartialCapacitance columns{{set.level, set.columns, scratch.order}, changes.added};
+  PartialCapacitance columns{{set.columns, scratch.order}, changes.added};
   begin_capacitance(source.refinement, source.touched, source.scratch, source.force, columns);
   add_capacitance_blocks(*source.refinement.view, source.touched, source.scratch, ~std::uint64_t{0}, columns);
   bool definite = true;

@@ -23,7 +23,7 @@ struct FactorChanges {
   std::uint32_t added = 0;
   std::uint32_t removed = 0;
   std::uint32_t missing = 0;     ///< nodes to be added in all; `added` are the first `most` of them
-  std::uint32_t in[most] = {};   ///< places of the added nodes, increasing
+  std::uint32_t in[most] = {};   ///< the added columns, increasing
   std::uint32_t out[most] = {};  ///< of the removed ones
 };
 
@@ -37,11 +37,11 @@ struct FactorUpdateScratch {
   void carve(Arena& arena, std::uint32_t columns) noexcept;
 };
 
-/// What tells a factor from a set of its level; base stays null if more than FactorChanges::most nodes have to leave.
+/// What tells a factor from a set; base stays null if more than FactorChanges::most nodes have to leave.
 /// For the loop; work: two units a column and one for each change.
 void list_changes(Factor& factor, const ContactSet& set, FactorChanges& changes) noexcept;
 
-/// The cached factor of the set's level that fewest nodes tell from it. For the loop; work: find_changes_work.
+/// The cached factor that fewest nodes tell from a set. For the loop; work: find_changes_work.
 void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges& nearest) noexcept;
 
 /// Work units of find_changes.
@@ -49,9 +49,9 @@ constexpr std::uint64_t find_changes_work(std::uint64_t factors, std::uint64_t c
   return factors * (2 * columns + FactorChanges::most);
 }
 
-/// Work units of update_factor, the columns of the new nodes included. cost: of each node as a column of the level.
+/// Work units of update_factor, the columns of the new nodes included. cost: of each column, by level and place.
 [[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes,
-                                               const ColumnCost* cost) noexcept;
+                                               const ColumnCosts& cost) noexcept;
 
 /// Whose coefficients are touched, and what computes their capacitance.
 struct CapacitanceSource {

@@ -15,18 +15,17 @@ struct FieldModel {
   const ParentOffsets* parents;  ///< [domain]
 };
 
-/// Forces on nodes of a constraint level.
-struct NodeForces {
-  std::uint32_t constraint_level;
+/// Forces on columns.
+struct ColumnForces {
   std::uint32_t count;
-  const std::uint32_t* place;  ///< [count] of the nodes in the domain, with columns
-  const float* force;          ///< [3 * count] N
+  const std::uint32_t* column;  ///< [count]
+  const float* force;           ///< [3 * count] N
 };
 
 /// Fast summation (James & Pai 2003, section 5.4): the displacement of the nodes of K(levels.nodes) by some forces,
 /// with details up to levels.details, interpolated beyond. touched: [node_count], 0 before and after; null if the
 /// wavelets are not lifted; x: [nodes of K(levels.nodes)]. For the loop; work: field_work.
-void compute_field(const FieldModel& model, const NodeForces& forces, const FieldLevels& levels, std::uint8_t* touched,
+void compute_field(const FieldModel& model, const ColumnForces& forces, const FieldLevels& levels, std::uint8_t* touched,
                    Float4* x) noexcept;
 
 }  // namespace greenloop

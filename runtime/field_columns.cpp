@@ -127,8 +127,8 @@ Block stored_block(const CouplingsView& view, std::uint32_t bits, std::uint32_t 
 
 }  // namespace
 
-void prefetch_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place) noexcept {
-  const std::uint32_t* begin = columns.begin[c] + std::size_t{place} * columns.levels;
+void prefetch_column(const FieldColumns& columns, std::uint32_t column) noexcept {
+  const std::uint32_t* begin = column_begin(columns, column);
   const auto* at = reinterpret_cast<const std::byte*>(columns.block + begin[0]);
   const auto* end = reinterpret_cast<const std::byte*>(columns.block + begin[columns.levels]);
   end = end - at > most_prefetched ? at + most_prefetched : end;
@@ -137,10 +137,10 @@ void prefetch_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t
   }
 }
 
-void add_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place, std::uint32_t field_level,
-                Float4 force, const SparseCoefficients& sums) noexcept {
+void add_column(const FieldColumns& columns, std::uint32_t column, std::uint32_t field_level, Float4 force,
+                const SparseCoefficients& sums) noexcept {
   const Product product_with_force(force);
-  const std::uint32_t* begin = columns.begin[c] + std::size_t{place} * columns.levels;
+  const std::uint32_t* begin = column_begin(columns, column);
   const ColumnBlock* const first = columns.block + begin[0];
   const ColumnBlock* const last = columns.block + begin[field_level + 1];
   auto* const value = reinterpret_cast<std::byte*>(sums.value);
@@ -199,7 +199,8 @@ void FieldColumnMaker::mark_read(const Refinement& refinement, Touched& touched)
     if ((level.nodes[place - level.domain_begin].flags & layout::node_read) == 0) {
       continue;
     }
-    touch(refinement, view.levels - 1, &place, 1, touched);
+    const std::uint32_t column = make_column(view.levels - 1, place);
+    touch(refinement, &column, 1, touched);
     for (std::uint32_t q = 0; q < view.levels; ++q) {
       for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
         read_[touched.list[q][k]] = 1;
@@ -254,16 +255,16 @@ void FieldColumnMaker::add_couplings(std::uint32_t coefficient, std::uint32_t le
 }
 
 // the blocks of a column, unscaled, in sum_; returns the square norm of the node's own compliance
-double FieldColumnMaker::sum_column(const Refinement& refinement, std::uint32_t c, std::uint32_t place,
-                                    Touched& touched, Float4* force) noexcept {
+double FieldColumnMaker::sum_column(const Refinement& refinement, std::uint32_t column, Touched& touched,
+                                    Float4* force) noexcept {
   const ModelView& view = *view_;
-  touch(refinement, c, &place, 1, touched);
-  force[place] = splat3(1.0F);
+  touch(refinement, &column, 1, touched);
+  force[column_place(column)] = splat3(1.0F);
   transform_forces(refinement, touched, force);
   const auto scale = [&](std::uint32_t coefficient, std::uint32_t q) -> const layout::Scale& {
     return view.level[q].scales[coefficient - view.level[q].domain_begin];
   };
-  for (std::uint32_t q = 0; q <= c; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       const std::uint32_t i = touched.list[q][k];
       Block scaled{};
@@ -276,7 +277,7 @@ double FieldColumnMaker::sum_column(const Refinement& refinement, std::uint32_t 
     sum_[i] = product(symmetric_block(scale(i, refinement.level[i]).root), sum_[i]);
   }
   Block own{};
-  for (std::uint32_t q = 0; q <= c; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       const std::uint32_t i = touched.list[q][k];
       add(force[i][0], sum_[i], own);
@@ -332,7 +333,7 @@ FieldColumnMaker::Counts FieldColumnMaker::make(const Refinement& refinement, To
       const std::uint64_t first = counts.blocks;
       Limits kept;
       if (wanted_[place] != 0) {
-        kept = limits(refinement, sum_column(refinement, c, place, touched, force));
+        kept = limits(refinement, sum_column(refinement, make_column(c, place), touched, force));
       }
       for (std::uint32_t q = 0; q < view.levels; ++q) {
         *begin++ = static_cast<std::uint32_t>(counts.blocks);

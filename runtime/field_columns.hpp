@@ -4,6 +4,7 @@
 
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
+#include "runtime/column.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/float4.hpp"
 #include "runtime/sparse_forces.hpp"
@@ -30,11 +31,14 @@ struct FieldColumns {
   const ColumnBlock* block = nullptr;
 };
 
-/// Blocks in the column of the node at `place` of K(c) that move coefficients of levels 0..field_level. For the loop;
-/// work: one unit.
-inline std::uint32_t column_blocks(const FieldColumns& columns, std::uint32_t c, std::uint32_t place,
-                                   std::uint32_t field_level) {
-  const std::uint32_t* begin = columns.begin[c] + std::size_t{place} * columns.levels;
+/// Where the blocks of a column begin, by the level that they move. For the loop; work: one unit.
+inline const std::uint32_t* column_begin(const FieldColumns& columns, std::uint32_t column) {
+  return columns.begin[column_level(column)] + std::size_t{column_place(column)} * columns.levels;
+}
+
+/// Blocks of a column that move coefficients of levels 0..field_level. For the loop; work: one unit.
+inline std::uint32_t column_blocks(const FieldColumns& columns, std::uint32_t column, std::uint32_t field_level) {
+  const std::uint32_t* begin = column_begin(columns, column);
   return begin[field_level + 1] - begin[0];
 }
 
@@ -44,12 +48,11 @@ inline std::uint32_t moved_place(const ModelView& view, const ColumnBlock& block
 }
 
 /// Asks the processor for a column.
-void prefetch_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place) noexcept;
+void prefetch_column(const FieldColumns& columns, std::uint32_t column) noexcept;
 
-/// sums += the column of the node at `place` of K(c), levels 0..field_level, times a force. For the loop; work: 10
-/// units per block.
-void add_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place, std::uint32_t field_level,
-                Float4 force, const SparseCoefficients& sums) noexcept;
+/// sums += a column, levels 0..field_level, times a force. For the loop; work: 10 units per block.
+void add_column(const FieldColumns& columns, std::uint32_t column, std::uint32_t field_level, Float4 force,
+                const SparseCoefficients& sums) noexcept;
 
 /// A stored block by its row's coefficient.
 struct MirroredBlock {
@@ -105,8 +108,7 @@ class FieldColumnMaker {
 
   void list_mirrored() noexcept;
   void mark_representatives(std::uint32_t c) noexcept;
-  double sum_column(const Refinement& refinement, std::uint32_t c, std::uint32_t place, Touched& touched,
-                    Float4* force) noexcept;
+  double sum_column(const Refinement& refinement, std::uint32_t column, Touched& touched, Float4* force) noexcept;
   [[nodiscard]] Limits limits(const Refinement& refinement, double own) const noexcept;
   void keep_level(std::uint32_t q, const Limits& limits, const Room& room, Counts& counts) noexcept;
   void add_couplings(std::uint32_t coefficient, std::uint32_t level, const Block& force) noexcept;

@@ -36,10 +36,15 @@ struct Forces {
       }
     }
   }
-  [[nodiscard]] NodeForces on(std::uint32_t c) const {
-    return {c, static_cast<std::uint32_t>(place.size()), place.data(), force.data()};
+  [[nodiscard]] ColumnForces on(std::uint32_t c) const {
+    column.clear();
+    for (const std::uint32_t at : place) {
+      column.push_back(make_column(c, at));
+    }
+    return {static_cast<std::uint32_t>(place.size()), column.data(), force.data()};
   }
   std::vector<std::uint32_t> place;
+  mutable std::vector<std::uint32_t> column;
   std::vector<float> force;
   Eigen::VectorXd dense;
 };

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "formats/layout.hpp"
-#include "runtime/contact_set.hpp"
 
 namespace greenloop {
 
@@ -13,6 +11,8 @@ void Glide::carve(Arena& arena, std::uint32_t contacts, std::uint64_t nodes, std
   const std::uint64_t components = std::uint64_t{3} * contacts;
   node_ = arena.take<std::uint32_t>(contacts);
   place_ = arena.take_zeroed<std::uint32_t>(nodes);
+  level_ = arena.take<std::uint8_t>(contacts);
+  next_level_ = arena.take<std::uint8_t>(contacts);
   force_ = arena.take<float>(components);
   difference_ = arena.take<float>(components);
   next_difference_ = arena.take<float>(components);
@@ -43,16 +43,32 @@ void Glide::turn_back() noexcept {
   }
 }
 
-void Glide::advance(std::span<const Contact> contacts, std::uint32_t level) noexcept {
+bool Glide::moves(std::span<const Contact> contacts) const noexcept {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::uint32_t last = last_place(contacts[i].node);
+    if (last != layout::none && level_[last] != next_level_[i]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Glide::advance(std::span<const Contact> contacts, const ContactSet& set) noexcept {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    next_level_[i] = static_cast<std::uint8_t>(column_level(set.column[set.place[i]]));
+  }
+  const std::uint32_t level = set.coarsest() == set.finest() ? set.coarsest() : mixed;
   const bool persist = persists(contacts);
-  fresh_ = persist && level != to_ && !(left_ > 0 && !kept_ && level == from_);
-  moving_ = persist && (level != to_ || left_ > 0);
+  const bool changes = persist && (level != to_ || moves(contacts));
+  const bool returns = changes && left_ > 0 && !kept_ && level == from_ && level != mixed;
+  fresh_ = changes && !returns;
+  moving_ = persist && (changes || left_ > 0);
   if (fresh_) {
     kept_ = left_ > 0;  // in the middle of a glide the last answer is of no single level
     from_ = to_;
     to_ = level;
     left_ = cycles_ - 1;
-  } else if (moving_ && level != to_) {
+  } else if (returns) {
     turn_back();
   } else if (moving_) {
     --left_;
@@ -108,6 +124,9 @@ void Glide::remember(std::span<const Contact> contacts, const float* force) noex
     node_[i] = contacts[i].node;
     place_[contacts[i].node] = i;
   }
+  std::uint8_t* const levels = next_level_;
+  next_level_ = level_;
+  level_ = levels;
   std::memcpy(force_, force, sizeof(float) * 3 * contacts_);
 }
 

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <span>
 
+#include "formats/layout.hpp"
 #include "runtime/arena.hpp"
+#include "runtime/contact_set.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop {
@@ -15,10 +17,11 @@ struct GlideReport {
   double switch_work = 0;  ///< J
 };
 
-/// Leads the forces from one constraint level to another in equal parts of their difference. While both levels can be
+/// Leads the forces from one constraint level, or mixture of levels, to another in equal parts of their difference. While both can be
 /// solved, the forces are (1 - s) K_old u + s K_new u of the present displacements u, with s growing by 1 / cycles:
 /// both are symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new - f_old) . u.
-/// Else the last known difference is kept and let go in the same parts: the stiffness is the newer level's at once.
+/// Else, and always from a mixture, the last known difference is kept and let go in the same parts: the stiffness is the
+/// newer level's at once.
 /// Differences belong to nodes: contacts that are new have none. There is no glide, and one under way ends, where fewer
 /// than three quarters of the contacts persist: forces change with the contacts then, and a difference of other
 /// contacts would only falsify them.
@@ -27,11 +30,11 @@ class Glide {
   /// Arrays out of `arena`; null while it counts. cycles: of a whole glide, at least 1; with 1 there is none.
   void carve(Arena& arena, std::uint32_t contacts, std::uint64_t nodes, std::uint32_t cycles) noexcept;
 
-  /// Takes this step's contacts and the level that they are resolved at. For the loop; work: within blend's.
-  void advance(std::span<const Contact> contacts, std::uint32_t level) noexcept;
+  /// Takes this step's contacts as they are resolved. For the loop; work: within blend's.
+  void advance(std::span<const Contact> contacts, const ContactSet& set) noexcept;
 
   /// Whether the forces of `older_level` are wanted.
-  [[nodiscard]] bool follows() const noexcept { return moving_ && !kept_ && cycles_ > 1; }
+  [[nodiscard]] bool follows() const noexcept { return moving_ && !kept_ && cycles_ > 1 && from_ != mixed; }
   [[nodiscard]] std::uint32_t older_level() const noexcept { return from_; }
 
   /// Work units of advance and blend.
@@ -48,7 +51,10 @@ class Glide {
   [[nodiscard]] float* older_force() const noexcept { return older_force_; }
 
  private:
+  static constexpr std::uint32_t mixed = layout::max_levels;  // for a level
+
   [[nodiscard]] std::uint32_t last_place(std::uint32_t node) const noexcept;
+  [[nodiscard]] bool moves(std::span<const Contact> contacts) const noexcept;
   [[nodiscard]] bool persists(std::span<const Contact> contacts) const noexcept;
   void turn_back() noexcept;
   void remember(std::span<const Contact> contacts, const float* force) noexcept;
@@ -64,6 +70,8 @@ class Glide {
   std::uint32_t contacts_ = 0;        ///< of the last answer
   std::uint32_t* node_ = nullptr;     ///< [contacts]
   std::uint32_t* place_ = nullptr;    ///< [nodes] in node_, of those that are there
+  std::uint8_t* level_ = nullptr;     ///< [contacts]
+  std::uint8_t* next_level_ = nullptr;  ///< [contacts] of this step
   float* force_ = nullptr;            ///< [3 * contacts]
   float* difference_ = nullptr;       ///< [3 * contacts]
   float* next_difference_ = nullptr;  ///< [3 * contacts] scratch

@@ -102,7 +102,7 @@ Steps flap(const Flapping& flapping, const Limits& limits) {
     const StepReport report = body.step(flapping.contacts, budget);
     REQUIRE(report.status <= Status::coarser);
     CHECK(report.work <= budget);
-    CHECK(report.work <= body.requirement().worst_work[report.constraint_level]);
+    CHECK(report.work <= body.requirement().worst_work[report.finer_level]);
     CHECK((report.status == Status::ok) ==
           (report.glide == 1 && report.constraint_level == 4 && report.field_level == 4));
     const double rounding = 1e-5 * largest(body.force());
@@ -178,7 +178,16 @@ class TwoLevels {
   // the forces of the level before are known if `both_known`
   GlideReport step(const std::vector<Contact>& contacts, std::uint32_t level, bool both_known) {
     force = forces(contacts, level);
-    glide.advance(contacts, level);
+    std::vector<std::uint32_t> columns, places;
+    for (const Contact& contact : contacts) {
+      places.push_back(static_cast<std::uint32_t>(columns.size()));
+      columns.push_back(make_column(level, contact.node));
+    }
+    ContactSet set;
+    set.columns = static_cast<std::uint32_t>(columns.size());
+    set.column = columns.data();
+    set.place = places.data();
+    glide.advance(contacts, set);
     const std::vector<float> older = forces(contacts, 1 - level);
     return glide.blend(contacts, both_known && glide.follows() ? older.data() : nullptr, force.data());
   }

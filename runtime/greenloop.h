@@ -109,7 +109,7 @@ typedef struct greenloop_limits {
 typedef struct greenloop_requirement {
   size_t bytes;                              /* of the arena; 0: greenloop_create would refuse */
   uint64_t least_work;                       /* the smallest budget that greenloop_step accepts */
-  uint64_t worst_work[GREENLOOP_MAX_LEVELS]; /* of a step that is resolved at that constraint level */
+  uint64_t worst_work[GREENLOOP_MAX_LEVELS]; /* of a step by its finer_level */
 } greenloop_requirement;
 
 typedef struct greenloop_created {
@@ -126,7 +126,9 @@ typedef struct greenloop_contact {
 
 typedef struct greenloop_report {
   greenloop_status status;
-  uint32_t constraint_level; /* level at which the contacts were resolved */
+  uint32_t constraint_level; /* level at which the contacts were resolved, of a mixed set the coarser one */
+  uint32_t finer_level;      /* of a mixed set the finer one, else the same */
+  uint32_t finer_contacts;   /* contacts that were resolved at finer_level */
   uint32_t field_level;      /* finest level whose details are in the field */
   float error;               /* worst column error of that constraint level, measured offline */
   uint64_t work;             /* units spent, never more than the budget */

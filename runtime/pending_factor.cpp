@@ -31,12 +31,12 @@ Factor after_batch(const PendingFactor& pending) {
 // whether the batch that is at work serves the set
 bool serves(PendingFactor& pending, const ContactSet& set) {
   Factor after = after_batch(pending);
-  return pending.factor.level == set.level && worth(after, set, pending.changes) > 0;
+  return worth(after, set, pending.changes) > 0;
 }
 
 // whether the set has all the nodes that turned out not to be positive definite
 bool is_singular(PendingFactor& pending, const ContactSet& set) {
-  if (!pending.singular || pending.factor.level != set.level) {
+  if (!pending.singular) {
     return false;
   }
   Factor after = after_batch(pending);
@@ -44,8 +44,8 @@ bool is_singular(PendingFactor& pending, const ContactSet& set) {
   return pending.changes.base != nullptr && pending.changes.removed == 0;
 }
 
-bool may_become(const Factor& factor, const ContactSet& set) {
-  return factor.level == set.level && factor.changes < FactorChanges::most_in_a_row;
+bool may_change(const Factor& factor) {
+  return factor.changes < FactorChanges::most_in_a_row;
 }
 
 // the factor in the making, or the cached one that has most in common with the set, or nothing in the former's place
@@ -53,14 +53,14 @@ Factor* choose_base(Body& body) {
   const ContactSet& set = body.set;
   Factor& own = body.pending.factor;
   FactorChanges& changes = body.pending.changes;
-  if (may_become(own, set) && worth(own, set, changes) > 0) {
+  if (may_change(own) && worth(own, set, changes) > 0) {
     return &own;
   }
   Factor* best = nullptr;
   std::uint32_t most = 0;
   for (std::uint32_t i = 0; i < body.cache.size(); ++i) {
     Factor& factor = body.cache[i];
-    const std::uint32_t common = factor.key != 0 && may_become(factor, set) ? worth(factor, set, changes) : 0;
+    const std::uint32_t common = factor.key != 0 && may_change(factor) ? worth(factor, set, changes) : 0;
     if (common > most) {
       best = &factor;
       most = common;
@@ -99,7 +99,6 @@ void begin_from(Body& body) {
     copy_factor(*changes.base, stride, factor);
     std::memcpy(factor.column, changes.base->column, sizeof(std::uint32_t) * factor.columns);
   }
-  factor.level = body.set.level;
   factor.changes += changes.removed;
   for (std::uint32_t t = 0; t < changes.removed; ++t) {
     take_out(changes.out[t], factor);
@@ -132,16 +131,16 @@ void begin_batch(Body& body, const SetCounts& whole) {
   const std::uint32_t added = list_batch(factor, body.set, width, body.update.order, pending.column);
   pending.columns = factor.columns + added;
   std::memcpy(body.update.order + added, factor.node, sizeof(std::uint32_t) * factor.columns);
-  pending.batch.set = {factor.level, pending.columns, body.update.order};
+  pending.batch.set = {pending.columns, body.update.order};
   pending.batch.computed = added;
   pending.entered = 0;
-  touch(body.refinement, factor.level, body.update.order, pending.columns, pending.touched);
+  touch(body.refinement, pending.column, pending.columns, pending.touched);
   ContactSet after = body.set;
   after.column = pending.column;
   after.columns = pending.columns;
   pending.counts = {};
   pending.counts.columns = pending.columns;
-  count_factor(after, pending.touched, body.cost[factor.level], body.stored, pending.counts);
+  count_factor(after, pending.touched, body.cost, body.stored, pending.counts);
   begin_capacitance(body.refinement, pending.touched, body.capacitance, body.force, pending.batch);
 }
 
@@ -152,7 +151,7 @@ void enter(Body& body) {
   const PartialCapacitance& batch = pending.batch;
   const std::uint32_t stride = body.cache.stride();
   const std::uint32_t t = batch.computed - ++pending.entered;
-  const std::uint32_t node = batch.set.place[t];
+  const std::uint32_t node = batch.set.column[t];
   store_capacitance_column(body.capacitance, batch, t, stride, body.update.column);
   put_in(node, factor);
   if (!append_node({t, batch.computed, batch.set.count - batch.computed}, node, stride, factor, body.update)) {

@@ -29,13 +29,13 @@ double difference(std::span<const float> a, std::span<const float> b) {
 // resolves contacts at the finest level; returns what their factor takes
 SetCounts resolve(Body& body, const std::vector<Contact>& contacts) {
   const std::uint32_t finest = body.view->levels - 1;
-  resolve_contacts(contacts, *body.view, body.facts, finest, body.set);
+  resolve_contacts(contacts, *body.view, body.facts, {finest}, body.set);
   clear(body.touched);
-  touch(body.refinement, finest, body.set.column, body.set.columns, body.touched);
+  touch(body.refinement, body.set.column, body.set.columns, body.touched);
   SetCounts counts;
   counts.contacts = contacts.size();
   counts.columns = body.set.columns;
-  count_factor(body.set, body.touched, body.cost[finest], body.stored, counts);
+  count_factor(body.set, body.touched, body.cost, body.stored, counts);
   return counts;
 }
 
@@ -74,7 +74,7 @@ TEST_CASE("a factor is complete after as many slices as its work holds, each wit
   Body& fresh = *other.body;
   resolve(fresh, patch(model, 7, 40));
   Factor& expected = fresh.cache.make_room(fresh.set);
-  assemble_capacitance(fresh.refinement, {fresh.set.level, 40, fresh.set.column}, fresh.touched, fresh.capacitance,
+  assemble_capacitance(fresh.refinement, {40, fresh.set.column}, fresh.touched, fresh.capacitance,
                        fresh.force, fresh.cache.stride(), expected.matrix);
   REQUIRE(cholesky_factor(120, fresh.cache.stride(), expected.matrix));
   for (std::uint32_t k = 0; k < 40; ++k) {
@@ -205,7 +205,7 @@ TEST_CASE("no script of budgets and contacts exceeds a budget or the worst work,
         const StepReport report = body.step(contacts, budget, with_field);
         REQUIRE(report.status <= Status::coarser);
         REQUIRE(report.work <= budget);
-        REQUIRE(report.work <= need.worst_work[report.constraint_level]);
+        REQUIRE(report.work <= need.worst_work[report.finer_level]);
         CHECK((report.constraint_level < finest || report.pending_work == 0));
         pending += report.pending_work > 0 ? 1 : 0;
         refined += last.pending_work > 0 && report.constraint_level > last.constraint_level ? 1 : 0;
@@ -243,7 +243,7 @@ TEST_CASE("held contacts reach the finest level on a budget that is too small fo
         REQUIRE(report.status == Status::coarser);
         REQUIRE(steps <= 40);
         CHECK(report.work <= budget);
-        CHECK(report.work <= body.requirement().worst_work[report.constraint_level]);
+        CHECK(report.work <= body.requirement().worst_work[report.finer_level]);
         pending = report.constraint_level < 4 ? report.pending_work : pending;
       } while (report.constraint_level < 4);
       MESSAGE("finest level after ", steps, " steps of a ", part, "th of the work of a fresh factor");

@@ -70,16 +70,17 @@ std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const F
          4 * set.contacts;
 }
 
-void count_factor(const ContactSet& set, const Touched& touched, const ColumnCost* cost, const std::uint32_t* stored,
+void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
                   SetCounts& counts) noexcept {
   counts.coefficients = touched.coefficients();
   counts.visits = touched.visits;
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    counts.column_coefficients += cost[set.column[k]].coefficients;
-    counts.column_blocks += cost[set.column[k]].blocks;
-    counts.column_visits += cost[set.column[k]].visits;
+    const ColumnCost& of_column = cost.of(set.column[k]);
+    counts.column_coefficients += of_column.coefficients;
+    counts.column_blocks += of_column.blocks;
+    counts.column_visits += of_column.visits;
   }
-  for (std::uint32_t q = 0; q <= set.level; ++q) {
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       counts.stored += stored[touched.list[q][k]];
     }
@@ -90,7 +91,7 @@ std::uint64_t count_field_blocks(const FieldColumns& columns, const ContactSet& 
                                  std::uint32_t field_level) noexcept {
   std::uint64_t blocks = 0;
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    blocks += column_blocks(columns, set.level, set.column[k], field_level);
+    blocks += column_blocks(columns, set.column[k], field_level);
   }
   return blocks;
 }

@@ -26,7 +26,7 @@ struct ModelCounts {
   std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F
 };
 
-/// What a set of columns of one constraint level holds.
+/// What a set of columns holds.
 struct SetCounts {
   std::uint64_t contacts = 0;
   std::uint64_t columns = 0;
@@ -67,9 +67,9 @@ struct SetCounts {
 [[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                                        std::uint64_t blocks) noexcept;
 
-/// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. cost: [domain] of each
-/// node as a column of set.level; stored: [domain] blocks of all layers in each coefficient's column.
-void count_factor(const ContactSet& set, const Touched& touched, const ColumnCost* cost, const std::uint32_t* stored,
+/// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. stored: [domain] blocks of
+/// all layers in each coefficient's column.
+void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
                   SetCounts& counts) noexcept;
 
 /// Blocks of a resolved set's columns with details up to `field_level`.

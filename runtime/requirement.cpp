@@ -3,6 +3,7 @@
 #include "runtime/domain.hpp"
 #include "runtime/factor_update.hpp"
 #include "runtime/pending_factor.hpp"
+#include "runtime/planner.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/support.hpp"
 
@@ -31,11 +32,47 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   }
 }
 
-// a step's work with what it may spend on the factor of a finer level
-std::uint64_t with_refining(std::uint64_t answer, std::uint64_t finer_factor, std::uint64_t refining_work) {
-  const std::uint64_t whole = answer + finer_factor;
-  const std::uint64_t refined = whole < refining_work ? whole : refining_work;
-  return answer > refined ? answer : refined;
+std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
+
+// bound of what a column of either reaches
+ReachBound larger_reach(const ReachBound& a, const ReachBound& b) {
+  ReachBound both = a;
+  both.visits = larger(a.visits, b.visits);
+  for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
+    both.coefficients[q] = a.coefficients[q] > b.coefficients[q] ? a.coefficients[q] : b.coefficients[q];
+  }
+  return both;
+}
+
+// the dearest that a step may have done before and after it is answered, over the levels looked at
+struct OtherWork {
+  std::uint64_t plans = 0;    // of the sets of one level
+  std::uint64_t mixture = 0;  // of a mixed one
+  std::uint64_t dropped = 0;  // batch of a finer set
+  std::uint64_t older = 0;    // forces of the level before
+  std::uint64_t slices = 0;   // of the factor of a finer set
+};
+
+// a step's work with what it may spend on the factor of a finer set
+std::uint64_t with_slices(std::uint64_t answer, std::uint64_t slices, std::uint64_t refining_work) {
+  const std::uint64_t whole = answer + slices;
+  return larger(answer, whole < refining_work ? whole : refining_work);
+}
+
+// planning a set of some level, and giving a batch of it up
+void add_set(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
+  other.plans += resolve_work(model, most) + touch_work(most) + find_changes_work(model.cached_factors, most.columns);
+  other.dropped = larger(other.dropped, 2 * most.coefficients);
+}
+
+void add_slices(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
+  const std::uint64_t slice = resolve_contacts_work(most.contacts) + most_slice_work(model, most) + other.dropped;
+  other.slices = larger(other.slices, slice);
+}
+
+// forces of a set with a fresh factor
+std::uint64_t fresh_forces_work(const ModelCounts& model, const SetCounts& most, const OtherWork& other) {
+  return other.dropped + factor_work(model, most) + force_work(most);
 }
 
 }  // namespace
@@ -57,35 +94,42 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
   count_model(view, limits, sizes);
   sizes.longest_column = couplings.longest_column;
   sizes.set_columns = view.domain_count < limits.max_contacts ? view.domain_count : limits.max_contacts;
+  const ModelCounts& counts = sizes.counts;
   const std::uint32_t finest = view.levels - 1;
-  std::uint64_t dropped = 0;       // batch of a finer level
-  std::uint64_t finer_factor = 0;  // of a finer level, that the rest of a budget is spent on
-  const std::uint64_t older = limits.glide_cycles > 1 ? older_forces_work(sizes.counts, sizes.set_columns) : 0;
-  std::uint64_t plans = check_contacts_work(limits.max_contacts);
+  OtherWork other;
+  other.plans = check_contacts_work(limits.max_contacts);
+  other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
+  ReachBound finest_reach;
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const ReachBound reach = bound_reach(view, c, sizes.most_neighbours);
     if (!reach.bounded) {
       return;
     }
     const SetCounts most = most_counts(view, couplings, c, limits.max_contacts, reach);
-    const auto field = [&](std::uint32_t field_level) {
-      const std::uint64_t blocks = most_field_blocks(view, most.columns, field_level);
-      return limits.forces_only ? 0 : field_work(sizes.counts, most, {finest, field_level}, blocks);
+    const auto field = [&](const SetCounts& set, std::uint32_t field_level) {
+      const std::uint64_t blocks = most_field_blocks(view, set.columns, field_level);
+      return limits.forces_only ? 0 : field_work(counts, set, {finest, field_level}, blocks);
     };
-    const std::uint64_t functional = most.columns > 0 ? most.column_coefficients / most.columns : 0;
-    sizes.functional = functional > sizes.functional ? functional : sizes.functional;
-    plans +=
-        resolve_work(sizes.counts, most) + touch_work(most) + find_changes_work(limits.cached_factors, most.columns);
-    dropped = 2 * most.coefficients > dropped ? 2 * most.coefficients : dropped;
-    const std::uint64_t forces = dropped + factor_work(sizes.counts, most) + force_work(most);
+    sizes.functional = larger(sizes.functional, most.columns > 0 ? most.column_coefficients / most.columns : 0);
+    add_set(counts, most, other);
+    finest_reach = c == finest ? reach : finest_reach;
+    const SetCounts mixed =
+        most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
+    if (c < finest) {
+      other.mixture = larger(other.mixture, mixture_work(counts, mixed));
+      other.dropped = larger(other.dropped, 2 * mixed.coefficients);
+      const std::uint64_t answer =
+          other.plans + other.mixture + fresh_forces_work(counts, mixed, other) + field(mixed, finest) + other.older;
+      requirement.worst_work[finest] = larger(requirement.worst_work[finest], answer);
+      add_slices(counts, mixed, other);
+    }
     // at the coarsest level the field is cut as well
     const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
-    const std::uint64_t answer = plans + cuts + forces + field(finest) + older;
-    requirement.worst_work[c] = with_refining(answer, finer_factor, limits.refining_work);
-    requirement.least_work = plans + cuts + forces + field(0);
-    const std::uint64_t slice =
-        resolve_contacts_work(limits.max_contacts) + most_slice_work(sizes.counts, most) + dropped;
-    finer_factor = slice > finer_factor ? slice : finer_factor;
+    const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
+    const std::uint64_t answer = forces + other.mixture + field(most, finest) + other.older;
+    requirement.worst_work[c] = larger(requirement.worst_work[c], with_slices(answer, other.slices, limits.refining_work));
+    requirement.least_work = forces + field(most, 0);
+    add_slices(counts, most, other);
   }
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = entries < view.domain_count ? entries : view.domain_count;

@@ -1,5 +1,6 @@
 #include "runtime/sparse_forces.hpp"
 
+#include "runtime/column.hpp"
 #include "runtime/domain.hpp"
 
 namespace greenloop {
@@ -124,14 +125,23 @@ std::uint64_t Touched::coefficients() const noexcept {
   return sum;
 }
 
-void touch(const Refinement& refinement, std::uint32_t c, const std::uint32_t* place, std::uint32_t count,
-           Touched& touched) noexcept {
-  touched.constraint_level = c;
+void touch(const Refinement& refinement, const std::uint32_t* column, std::uint32_t count, Touched& touched) noexcept {
+  touched.finest = count > 0 ? column_level(column[count - 1]) : 0;
   touched.visits = count;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    add(touched, refinement.level[place[i]], place[i]);
-  }
-  for (std::uint32_t level = c; level > 0; --level) {
+  std::uint32_t left = count;
+  const auto add_columns = [&](std::uint32_t level) {
+    std::uint32_t first = left;
+    while (first > 0 && column_level(column[first - 1]) == level) {
+      --first;
+    }
+    for (std::uint32_t i = first; i < left; ++i) {
+      const std::uint32_t place = column_place(column[i]);
+      add(touched, refinement.level[place], place);
+    }
+    left = first;
+  };
+  for (std::uint32_t level = touched.finest; level > 0; --level) {
+    add_columns(level);
     touched.forced[level] = touched.count[level];
     touched.visits += std::uint64_t{prediction_length(refinement.stencils != nullptr)} * touched.forced[level];
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
@@ -147,6 +157,7 @@ void touch(const Refinement& refinement, std::uint32_t c, const std::uint32_t* p
       }
     }
   }
+  add_columns(0);
 }
 
 void clear(Touched& touched) noexcept {
@@ -160,7 +171,7 @@ void clear(Touched& touched) noexcept {
 }
 
 void transform_forces(const Refinement& refinement, const Touched& touched, Float4* force) noexcept {
-  for (std::uint32_t level = touched.constraint_level; level > 0; --level) {
+  for (std::uint32_t level = touched.finest; level > 0; --level) {
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
       const std::uint32_t odd = touched.list[level][k];
       visit_prediction(refinement, odd,

@@ -61,9 +61,9 @@ class RefinementTables {
 /// Nodes that the prediction of an odd node may read.
 constexpr std::uint32_t prediction_length(bool butterfly) { return butterfly ? 8 : 2; }
 
-/// Which coefficients the forces on some nodes of K(c) reach.
+/// Which coefficients the forces on some columns reach.
 struct Touched {
-  std::uint32_t constraint_level = 0;
+  std::uint32_t finest = 0;                       ///< constraint level of a column
   std::uint64_t visits = 0;                       ///< steps of the transform
   std::uint32_t count[layout::max_levels] = {};   ///< coefficients of each level
   std::uint32_t* list[layout::max_levels] = {};   ///< those coefficients
@@ -78,16 +78,16 @@ struct Touched {
   [[nodiscard]] std::uint64_t coefficients() const noexcept;
 };
 
-/// Finds the coefficients that forces on `place` [count], distinct nodes of K(c), reach. `touched` must be clear. For
-/// the loop; work: 2 units per visit.
-void touch(const Refinement& refinement, std::uint32_t c, const std::uint32_t* place, std::uint32_t count,
-           Touched& touched) noexcept;
+/// Finds the coefficients that forces on some columns reach: one of level c passes the levels c..1 of the transform.
+/// column: [count], of distinct places, coarser ones first. `touched` must be clear. For the loop; work: 2 units per
+/// visit.
+void touch(const Refinement& refinement, const std::uint32_t* column, std::uint32_t count, Touched& touched) noexcept;
 
 /// Forgets them. For the loop; work: one unit per coefficient.
 void clear(Touched& touched) noexcept;
 
-/// Transforms forces in place. force: [domain], nodal forces on the touched places of K(c), 0 elsewhere. For the loop;
-/// work: 3 units per visit.
+/// Transforms forces on columns of one constraint level in place. force: [domain], nodal forces on their places, 0
+/// elsewhere. For the loop; work: 3 units per visit.
 void transform_forces(const Refinement& refinement, const Touched& touched, Float4* force) noexcept;
 
 /// Zeroes the touched coefficients. For the loop; work: one unit per coefficient.

@@ -56,7 +56,11 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
         std::shuffle(places.begin(), places.end(), random);
         places.resize(std::min<std::size_t>(places.size(), trial < 15 ? 1 : 16));
         Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * domain_up_to(view, c));
-        touch(body.refinement, c, places.data(), static_cast<std::uint32_t>(places.size()), body.touched);
+        std::vector<std::uint32_t> columns;
+        for (const std::uint32_t place : places) {
+          columns.push_back(make_column(c, place));
+        }
+        touch(body.refinement, columns.data(), static_cast<std::uint32_t>(columns.size()), body.touched);
         for (const std::uint32_t place : places) {
           const float value = static_cast<float>(random() >> 40) * 0x1p-24F;
           f(Eigen::Index{3} * place) = value;

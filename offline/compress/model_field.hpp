@@ -35,8 +35,8 @@ class ModelField {
 
   /// Blocks of the column of row j of K(level); 0 if that stands for no touchable node or a force on it moves nothing.
   [[nodiscard]] std::uint64_t length(std::size_t level, std::size_t j) const {
-    return column_blocks(columns_, static_cast<std::uint32_t>(level), static_cast<std::uint32_t>(j),
-                         columns_.levels - 1);
+    const std::uint32_t column = make_column(static_cast<std::uint32_t>(level), static_cast<std::uint32_t>(j));
+    return column_blocks(columns_, column, columns_.levels - 1);
   }
   [[nodiscard]] bool has_column(std::size_t level, std::size_t j) const { return length(level, j) > 0; }
 

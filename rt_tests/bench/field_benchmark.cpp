@@ -64,9 +64,9 @@ class FieldSums {
         x_(model.node_count()) {
     Body& body = *placed_.body;
     for (std::size_t i = 0; i < sets.size(); ++i) {
-      resolve_contacts(sets[i], model.view(), body.facts, level_, body.set);
+      resolve_contacts(sets[i], model.view(), body.facts, {level_}, body.set);
       Columns columns{{body.set.column, body.set.column + body.set.columns}, {}};
-      columns.force.resize(3 * columns.place.size());
+      columns.force.resize(3 * columns.column.size());
       for (std::size_t k = 0; k < 3 * sets[i].size(); ++k) {
         columns.force[3 * body.set.place[k / 3] + k % 3] += forces[i][k];
       }
@@ -77,15 +77,15 @@ class FieldSums {
   void round() {
     Body& body = *placed_.body;
     for (const Columns& set : sets_) {
-      const auto count = static_cast<std::uint32_t>(set.place.size());
-      compute_field({*body.view, body.columns, body.parents}, {level_, count, set.place.data(), set.force.data()},
+      const auto count = static_cast<std::uint32_t>(set.column.size());
+      compute_field({*body.view, body.columns, body.parents}, {count, set.column.data(), set.force.data()},
                     {level_, level_}, body.field_touched, x_.data());
     }
   }
 
  private:
   struct Columns {
-    std::vector<std::uint32_t> place;
+    std::vector<std::uint32_t> column;
     std::vector<float> force;
   };
   PlacedBody placed_;

@@ -100,7 +100,7 @@ TransformFigures measure_transform(const Model& model, const GreenStore& store, 
   std::vector<std::uint8_t> touched(view.node_count), ones(view.node_count);
   const bool lifted = patch.body.field_touched != nullptr;
   for (std::uint32_t k = 0; k < patch.body.set.columns; ++k) {
-    add_column(patch.body.columns, patch.level, patch.body.set.column[k], patch.level, splat3(1e-3F),
+    add_column(patch.body.columns, patch.body.set.column[k], patch.level, splat3(1e-3F),
                {sums.data(), lifted ? ones.data() : nullptr});
   }
   std::vector<double> transform, dense, ratio;

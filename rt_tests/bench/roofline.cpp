@@ -95,7 +95,7 @@ class RooflineRun {
     std::vector<std::uint8_t> touched(view_->node_count);
     const auto sum_into = [&](const SparseCoefficients& sums) {
       for (std::uint32_t k = 0; k < set.columns; ++k) {
-        add_column(body.columns, patch.level, set.column[k], patch.level, splat3(1e-6F), sums);
+        add_column(body.columns, set.column[k], patch.level, splat3(1e-6F), sums);
       }
     };
     sum_into({x.data(), touched.data()});
@@ -169,7 +169,7 @@ class RooflineRun {
   // columns, and of their scales
   double coupling_bytes(const Body& body) const {
     std::size_t bytes = 0;
-    for (std::uint32_t q = 0; q <= body.touched.constraint_level; ++q) {
+    for (std::uint32_t q = 0; q <= body.touched.finest; ++q) {
       const LevelView& level = view_->level[q];
       for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
         const std::uint32_t coefficient = body.touched.list[q][k];
@@ -192,12 +192,12 @@ class RooflineRun {
     Body& body = patch.body;
     CapacitanceScratch& scratch = body.capacitance;
     SetCounts counts;
-    count_factor(body.set, body.touched, body.cost[body.set.level], body.stored, counts);
+    count_factor(body.set, body.touched, body.cost, body.stored, counts);
     const std::uint64_t width = batch_width(scratch.room, counts.coefficients);
     std::uint64_t operations = 0;
     for (std::uint64_t first = 0; first < body.set.columns; first += width) {
       PartialCapacitance batch;
-      batch.set = {patch.level, body.set.columns - static_cast<std::uint32_t>(first), body.set.column + first};
+      batch.set = {body.set.columns - static_cast<std::uint32_t>(first), body.set.column + first};
       batch.computed = static_cast<std::uint32_t>(std::min<std::uint64_t>(width, batch.set.count));
       begin_capacitance(body.refinement, body.touched, scratch, body.force, batch);
       operations += add_capacitance_blocks(*view_, body.touched, scratch, UINT64_MAX, batch) - 20 * counts.stored;

@@ -74,15 +74,16 @@ TEST_CASE("kernels take the same instructions whatever the numbers") {
   Body& body = *placed.body;
   const std::vector<std::uint32_t> nodes = model.touchable();
   const std::uint32_t place = domain_place(view, nodes[nodes.size() / 2]);
+  const std::uint32_t column = make_column(1, place);
   std::vector<Float4> x(view.node_count);
   const auto field = counts([&](float value) {
     const float force[] = {value, value, value};
-    compute_field({view, body.columns, body.parents}, {1, 1, &place, force}, {1, 1}, body.field_touched, x.data());
+    compute_field({view, body.columns, body.parents}, {1, &column, force}, {1, 1}, body.field_touched, x.data());
   });
   CHECK(all_equal(field));
   CHECK(field[0] > 100);
 
-  touch(body.refinement, 1, &place, 1, body.touched);
+  touch(body.refinement, &column, 1, body.touched);
   const auto transformed = counts([&](float value) {
     body.force[place] = Float4{value, value, value, 0};
     transform_forces(body.refinement, body.touched, body.force);

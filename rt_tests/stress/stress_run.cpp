@@ -215,7 +215,7 @@ class StressRun {
 
   void check(const ScriptedStep& scripted, const StepReport& report, const Response& response) {
     const bool answered = report.status <= Status::coarser;
-    const std::uint64_t declared = answered ? requirement_.worst_work[report.constraint_level] : result_.declared_work;
+    const std::uint64_t declared = answered ? requirement_.worst_work[report.finer_level] : result_.declared_work;
     result_.violations.work_overruns += report.work > scripted.budget || report.work > declared ? 1 : 0;
     const bool may_answer = scripted.budget >= requirement_.least_work;
     bool right = false;
@@ -242,7 +242,7 @@ class StressRun {
 
   void note_digest(const StepReport& report, const Response& response) {
     const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status), report.constraint_level,
-                                   report.field_level, report.work};
+                                   report.finer_level, report.finer_contacts, report.field_level, report.work};
     script_.digest = add_to_digest(script_.digest, facts, sizeof facts);
     script_.digest = add_to_digest(script_.digest, response.force.data(), response.force.size_bytes());
     script_.digest = add_to_digest(script_.digest, response.displacement.data(), response.displacement.size_bytes());

@@ -82,22 +82,22 @@ void time_kernels(const TestModel& model) {
   std::mt19937_64 random(3);
   const auto contacts = patch(model, random, 16);
   const std::uint32_t c = view.levels - 1;
-  resolve_contacts(contacts, view, body.facts, c, body.set);
+  resolve_contacts(contacts, view, body.facts, {c}, body.set);
   const double touching = median_nanoseconds(20, [&](int) {
     clear(body.touched);
-    touch(body.refinement, c, body.set.column, body.set.columns, body.touched);
+    touch(body.refinement, body.set.column, body.set.columns, body.touched);
   });
   SetCounts counts;
-  count_factor(body.set, body.touched, body.cost[c], body.stored, counts);
+  count_factor(body.set, body.touched, body.cost, body.stored, counts);
   const auto blocks = static_cast<double>(count_field_blocks(body.columns, body.set, c));
   const std::vector<float> force(3 * contacts.size(), 1e-3F);
-  const NodeForces forces{c, body.set.columns, body.set.column, force.data()};
+  const ColumnForces forces{body.set.columns, body.set.column, force.data()};
   const double field = median_nanoseconds(20, [&](int) {
     compute_field({view, body.columns, body.parents}, forces, {c, c}, body.field_touched, x.data());
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
-    assemble_capacitance(body.refinement, {c, body.set.columns, body.set.column}, body.touched, body.capacitance,
+    assemble_capacitance(body.refinement, {body.set.columns, body.set.column}, body.touched, body.capacitance,
                          body.force, 48, matrix.data());
   });
   const double transform = median_nanoseconds(20, [&](int) {
