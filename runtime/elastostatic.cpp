@@ -167,8 +167,7 @@ void glide_forces(Body& body, std::span<const Contact> contacts, std::uint64_t b
 // what is left of the budget goes into the factor that a finer level lacked
 void prepare_finer_level(Body& body, std::span<const Contact> contacts, const Plan& plan, std::uint64_t budget,
                          StepReport& report) {
-  const bool finer = plan.wanted.resolution.level > report.constraint_level || plan.wanted.resolution.fine != nullptr;
-  if (!plan.wanted.exists || !finer) {
+  if (!plan.wanted.exists || plan.wanted.level <= report.constraint_level) {
     return;
   }
   const std::uint64_t resolving = resolve_contacts_work(contacts.size());
@@ -177,7 +176,7 @@ void prepare_finer_level(Body& body, std::span<const Contact> contacts, const Pl
     report.pending_work = pending_work(body.counts, plan.wanted.counts);
     return;
   }
-  resolve_contacts(contacts, *body.view, body.facts, plan.wanted.resolution, body.set);
+  resolve_contacts(contacts, *body.view, body.facts, {plan.wanted.level}, body.set);
   report.work += resolving;
   const std::uint64_t left = limit - report.work;
   const std::uint64_t most = most_slice_work(body.counts, plan.wanted.counts) + drop_batch_work(body.pending);

@@ -82,13 +82,18 @@ void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges
 }
 
 std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, const ColumnCosts& cost) noexcept {
+  std::uint64_t blocks = 0;
+  for (std::uint32_t t = 0; t < changes.added; ++t) {
+    blocks += cost.of(changes.in[t]).blocks;
+  }
+  return update_factor_work(set, changes, blocks);
+}
+
+std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, std::uint64_t blocks) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
   CapacitanceCounts capacitance = capacitance_counts(set);
   capacitance.columns = changes.added;
-  capacitance.blocks = 0;
-  for (std::uint32_t t = 0; t < changes.added; ++t) {
-    capacitance.blocks += cost.of(changes.in[t]).blocks;
-  }
+  capacitance.blocks = blocks;
   return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
          changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
 }

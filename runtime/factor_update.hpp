@@ -53,6 +53,10 @@ constexpr std::uint64_t find_changes_work(std::uint64_t factors, std::uint64_t c
 [[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes,
                                                const ColumnCosts& cost) noexcept;
 
+/// The same, blocks: of ColumnCost, summed over the new nodes.
+[[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes,
+                                               std::uint64_t blocks) noexcept;
+
 /// Whose coefficients are touched, and what computes their capacitance.
 struct CapacitanceSource {
   const Refinement& refinement;

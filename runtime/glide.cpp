@@ -24,11 +24,25 @@ std::uint32_t Glide::last_place(std::uint32_t node) const noexcept {
   return place < contacts_ && node_[place] == node ? place : layout::none;
 }
 
-bool Glide::persists(std::span<const Contact> contacts) const noexcept {
+const float* Glide::last_force(std::uint32_t node) const noexcept {
+  const std::uint32_t place = last_place(node);
+  return place == layout::none ? nullptr : force_ + std::size_t{3} * place;
+}
+
+std::size_t Glide::common(std::span<const Contact> contacts) const noexcept {
   std::size_t common = 0;
   for (const Contact& contact : contacts) {
     common += last_place(contact.node) != layout::none ? 1 : 0;
   }
+  return common;
+}
+
+bool Glide::stays(std::span<const Contact> contacts) const noexcept {
+  return contacts.size() == contacts_ && common(contacts) == contacts_;
+}
+
+bool Glide::persists(std::span<const Contact> contacts) const noexcept {
+  const std::size_t common = this->common(contacts);
   const std::size_t larger = contacts.size() > contacts_ ? contacts.size() : contacts_;
   return 4 * common >= 3 * larger && common > 0;
 }

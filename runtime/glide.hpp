@@ -44,6 +44,15 @@ class Glide {
   /// known. For the loop.
   GlideReport blend(std::span<const Contact> contacts, const float* older, float* force) noexcept;
 
+  /// Whether most contacts are those of the last answer. For the loop; work: a unit a contact.
+  [[nodiscard]] bool persists(std::span<const Contact> contacts) const noexcept;
+
+  /// Whether all are, and no other. For the loop; work: a unit a contact.
+  [[nodiscard]] bool stays(std::span<const Contact> contacts) const noexcept;
+
+  /// [3] of a node in the last answer, N; null if it was not held. For the loop; work: a unit.
+  [[nodiscard]] const float* last_force(std::uint32_t node) const noexcept;
+
   /// No contact is held: the next ones have nothing to glide from.
   void release() noexcept { contacts_ = 0; }
 
@@ -54,8 +63,8 @@ class Glide {
   static constexpr std::uint32_t mixed = layout::max_levels;  // for a level
 
   [[nodiscard]] std::uint32_t last_place(std::uint32_t node) const noexcept;
+  [[nodiscard]] std::size_t common(std::span<const Contact> contacts) const noexcept;
   [[nodiscard]] bool moves(std::span<const Contact> contacts) const noexcept;
-  [[nodiscard]] bool persists(std::span<const Contact> contacts) const noexcept;
   void turn_back() noexcept;
   void remember(std::span<const Contact> contacts, const float* force) noexcept;
 

@@ -5,23 +5,16 @@
 namespace greenloop {
 namespace {
 
-// squares of what the contacts of a group differ by from their mean
-float unsaid(std::span<const Contact> contacts, std::span<const std::uint32_t> group) {
-  float mean[3] = {};
+// square of the force of a group in the last answer
+float square_force(std::span<const Contact> contacts, std::span<const std::uint32_t> group, const Glide& last) {
+  float force[3] = {};
   for (const std::uint32_t i : group) {
-    for (std::uint32_t r = 0; r < 3; ++r) {
-      mean[r] += without_denormals(contacts[i].displacement[r]);
+    const float* const of_node = last.last_force(contacts[i].node);
+    for (std::uint32_t r = 0; of_node != nullptr && r < 3; ++r) {
+      force[r] += of_node[r];
     }
   }
-  float sum = 0;
-  for (const std::uint32_t i : group) {
-    for (std::uint32_t r = 0; r < 3; ++r) {
-      const float difference =
-          without_denormals(contacts[i].displacement[r]) - mean[r] / static_cast<float>(group.size());
-      sum += difference * difference;
-    }
-  }
-  return sum;
+  return force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
 }
 
 }  // namespace
@@ -32,7 +25,7 @@ void Mixture::carve(Arena& arena, std::uint32_t contacts) noexcept {
   member_ = arena.take<std::uint32_t>(contacts);
   order_ = arena.take<std::uint32_t>(contacts);
   sorting_ = arena.take<std::uint32_t>(contacts);
-  unsaid_ = arena.take<float>(contacts);
+  weight_ = arena.take<float>(contacts);
   fine_ = arena.take<bool>(contacts);
   last_node_ = arena.take<std::uint32_t>(contacts);
 }
@@ -50,28 +43,34 @@ void Mixture::list_members(const ContactSet& set, std::size_t contacts) noexcept
   begin_[0] = 0;
 }
 
-void Mixture::rank(std::span<const Contact> contacts, const ContactSet& set, const NodeFacts* facts) noexcept {
+void Mixture::rank(std::span<const Contact> contacts, const ContactSet& set, const NodeFacts* facts,
+                   const Glide& last) noexcept {
   groups_ = set.columns;
+  std::memset(fine_, 0, contacts.size());
   std::memcpy(column_, set.column, sizeof(std::uint32_t) * groups_);
   list_members(set, contacts.size());
   for (std::uint32_t k = 0; k < groups_; ++k) {
     order_[k] = k;
     const auto group = contacts_of(k);
     const float kept = facts[contacts[group[0]].node].fine ? 4.0F : 1.0F;
-    unsaid_[k] = kept * unsaid(contacts, group);
+    weight_[k] = kept * square_force(contacts, group, last);
   }
-  merge_sort(groups_, order_, sorting_, [this](std::uint32_t a, std::uint32_t b) { return unsaid_[a] > unsaid_[b]; });
+  merge_sort(groups_, order_, sorting_, [this](std::uint32_t a, std::uint32_t b) { return weight_[a] > weight_[b]; });
 }
 
-void Mixture::choose(std::uint32_t groups, std::span<const Contact> contacts, NodeFacts* facts) noexcept {
+void Mixture::choose(std::uint32_t g) noexcept {
+  for (const std::uint32_t i : contacts_of(g)) {
+    fine_[i] = true;
+  }
+}
+
+void Mixture::remember(bool answered, std::span<const Contact> contacts, NodeFacts* facts) noexcept {
   for (std::uint32_t k = 0; k < last_; ++k) {
     facts[last_node_[k]].fine = false;
   }
   last_ = 0;
-  std::memset(fine_, 0, contacts.size());
-  for (std::uint32_t g = 0; g < groups; ++g) {
-    for (const std::uint32_t i : contacts_of(g)) {
-      fine_[i] = true;
+  for (std::uint32_t i = 0; answered && i < contacts.size(); ++i) {
+    if (fine_[i]) {
       facts[contacts[i].node].fine = true;
       last_node_[last_++] = contacts[i].node;
     }

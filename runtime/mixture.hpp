@@ -5,12 +5,13 @@
 
 #include "runtime/arena.hpp"
 #include "runtime/contact_set.hpp"
+#include "runtime/glide.hpp"
 
 namespace greenloop {
 
 /// Which contacts of a coarser set are resolved at the finest level although not all can be: whole groups, of those
-/// that share a column, in the order of what their common displacement leaves unsaid. The order is kept from step to
-/// step unless others differ twice as much, lest the set change with every tremor.
+/// that share a column, the largest force of the last answer first (docs/runtime.md compares other orders). A group that
+/// is chosen stays before others unless their force is twice as large, lest the set change with every tremor.
 class Mixture {
  public:
   /// Arrays out of `arena`; null while it counts.
@@ -21,8 +22,10 @@ class Mixture {
     return 24 * contacts + merge_sort_work(contacts);
   }
 
-  /// Ranks the groups of a set of one constraint level; none is chosen. For the loop; work: within choose_work.
-  void rank(std::span<const Contact> contacts, const ContactSet& set, const NodeFacts* facts) noexcept;
+  /// Ranks the groups of a set of one constraint level; none is chosen. last: knows the last answer. For the loop; work:
+  /// within choose_work.
+  void rank(std::span<const Contact> contacts, const ContactSet& set, const NodeFacts* facts,
+            const Glide& last) noexcept;
 
   [[nodiscard]] std::uint32_t groups() const noexcept { return groups_; }
 
@@ -35,8 +38,15 @@ class Mixture {
     return {member_ + begin_[k], begin_[k + 1] - begin_[k]};
   }
 
-  /// Chooses the first groups. For the loop; work: within choose_work.
-  void choose(std::uint32_t groups, std::span<const Contact> contacts, NodeFacts* facts) noexcept;
+  /// Chooses the g-th group. For the loop; work: within choose_work.
+  void choose(std::uint32_t g) noexcept;
+
+  /// Marks the nodes of the chosen groups, or none, in place of those of the last choice. For the loop; work: within
+  /// choose_work.
+  void remember(bool answered, std::span<const Contact> contacts, NodeFacts* facts) noexcept;
+
+  /// Whether there was a last choice.
+  [[nodiscard]] bool has_last() const noexcept { return last_ > 0; }
 
   /// [contacts] of those that rank was given: whether they are chosen.
   [[nodiscard]] const bool* fine() const noexcept { return fine_; }
@@ -50,7 +60,7 @@ class Mixture {
   std::uint32_t* member_ = nullptr;     ///< [contacts] by groups
   std::uint32_t* order_ = nullptr;      ///< [groups]
   std::uint32_t* sorting_ = nullptr;    ///< [groups] scratch
-  float* unsaid_ = nullptr;             ///< [groups]
+  float* weight_ = nullptr;             ///< [groups]
   bool* fine_ = nullptr;                ///< [contacts]
   std::uint32_t* last_node_ = nullptr;  ///< [contacts] that were chosen last
   std::uint32_t last_ = 0;

@@ -52,22 +52,63 @@ void choose_factor(Body& body, Plan& plan) {
   plan.factor += drop_batch_work(body.pending);
 }
 
-// decides where the factor comes from; whether all fits, or else whether the set is wanted
+// work of the answer that is planned, deciding included
+std::uint64_t planned_work(const Plan& plan) {
+  return plan.work + force_work(plan.counts) + plan.factor + plan.field;
+}
+
+// decides where the factor comes from; whether all fits, or else whether the level is wanted
 void plan_factor(Body& body, const Task& task, Plan& plan) {
   const bool holds = holds_answer(task, plan);
   if (plan.cached == nullptr) {
     choose_factor(body, plan);
   }
-  plan.fits = plan.work + force_work(plan.counts) + plan.factor + plan.field <= task.budget;
+  plan.fits = planned_work(plan) <= task.budget;
   if (!plan.fits && holds && !plan.wanted.exists) {
-    plan.wanted = {true, plan.resolution, plan.counts};
+    plan.wanted = {true, plan.resolution.level, plan.counts};
   }
 }
 
-// a set in the making: `set` has sums over its columns, which bound its coefficients and visits
+// what a mixed set may cost
+struct Room {
+  std::uint64_t budget = 0;    // for all of it
+  std::uint64_t planning = 0;  // for nothing but planning: the rest is the coarser answer's
+  std::uint32_t entering = 0;  // contacts that enter a factor
+};
+
+// most contacts that can enter a factor of about as many coefficients as the finest set has
+std::uint32_t most_entering(const Plan& plan, std::uint64_t budget) {
+  const SetCounts& whole = plan.wanted.counts;
+  FactorChanges changes;
+  std::uint32_t entering = FactorChanges::most;
+  for (; entering > 0; entering /= 2) {
+    changes.added = changes.removed = entering;
+    const std::uint64_t blocks = entering * whole.column_blocks / whole.columns;
+    const std::uint64_t factor = update_factor_work(whole, changes, blocks);
+    if (plan.work + factor + force_work(whole) + plan.field <= budget) {
+      break;
+    }
+  }
+  return entering;
+}
+
+Room room_for_mixture(const Body& body, const Task& task, const Plan& plan) {
+  const std::uint64_t again = resolve_work(body.counts, plan.counts) + touch_work(plan.counts);
+  const std::uint64_t coarser = planned_work(plan) + again;
+  const std::uint64_t refining = body.counts.refining_work;
+  Room room;
+  room.budget = task.budget < refining ? task.budget : refining;
+  room.planning = coarser < task.budget ? task.budget - coarser : 0;
+  // contacts that stay reach the finest level sooner by slices
+  room.entering = body.glide.stays(task.contacts) ? 0 : most_entering(plan, room.budget);
+  return room;
+}
+
+// a mixed set in the making: `set` has sums over its columns, which bound its coefficients and visits
 struct Choice {
   SetCounts set;
   std::uint64_t field_blocks = 0;
+  std::uint32_t entering = 0;
 
   void add(const Body& body, const Task& task, const FieldLevels& levels, std::uint32_t column) {
     const ColumnCost& cost = body.cost.of(column);
@@ -84,88 +125,104 @@ struct Choice {
   }
 };
 
-// whether the budget holds a choice, given its factor, and an answer without it if the factor cannot be had
-bool holds_choice(const Body& body, const Task& task, const Plan& plan, const Choice& choice) {
+// whether the room holds a choice, given its factor
+bool holds(const Body& body, const Task& task, const Plan& plan, const Room& room, const Choice& choice) {
   const std::uint64_t planning = mixture_work(body.counts, choice.set);
   const std::uint64_t field =
       task.wants_field ? field_work(body.counts, choice.set, plan.field_levels, choice.field_blocks) : 0;
-  return planning + body.least_work <= task.budget &&
-         plan.work + planning + force_work(choice.set) + field <= task.budget;
+  return choice.entering <= room.entering && planning <= room.planning &&
+         plan.work + planning + force_work(choice.set) + field <= room.budget;
 }
 
-// chooses as many groups of a set as the budget holds; false if none
-bool choose_groups(Body& body, const Task& task, Plan& plan) {
+// a choice with one more group
+Choice with_group(const Body& body, const Task& task, const Plan& plan, std::uint32_t g, Choice choice) {
+  Choice coarse;
+  coarse.add(body, task, plan.field_levels, body.mixture.column(g));
+  choice.remove(coarse);
+  for (const std::uint32_t i : body.mixture.contacts_of(g)) {
+    const std::uint32_t node = task.contacts[i].node;
+    choice.add(body, task, plan.field_levels, column_of(*body.view, body.facts, node, body.counts.levels - 1));
+    choice.entering += body.facts[node].fine ? 0 : 1;
+  }
+  return choice;
+}
+
+// chooses groups of a coarser set in their order, each that the room still holds; false if none
+bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   Choice choice;
   choice.set.contacts = task.contacts.size();
   for (std::uint32_t k = 0; k < body.set.columns; ++k) {
     choice.add(body, task, plan.field_levels, body.set.column[k]);
   }
-  if (!holds_choice(body, task, plan, choice)) {
+  if ((room.entering == 0 && !body.mixture.has_last()) || !holds(body, task, plan, room, choice)) {
     return false;
   }
-  body.mixture.rank(task.contacts, body.set, body.facts);
-  std::uint32_t chosen = 0;
-  for (; chosen < body.mixture.groups(); ++chosen) {
-    Choice coarse;
-    coarse.add(body, task, plan.field_levels, body.mixture.column(chosen));
-    Choice finer = choice;
-    finer.remove(coarse);
-    for (const std::uint32_t i : body.mixture.contacts_of(chosen)) {
-      const std::uint32_t column = column_of(*body.view, body.facts, task.contacts[i].node, body.counts.levels - 1);
-      finer.add(body, task, plan.field_levels, column);
-    }
-    if (!holds_choice(body, task, plan, finer)) {
-      break;
-    }
-    choice = finer;
-  }
   plan.work += Mixture::choose_work(task.contacts.size());
-  body.mixture.choose(chosen, task.contacts, body.facts);
-  return chosen > 0;
+  body.mixture.rank(task.contacts, body.set, body.facts, body.glide);
+  bool chosen = false;
+  for (std::uint32_t g = 0; g < body.mixture.groups(); ++g) {
+    const Choice finer = with_group(body, task, plan, g, choice);
+    if (holds(body, task, plan, room, finer)) {
+      body.mixture.choose(g);
+      choice = finer;
+      chosen = true;
+    }
+  }
+  return chosen;
 }
 
-// the level's set with some groups at the finest level; if it does not fit, the level's set again
-void plan_mixture(Body& body, const Task& task, Plan& plan) {
-  const Resolution coarse = plan.resolution;
-  if (!choose_groups(body, task, plan)) {
-    return;
+// puts contacts of a coarser set to the finest level if that fits as well; else leaves everything as it was
+void refine(Body& body, const Task& task, Plan& plan) {
+  const Room room = room_for_mixture(body, task, plan);
+  Plan mixed = plan;
+  bool fits = false;
+  if (choose_groups(body, task, room, mixed)) {
+    plan_set(body, task, {plan.resolution.level, body.mixture.fine()}, mixed);
+    plan_factor(body, task, mixed);
+    fits = planned_work(mixed) <= room.budget;
+    if (!fits) {
+      resolve_contacts(task.contacts, *body.view, body.facts, plan.resolution, body.set);
+      mixed.work += resolve_work(body.counts, plan.counts);
+      if (plan.cached == nullptr) {
+        clear(body.touched);
+        touch(body.refinement, body.set.column, body.set.columns, body.touched);
+        mixed.work += touch_work(plan.counts);
+      }
+    }
   }
-  plan_set(body, task, {coarse.level, body.mixture.fine()}, plan);
-  plan_factor(body, task, plan);
-  if (!plan.fits) {
-    plan_set(body, task, coarse, plan);
-  }
+  body.mixture.remember(fits, task.contacts, body.facts);
+  plan.work = mixed.work;
+  plan = fits ? mixed : plan;
 }
 
 }  // namespace
 
-std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& most) noexcept {
-  return Mixture::choose_work(most.contacts) + 2 * resolve_work(model, most) + touch_work(most) +
-         find_changes_work(model.cached_factors, most.columns);
+std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept {
+  return Mixture::choose_work(set.contacts) + resolve_work(model, set) + touch_work(set) +
+         find_changes_work(model.cached_factors, set.columns);
 }
 
 Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field,
-               std::uint32_t finest) noexcept {
+               std::uint32_t finest_displaced) noexcept {
   const Task task{contacts, budget, wants_field};
-  const std::uint32_t levels = body.counts.levels;
+  const std::uint32_t finest = body.counts.levels - 1;
   const std::uint32_t coarsest = body.view->info->coarsest_constraint_level;
   Plan plan;
-  plan.field_levels = {finest, finest};
-  for (std::uint32_t c = levels; !plan.fits && c-- > coarsest;) {
+  plan.field_levels = {finest_displaced, finest_displaced};
+  for (std::uint32_t c = finest + 1; !plan.fits && c-- > coarsest;) {
     plan_set(body, task, {c}, plan);
-    const bool holds = holds_answer(task, plan);
-    if (holds && !plan.wanted.exists && c + 1 < levels) {
-      plan_mixture(body, task, plan);
-    }
-    if (!plan.fits && (holds || c == coarsest)) {
+    if (holds_answer(task, plan) || c == coarsest) {
       plan_factor(body, task, plan);
     }
+  }
+  if (plan.fits && plan.wanted.exists && plan.wanted.level == finest && body.glide.persists(contacts)) {
+    refine(body, task, plan);
   }
   while (!plan.fits && wants_field && plan.field_levels.details > 0) {
     --plan.field_levels.details;
     plan.work += count_field_work(plan.counts);
     plan.field = planned_field_work(body, plan);
-    plan.fits = plan.work + force_work(plan.counts) + plan.factor + plan.field <= budget;
+    plan.fits = planned_work(plan) <= budget;
   }
   return plan;
 }

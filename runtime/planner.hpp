@@ -22,22 +22,23 @@ struct Plan {
   std::uint64_t field = 0;  ///< work of the field
   bool fits = false;
 
-  /// The best set that nothing but its factor kept from answering.
+  /// The finest level that nothing but its factor kept from answering.
   struct Wanted {
     bool exists = false;
-    Resolution resolution;
+    std::uint32_t level = 0;
     SetCounts counts;
   } wanted;
 };
 
-/// Bound of the work units of planning a mixed set of `most` counts.
-[[nodiscard]] std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& most) noexcept;
+/// Work units of planning a mixed set of such counts.
+[[nodiscard]] std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
-/// Chooses by closed-form work, in this order: every contact at the finest level; the finest level that fits with a
-/// factor at hand, with as many groups of contacts at the finest level as fit then; coarser levels; the coarsest with a
-/// field of fewer details. Of each set: its cached factor, an update of another one, a fresh one. finest: level of the
-/// nodes that are displaced. For the loop; Plan::work.
+/// Chooses by closed-form work the finest level whose answer fits, with the field as it was asked for: by its cached
+/// factor, an update of another one or a fresh one. Where only the factor of the finest level is too dear, groups of
+/// contacts of the level that fits are put there, as many as a factor at hand can take (Mixture). If no level fits, the
+/// coarsest with as many details in the field as fit. finest_displaced: level of the nodes that are displaced. For the
+/// loop; work: Plan::work.
 [[nodiscard]] Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field,
-                             std::uint32_t finest) noexcept;
+                             std::uint32_t finest_displaced) noexcept;
 
 }  // namespace greenloop

@@ -47,7 +47,7 @@ ReachBound larger_reach(const ReachBound& a, const ReachBound& b) {
 // the dearest that a step may have done before and after it is answered, over the levels looked at
 struct OtherWork {
   std::uint64_t plans = 0;    // of the sets of one level
-  std::uint64_t mixture = 0;  // of a mixed one
+  std::uint64_t mixture = 0;  // of a mixed one, and going back to the level's
   std::uint64_t dropped = 0;  // batch of a finer set
   std::uint64_t older = 0;    // forces of the level before
   std::uint64_t slices = 0;   // of the factor of a finer set
@@ -116,12 +116,12 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     const SetCounts mixed =
         most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
     if (c < finest) {
-      other.mixture = larger(other.mixture, mixture_work(counts, mixed));
-      other.dropped = larger(other.dropped, 2 * mixed.coefficients);
+      const std::uint64_t again = resolve_work(counts, most) + touch_work(most);
+      other.mixture = larger(other.mixture, mixture_work(counts, mixed) + again);
       const std::uint64_t answer =
           other.plans + other.mixture + fresh_forces_work(counts, mixed, other) + field(mixed, finest) + other.older;
-      requirement.worst_work[finest] = larger(requirement.worst_work[finest], answer);
-      add_slices(counts, mixed, other);
+      const std::uint64_t worst = with_slices(answer, other.slices, limits.refining_work);
+      requirement.worst_work[finest] = larger(requirement.worst_work[finest], worst);
     }
     // at the coarsest level the field is cut as well
     const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
