@@ -29,14 +29,15 @@ struct Body {
   Lifting lifting;
   Refinement refinement;
   FieldColumns columns;
-  std::uint8_t* field_touched = nullptr;            ///< see compute_field
-  const ParentOffsets* parents = nullptr;           ///< [domain]
-  std::uint32_t* stored = nullptr;                  ///< [domain] blocks of all layers in a coefficient's column
+  std::uint8_t* field_touched = nullptr;   ///< see compute_field
+  const ParentOffsets* parents = nullptr;  ///< [domain]
+  std::uint32_t* stored = nullptr;         ///< [domain] blocks of all layers in a coefficient's column
   ColumnCosts cost;
-  NodeFacts* facts = nullptr;                       ///< [node_count]
+  NodeFacts* facts = nullptr;  ///< [node_count]
   ContactSet set;
   Touched touched;  ///< by the set
   CapacitanceScratch capacitance;
+  FactorChanges changes;  ///< what tells the nearest cached factor from the planned set
   FactorUpdateScratch update;
   Float4* column_force = nullptr;  ///< displacements, then forces of the set's columns
   Float4* solution = nullptr;      ///< the same in the order of a factor

@@ -54,7 +54,8 @@ Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_coun
   return status;
 }
 
-std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node, std::uint32_t level) noexcept {
+std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node,
+                        std::uint32_t level) noexcept {
   const std::uint32_t mesh_level = facts[node].mesh_level;
   const std::uint32_t representative =
       view.representatives[level][mesh_level][node - view.level[mesh_level].node_begin];
@@ -66,8 +67,7 @@ void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, 
   set.columns = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool fine = resolution.fine != nullptr && resolution.fine[i];
-    const std::uint32_t column =
-        column_of(view, facts, contacts[i].node, fine ? view.levels - 1 : resolution.level);
+    const std::uint32_t column = column_of(view, facts, contacts[i].node, fine ? view.levels - 1 : resolution.level);
     set.place[i] = column_place(column);
     std::uint32_t& index = set.index_of_place[column_place(column)];
     if (index == layout::none) {

@@ -41,8 +41,8 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
 Factor* factorise(Body& body) {
   Factor& factor = body.cache.make_room(body.set);
   const std::uint32_t columns = body.set.columns;
-  assemble_capacitance(body.refinement, {columns, body.set.column}, body.touched, body.capacitance,
-                       body.force, body.cache.stride(), factor.matrix);
+  assemble_capacitance(body.refinement, {columns, body.set.column}, body.touched, body.capacitance, body.force,
+                       body.cache.stride(), factor.matrix);
   factor.changes = 0;
   for (std::uint32_t k = 0; k < columns; ++k) {
     factor.node[k] = body.set.column[k];
@@ -51,13 +51,13 @@ Factor* factorise(Body& body) {
   return cholesky_factor(3 * columns, body.cache.stride(), factor.matrix) ? &factor : nullptr;
 }
 
-Factor* make_factor(Body& body, const FactorChanges& changes) {
+Factor* make_factor(Body& body, bool update) {
   drop_batch(body);
-  if (changes.base == nullptr) {
+  if (!update) {
     return factorise(body);
   }
   const CapacitanceSource source{body.refinement, body.touched, body.capacitance, body.force};
-  return update_factor(body.cache, body.set, changes, source, body.update);
+  return update_factor(body.cache, body.set, body.changes, source, body.update);
 }
 
 // three numbers of each column, between the order of the set and that of a factor
@@ -191,7 +191,7 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   Factor* factor = plan.cached;
   if (factor == nullptr) {
     work += plan.factor;
-    factor = make_factor(body, plan.changes);
+    factor = make_factor(body, plan.update);
     if (factor == nullptr) {
       return held(Status::held_singular, work);
     }
@@ -219,7 +219,7 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
   body.cache.use(*factor);
   prepare_finer_level(body, contacts, plan, budget, report);
   report.cached_factor = plan.cached != nullptr;
-  report.changed_nodes = plan.changes.base != nullptr ? plan.changes.added + plan.changes.removed : 0;
+  report.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
   const bool finest =
       report.constraint_level + 1 == view.levels && plan.field_levels.details == plan.field_levels.nodes;
   report.status = finest && report.glide == 1 ? Status::ok : Status::coarser;

@@ -73,7 +73,7 @@ struct Requirement {
   std::size_t bytes = 0;  ///< of the arena
   std::size_t alignment = 64;
   std::uint64_t least_work = 0;  ///< the smallest budget `step` accepts: coarsest level, all contacts, coarsest field
-  std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step by its StepReport::finer_level
+  std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step by its StepReport::constraint_level
 };
 
 enum class CreateError : std::uint8_t {
@@ -101,8 +101,9 @@ class Elastostatic {
   [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
 
   /// One cycle of the loop: finds the forces that hold `contacts` where they are and the displacement of every node,
-  /// as finely as fits the budget by closed-form work (docs/runtime.md, "Budgets"). No heap, lock, system call, exception or clock;
-  /// same model, limits, history, contacts and budget give the same bits. Work: at most budget.work.
+  /// as finely as fits the budget by closed-form work (docs/runtime.md, "Budgets"). No heap, lock, system call,
+  /// exception or clock; same model, limits, history, contacts and budget give the same bits. Work: at most
+  /// budget.work.
   StepReport step(std::span<const Contact> contacts, Budget budget, const Response& response) noexcept;
 
  private:

@@ -86,14 +86,14 @@ std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& chan
   for (std::uint32_t t = 0; t < changes.added; ++t) {
     blocks += cost.of(changes.in[t]).blocks;
   }
-  return update_factor_work(set, changes, blocks);
+  return update_factor_work(set, ChangeCounts{changes.added, changes.removed, blocks});
 }
 
-std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, std::uint64_t blocks) noexcept {
+std::uint64_t update_factor_work(const SetCounts& set, const ChangeCounts& changes) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
   CapacitanceCounts capacitance = capacitance_counts(set);
   capacitance.columns = changes.added;
-  capacitance.blocks = blocks;
+  capacitance.blocks = changes.blocks;
   return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
          changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
 }

@@ -53,9 +53,13 @@ constexpr std::uint64_t find_changes_work(std::uint64_t factors, std::uint64_t c
 [[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes,
                                                const ColumnCosts& cost) noexcept;
 
-/// The same, blocks: of ColumnCost, summed over the new nodes.
-[[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes,
-                                               std::uint64_t blocks) noexcept;
+/// What the work of an update follows from.
+struct ChangeCounts {
+  std::uint64_t added = 0;
+  std::uint64_t removed = 0;
+  std::uint64_t blocks = 0;  ///< of ColumnCost, summed over the new nodes
+};
+[[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const ChangeCounts& changes) noexcept;
 
 /// Whose coefficients are touched, and what computes their capacitance.
 struct CapacitanceSource {

@@ -6,8 +6,8 @@
 
 namespace greenloop {
 
-void compute_field(const FieldModel& model, const ColumnForces& forces, const FieldLevels& levels, std::uint8_t* touched,
-                   Float4* x) noexcept {
+void compute_field(const FieldModel& model, const ColumnForces& forces, const FieldLevels& levels,
+                   std::uint8_t* touched, Float4* x) noexcept {
   constexpr std::uint32_t ahead = 2;  // columns that are on their way while one is summed
   const SparseCoefficients coefficients{x, touched};
   std::memset(x, 0, sizeof(Float4) * nodes_up_to(model.view, levels.nodes));

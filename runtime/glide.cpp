@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstring>
 
-
 namespace greenloop {
 
 void Glide::carve(Arena& arena, std::uint32_t contacts, std::uint64_t nodes, std::uint32_t cycles) noexcept {

@@ -17,14 +17,13 @@ struct GlideReport {
   double switch_work = 0;  ///< J
 };
 
-/// Leads the forces from one constraint level, or mixture of levels, to another in equal parts of their difference. While both can be
-/// solved, the forces are (1 - s) K_old u + s K_new u of the present displacements u, with s growing by 1 / cycles:
-/// both are symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new - f_old) . u.
-/// Else, and always from a mixture, the last known difference is kept and let go in the same parts: the stiffness is the
-/// newer level's at once.
-/// Differences belong to nodes: contacts that are new have none. There is no glide, and one under way ends, where fewer
-/// than three quarters of the contacts persist: forces change with the contacts then, and a difference of other
-/// contacts would only falsify them.
+/// Leads the forces from one constraint level, or mixture of levels, to another in equal parts of their difference.
+/// While both can be solved, the forces are (1 - s) K_old u + s K_new u of the present displacements u, with s growing
+/// by 1 / cycles: both are symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new
+/// - f_old) . u. Else, and always from a mixture, the last known difference is kept and let go in the same parts: the
+/// stiffness is the newer level's at once. Differences belong to nodes: contacts that are new have none. There is no
+/// glide, and one under way ends, where fewer than three quarters of the contacts persist: forces change with the
+/// contacts then, and a difference of other contacts would only falsify them.
 class Glide {
  public:
   /// Arrays out of `arena`; null while it counts. cycles: of a whole glide, at least 1; with 1 there is none.
@@ -72,18 +71,18 @@ class Glide {
   std::uint32_t left_ = 0;  ///< cycles until the newer level stands alone
   std::uint32_t from_ = 0;
   std::uint32_t to_ = 0;
-  bool moving_ = false;               ///< this step's share differs from that of the last
-  bool fresh_ = false;                ///< this step begins a glide
-  bool kept_ = false;                 ///< the difference is kept, not computed
-  float kept_weight_ = 0;             ///< of a kept difference in the last answer
-  std::uint32_t contacts_ = 0;        ///< of the last answer
-  std::uint32_t* node_ = nullptr;     ///< [contacts]
-  std::uint32_t* place_ = nullptr;    ///< [nodes] in node_, of those that are there
-  std::uint8_t* level_ = nullptr;     ///< [contacts]
+  bool moving_ = false;                 ///< this step's share differs from that of the last
+  bool fresh_ = false;                  ///< this step begins a glide
+  bool kept_ = false;                   ///< the difference is kept, not computed
+  float kept_weight_ = 0;               ///< of a kept difference in the last answer
+  std::uint32_t contacts_ = 0;          ///< of the last answer
+  std::uint32_t* node_ = nullptr;       ///< [contacts]
+  std::uint32_t* place_ = nullptr;      ///< [nodes] in node_, of those that are there
+  std::uint8_t* level_ = nullptr;       ///< [contacts]
   std::uint8_t* next_level_ = nullptr;  ///< [contacts] of this step
-  float* force_ = nullptr;            ///< [3 * contacts]
-  float* difference_ = nullptr;       ///< [3 * contacts]
-  float* next_difference_ = nullptr;  ///< [3 * contacts] scratch
+  float* force_ = nullptr;              ///< [3 * contacts]
+  float* difference_ = nullptr;         ///< [3 * contacts]
+  float* next_difference_ = nullptr;    ///< [3 * contacts] scratch
   float* older_force_ = nullptr;
 };
 

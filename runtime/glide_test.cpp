@@ -102,7 +102,7 @@ Steps flap(const Flapping& flapping, const Limits& limits) {
     const StepReport report = body.step(flapping.contacts, budget);
     REQUIRE(report.status <= Status::coarser);
     CHECK(report.work <= budget);
-    CHECK(report.work <= body.requirement().worst_work[report.finer_level]);
+    CHECK(report.work <= body.requirement().worst_work[report.constraint_level]);
     CHECK((report.status == Status::ok) ==
           (report.glide == 1 && report.constraint_level == 4 && report.field_level == 4));
     const double rounding = 1e-5 * largest(body.force());

@@ -109,7 +109,7 @@ typedef struct greenloop_limits {
 typedef struct greenloop_requirement {
   size_t bytes;                              /* of the arena; 0: greenloop_create would refuse */
   uint64_t least_work;                       /* the smallest budget that greenloop_step accepts */
-  uint64_t worst_work[GREENLOOP_MAX_LEVELS]; /* of a step by its finer_level */
+  uint64_t worst_work[GREENLOOP_MAX_LEVELS]; /* of a step by its constraint_level */
 } greenloop_requirement;
 
 typedef struct greenloop_created {

@@ -10,8 +10,8 @@
 namespace greenloop {
 
 /// Which contacts of a coarser set are resolved at the finest level although not all can be: whole groups, of those
-/// that share a column, the largest force of the last answer first (docs/runtime.md compares other orders). A group that
-/// is chosen stays before others unless their force is twice as large, lest the set change with every tremor.
+/// that share a column, the largest force of the last answer first (docs/runtime.md compares other orders). A group
+/// that is chosen stays before others unless their force is twice as large, lest the set change with every tremor.
 class Mixture {
  public:
   /// Arrays out of `arena`; null while it counts.
@@ -22,8 +22,8 @@ class Mixture {
     return 24 * contacts + merge_sort_work(contacts);
   }
 
-  /// Ranks the groups of a set of one constraint level; none is chosen. last: knows the last answer. For the loop; work:
-  /// within choose_work.
+  /// Ranks the groups of a set of one constraint level; none is chosen. last: knows the last answer. For the loop;
+  /// work: within choose_work.
   void rank(std::span<const Contact> contacts, const ContactSet& set, const NodeFacts* facts,
             const Glide& last) noexcept;
 

@@ -44,9 +44,7 @@ bool is_singular(PendingFactor& pending, const ContactSet& set) {
   return pending.changes.base != nullptr && pending.changes.removed == 0;
 }
 
-bool may_change(const Factor& factor) {
-  return factor.changes < FactorChanges::most_in_a_row;
-}
+bool may_change(const Factor& factor) { return factor.changes < FactorChanges::most_in_a_row; }
 
 // the factor in the making, or the cached one that has most in common with the set, or nothing in the former's place
 Factor* choose_base(Body& body) {

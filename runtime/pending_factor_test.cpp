@@ -74,8 +74,8 @@ TEST_CASE("a factor is complete after as many slices as its work holds, each wit
   Body& fresh = *other.body;
   resolve(fresh, patch(model, 7, 40));
   Factor& expected = fresh.cache.make_room(fresh.set);
-  assemble_capacitance(fresh.refinement, {40, fresh.set.column}, fresh.touched, fresh.capacitance,
-                       fresh.force, fresh.cache.stride(), expected.matrix);
+  assemble_capacitance(fresh.refinement, {40, fresh.set.column}, fresh.touched, fresh.capacitance, fresh.force,
+                       fresh.cache.stride(), expected.matrix);
   REQUIRE(cholesky_factor(120, fresh.cache.stride(), expected.matrix));
   for (std::uint32_t k = 0; k < 40; ++k) {
     expected.position[k] = k;
@@ -205,7 +205,7 @@ TEST_CASE("no script of budgets and contacts exceeds a budget or the worst work,
         const StepReport report = body.step(contacts, budget, with_field);
         REQUIRE(report.status <= Status::coarser);
         REQUIRE(report.work <= budget);
-        REQUIRE(report.work <= need.worst_work[report.finer_level]);
+        REQUIRE(report.work <= need.worst_work[report.constraint_level]);
         CHECK((report.constraint_level < finest || report.pending_work == 0));
         pending += report.pending_work > 0 ? 1 : 0;
         refined += last.pending_work > 0 && report.constraint_level > last.constraint_level ? 1 : 0;
@@ -243,7 +243,7 @@ TEST_CASE("held contacts reach the finest level on a budget that is too small fo
         REQUIRE(report.status == Status::coarser);
         REQUIRE(steps <= 40);
         CHECK(report.work <= budget);
-        CHECK(report.work <= body.requirement().worst_work[report.finer_level]);
+        CHECK(report.work <= body.requirement().worst_work[report.constraint_level]);
         pending = report.constraint_level < 4 ? report.pending_work : pending;
       } while (report.constraint_level < 4);
       MESSAGE("finest level after ", steps, " steps of a ", part, "th of the work of a fresh factor");

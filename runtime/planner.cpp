@@ -26,7 +26,7 @@ void plan_set(Body& body, const Task& task, const Resolution& resolution, Plan& 
   plan.cached = body.cache.find(body.set);
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;
-  plan.changes.base = nullptr;
+  plan.update = false;
   plan.field = task.wants_field ? planned_field_work(body, plan) : 0;
   plan.fits = false;
 }
@@ -41,21 +41,19 @@ void choose_factor(Body& body, Plan& plan) {
   clear(body.touched);
   touch(body.refinement, body.set.column, body.set.columns, body.touched);
   count_factor(body.set, body.touched, body.cost, body.stored, plan.counts);
-  find_changes(body.cache, body.set, plan.changes);
+  find_changes(body.cache, body.set, body.changes);
   plan.work += touch_work(plan.counts) + find_changes_work(body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
-  if (plan.changes.base != nullptr) {
-    const std::uint64_t update = update_factor_work(plan.counts, plan.changes, body.cost);
-    plan.changes.base = update < plan.factor ? plan.changes.base : nullptr;
-    plan.factor = update < plan.factor ? update : plan.factor;
+  if (body.changes.base != nullptr) {
+    const std::uint64_t update = update_factor_work(plan.counts, body.changes, body.cost);
+    plan.update = update < plan.factor;
+    plan.factor = plan.update ? update : plan.factor;
   }
   plan.factor += drop_batch_work(body.pending);
 }
 
 // work of the answer that is planned, deciding included
-std::uint64_t planned_work(const Plan& plan) {
-  return plan.work + force_work(plan.counts) + plan.factor + plan.field;
-}
+std::uint64_t planned_work(const Plan& plan) { return plan.work + force_work(plan.counts) + plan.factor + plan.field; }
 
 // decides where the factor comes from; whether all fits, or else whether the level is wanted
 void plan_factor(Body& body, const Task& task, Plan& plan) {
@@ -79,12 +77,10 @@ struct Room {
 // most contacts that can enter a factor of about as many coefficients as the finest set has
 std::uint32_t most_entering(const Plan& plan, std::uint64_t budget) {
   const SetCounts& whole = plan.wanted.counts;
-  FactorChanges changes;
   std::uint32_t entering = FactorChanges::most;
   for (; entering > 0; entering /= 2) {
-    changes.added = changes.removed = entering;
     const std::uint64_t blocks = entering * whole.column_blocks / whole.columns;
-    const std::uint64_t factor = update_factor_work(whole, changes, blocks);
+    const std::uint64_t factor = update_factor_work(whole, {entering, entering, blocks});
     if (plan.work + factor + force_work(whole) + plan.field <= budget) {
       break;
     }
@@ -93,8 +89,7 @@ std::uint32_t most_entering(const Plan& plan, std::uint64_t budget) {
 }
 
 Room room_for_mixture(const Body& body, const Task& task, const Plan& plan) {
-  const std::uint64_t again = resolve_work(body.counts, plan.counts) + touch_work(plan.counts);
-  const std::uint64_t coarser = planned_work(plan) + again;
+  const std::uint64_t coarser = planned_work(plan) + plan_set_work(body.counts, plan.counts);
   const std::uint64_t refining = body.counts.refining_work;
   Room room;
   room.budget = task.budget < refining ? task.budget : refining;
@@ -171,35 +166,32 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   return chosen;
 }
 
-// puts contacts of a coarser set to the finest level if that fits as well; else leaves everything as it was
+// puts contacts of a coarser set to the finest level if that fits as well
 void refine(Body& body, const Task& task, Plan& plan) {
   const Room room = room_for_mixture(body, task, plan);
-  Plan mixed = plan;
+  const Resolution coarser = plan.resolution;
+  const bool chosen = choose_groups(body, task, room, plan);
   bool fits = false;
-  if (choose_groups(body, task, room, mixed)) {
-    plan_set(body, task, {plan.resolution.level, body.mixture.fine()}, mixed);
-    plan_factor(body, task, mixed);
-    fits = planned_work(mixed) <= room.budget;
-    if (!fits) {
-      resolve_contacts(task.contacts, *body.view, body.facts, plan.resolution, body.set);
-      mixed.work += resolve_work(body.counts, plan.counts);
-      if (plan.cached == nullptr) {
-        clear(body.touched);
-        touch(body.refinement, body.set.column, body.set.columns, body.touched);
-        mixed.work += touch_work(plan.counts);
-      }
-    }
+  if (chosen) {
+    plan_set(body, task, {coarser.level, body.mixture.fine()}, plan);
+    plan_factor(body, task, plan);
+    fits = planned_work(plan) <= room.budget;
   }
   body.mixture.remember(fits, task.contacts, body.facts);
-  plan.work = mixed.work;
-  plan = fits ? mixed : plan;
+  if (chosen && !fits) {
+    plan_set(body, task, coarser, plan);
+    plan_factor(body, task, plan);
+  }
 }
 
 }  // namespace
 
+std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noexcept {
+  return resolve_work(model, set) + touch_work(set) + find_changes_work(model.cached_factors, set.columns);
+}
+
 std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return Mixture::choose_work(set.contacts) + resolve_work(model, set) + touch_work(set) +
-         find_changes_work(model.cached_factors, set.columns);
+  return Mixture::choose_work(set.contacts) + plan_set_work(model, set);
 }
 
 Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field,

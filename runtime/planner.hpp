@@ -15,7 +15,7 @@ struct Plan {
   Resolution resolution;
   SetCounts counts;
   Factor* cached = nullptr;
-  FactorChanges changes;     ///< base: the factor to update, or null: make a fresh one
+  bool update = false;       ///< of another factor, by body.changes; else a fresh one is made
   std::uint64_t factor = 0;  ///< work of the factor, unless it is cached
   FieldLevels field_levels;
   std::uint64_t work = 0;   ///< spent on deciding
@@ -29,6 +29,9 @@ struct Plan {
     SetCounts counts;
   } wanted;
 };
+
+/// Work units of planning a set whose factor is not cached.
+[[nodiscard]] std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
 /// Work units of planning a mixed set of such counts.
 [[nodiscard]] std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept;

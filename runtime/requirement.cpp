@@ -61,7 +61,7 @@ std::uint64_t with_slices(std::uint64_t answer, std::uint64_t slices, std::uint6
 
 // planning a set of some level, and giving a batch of it up
 void add_set(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
-  other.plans += resolve_work(model, most) + touch_work(most) + find_changes_work(model.cached_factors, most.columns);
+  other.plans += plan_set_work(model, most);
   other.dropped = larger(other.dropped, 2 * most.coefficients);
 }
 
@@ -113,21 +113,18 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     sizes.functional = larger(sizes.functional, most.columns > 0 ? most.column_coefficients / most.columns : 0);
     add_set(counts, most, other);
     finest_reach = c == finest ? reach : finest_reach;
-    const SetCounts mixed =
-        most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
+    std::uint64_t mixed_answer = 0;
     if (c < finest) {
-      const std::uint64_t again = resolve_work(counts, most) + touch_work(most);
-      other.mixture = larger(other.mixture, mixture_work(counts, mixed) + again);
-      const std::uint64_t answer =
-          other.plans + other.mixture + fresh_forces_work(counts, mixed, other) + field(mixed, finest) + other.older;
-      const std::uint64_t worst = with_slices(answer, other.slices, limits.refining_work);
-      requirement.worst_work[finest] = larger(requirement.worst_work[finest], worst);
+      const SetCounts mixed =
+          most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
+      other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
+      mixed_answer = other.plans + fresh_forces_work(counts, mixed, other) + field(mixed, finest);
     }
     // at the coarsest level the field is cut as well
     const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
     const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
-    const std::uint64_t answer = forces + other.mixture + field(most, finest) + other.older;
-    requirement.worst_work[c] = larger(requirement.worst_work[c], with_slices(answer, other.slices, limits.refining_work));
+    const std::uint64_t answer = larger(forces + field(most, finest), mixed_answer) + other.mixture + other.older;
+    requirement.worst_work[c] = with_slices(answer, other.slices, limits.refining_work);
     requirement.least_work = forces + field(most, 0);
     add_slices(counts, most, other);
   }

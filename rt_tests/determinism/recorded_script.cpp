@@ -53,6 +53,7 @@ ScriptOutcome run_script(RecordedScript& script, Elastostatic& body, std::span<f
     note(report, last, outcome);
     last = report;
     digest.add(static_cast<std::uint64_t>(report.status) << 32 | report.constraint_level << 8 | report.field_level);
+    digest.add(std::uint64_t{report.finer_level} << 32 | report.finer_contacts);
     digest.add(report.work << 1 | (report.cached_factor ? 1 : 0));
     digest.add(std::bit_cast<std::uint32_t>(report.glide));
     digest.add(std::bit_cast<std::uint32_t>(report.level_difference));

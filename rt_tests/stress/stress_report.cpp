@@ -33,11 +33,17 @@ std::array<NamedCount, 6> named(const Violations& violations) {
 }
 
 json as_json(const ScriptResult& script) {
-  return {{"name", name(script.kind)},   {"cycles", script.cycles},
-          {"answered", script.answered}, {"coarser", script.coarser},
-          {"cached", script.cached},     {"changed", script.changed},
-          {"refused", script.refused},   {"worst_work", script.worst_work},
-          {"worst_us", script.worst_us}, {"force_step_max", script.force_step_max},
+  return {{"name", name(script.kind)},
+          {"cycles", script.cycles},
+          {"answered", script.answered},
+          {"coarser", script.coarser},
+          {"cached", script.cached},
+          {"changed", script.changed},
+          {"mixed_levels", script.mixed_levels},
+          {"refused", script.refused},
+          {"worst_work", script.worst_work},
+          {"worst_us", script.worst_us},
+          {"force_step_max", script.force_step_max},
           {"digest", script.digest}};
 }
 
@@ -49,11 +55,12 @@ json as_json(const TimeHistogram& times) {
 }
 
 void print_scripts(const std::vector<ScriptResult>& scripts) {
-  fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}\n", "script", "cycles", "answered",
-             "coarser", "cached", "changed", "refused", "worst work", "worst us", "force step");
+  fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}\n", "script", "cycles", "answered",
+             "coarser", "mixed", "cached", "changed", "refused", "worst work", "worst us", "force step");
   for (const ScriptResult& s : scripts) {
-    fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9.0f} {:>10.2g}\n", name(s.kind), s.cycles,
-               s.answered, s.coarser, s.cached, s.changed, s.refused, s.worst_work, s.worst_us, s.force_step_max);
+    fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9.0f} {:>10.2g}\n", name(s.kind), s.cycles,
+               s.answered, s.coarser, s.mixed_levels, s.cached, s.changed, s.refused, s.worst_work, s.worst_us,
+               s.force_step_max);
   }
 }
 

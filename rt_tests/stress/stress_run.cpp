@@ -215,7 +215,7 @@ class StressRun {
 
   void check(const ScriptedStep& scripted, const StepReport& report, const Response& response) {
     const bool answered = report.status <= Status::coarser;
-    const std::uint64_t declared = answered ? requirement_.worst_work[report.finer_level] : result_.declared_work;
+    const std::uint64_t declared = answered ? requirement_.worst_work[report.constraint_level] : result_.declared_work;
     result_.violations.work_overruns += report.work > scripted.budget || report.work > declared ? 1 : 0;
     const bool may_answer = scripted.budget >= requirement_.least_work;
     bool right = false;
@@ -235,14 +235,19 @@ class StressRun {
     ++(answered ? script_.answered : script_.refused);
     script_.coarser += report.status == Status::coarser ? 1 : 0;
     script_.cached += report.cached_factor ? 1 : 0;
+    script_.mixed_levels += report.finer_level > report.constraint_level ? 1 : 0;
     script_.changed += report.changed_nodes > 0 ? 1 : 0;
     script_.worst_work = std::max(script_.worst_work, report.work);
     result_.levels[report.constraint_level] += answered ? 1 : 0;
   }
 
   void note_digest(const StepReport& report, const Response& response) {
-    const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status), report.constraint_level,
-                                   report.finer_level, report.finer_contacts, report.field_level, report.work};
+    const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status),
+                                   report.constraint_level,
+                                   report.finer_level,
+                                   report.finer_contacts,
+                                   report.field_level,
+                                   report.work};
     script_.digest = add_to_digest(script_.digest, facts, sizeof facts);
     script_.digest = add_to_digest(script_.digest, response.force.data(), response.force.size_bytes());
     script_.digest = add_to_digest(script_.digest, response.displacement.data(), response.displacement.size_bytes());

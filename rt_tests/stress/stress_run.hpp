@@ -43,7 +43,7 @@ struct Violations {
 struct ScriptResult {
   ScriptKind kind = ScriptKind::mixed;
   std::uint64_t cycles = 0, answered = 0, refused = 0;
-  std::uint64_t coarser = 0, cached = 0, changed = 0;  ///< of those answered
+  std::uint64_t coarser = 0, mixed_levels = 0, cached = 0, changed = 0;  ///< of those answered
   std::uint64_t worst_work = 0;
   double worst_us = 0;
   double force_step_max = 0;  ///< see StressResult

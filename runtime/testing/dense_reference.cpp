@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "runtime/column.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -86,6 +87,9 @@ DenseReference::DenseReference(const ModelData& model) : wavelet_(model) {
     }
     field_.push_back(std::move(field));
   }
+  for (std::uint32_t c = 0; c < wavelet_.levels(); ++c) {
+    finest_compliance_.push_back(averages(c, compliance_.back()));
+  }
 }
 
 MatrixXd DenseReference::averages(std::uint32_t q, MatrixXd x) const {
@@ -96,30 +100,51 @@ MatrixXd DenseReference::averages(std::uint32_t q, MatrixXd x) const {
   return x;
 }
 
-DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t c,
+namespace {
+
+// who stands for a contact
+std::uint32_t dense_column(const ModelView& view, std::uint32_t node, std::uint32_t c) {
+  const std::uint32_t q = level_of(view, node);
+  return make_column(c, domain_place(view, view.representatives[c][q][node - view.level[q].node_begin]));
+}
+
+// between two columns, of one level or of the finest and another
+Eigen::Matrix3d dense_block(const DenseReference& reference, std::uint32_t i, std::uint32_t j) {
+  const Index row = Index{3} * column_place(i);
+  const Index column = Index{3} * column_place(j);
+  if (column_level(i) == column_level(j)) {
+    return reference.compliance(column_level(i)).block<3, 3>(row, column);
+  }
+  if (column_level(i) < column_level(j)) {
+    return reference.finest_compliance(column_level(i)).block<3, 3>(row, column);
+  }
+  return dense_block(reference, j, i).transpose();
+}
+
+}  // namespace
+
+DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, const Resolution& resolution,
                         std::span<const Contact> contacts) {
-  std::map<Index, std::vector<std::size_t>> members;
+  std::map<std::uint32_t, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::uint32_t q = level_of(view, contacts[i].node);
-    const std::uint32_t node = view.representatives[c][q][contacts[i].node - view.level[q].node_begin];
-    members[domain_place(view, node)].push_back(i);
+    const bool fine = resolution.fine != nullptr && resolution.fine[i];
+    members[dense_column(view, contacts[i].node, fine ? view.levels - 1 : resolution.level)].push_back(i);
   }
   const auto n = static_cast<Index>(members.size());
   MatrixXd capacitance(3 * n, 3 * n);
   MatrixXd used(Index{3} * view.domain_count, 3 * n);
   Eigen::VectorXd prescribed = Eigen::VectorXd::Zero(3 * n);
-  const MatrixXd& field = reference.field(c);
   Index j = 0;
-  for (const auto& [place, of_place] : members) {
-    used.middleCols<3>(3 * j) = field.middleCols<3>(3 * place);
-    for (const std::size_t i : of_place) {
+  for (const auto& [column, of_column] : members) {
+    used.middleCols<3>(3 * j) = reference.field(column_level(column)).middleCols<3>(Index{3} * column_place(column));
+    for (const std::size_t i : of_column) {
       for (Index r = 0; r < 3; ++r) {
-        prescribed(3 * j + r) += double{contacts[i].displacement[r]} / static_cast<double>(of_place.size());
+        prescribed(3 * j + r) += double{contacts[i].displacement[r]} / static_cast<double>(of_column.size());
       }
     }
     Index i = 0;
     for (const auto& [row, of_row] : members) {
-      capacitance.block<3, 3>(3 * i++, 3 * j) = reference.compliance(c).block<3, 3>(3 * row, 3 * place);
+      capacitance.block<3, 3>(3 * i++, 3 * j) = dense_block(reference, row, column);
     }
     ++j;
   }
@@ -134,11 +159,11 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
         displacement.segment(Index{3} * view.level[q].domain_begin, count);
   }
   j = 0;
-  for (const auto& [place, of_place] : members) {
-    for (const std::size_t k : of_place) {
+  for (const auto& [column, of_column] : members) {
+    for (const std::size_t k : of_column) {
       answer.force.segment<3>(3 * static_cast<Index>(k)) =
-          force.segment<3>(3 * j) / static_cast<double>(of_place.size());
-      if (c + 1 == view.levels) {
+          force.segment<3>(3 * j) / static_cast<double>(of_column.size());
+      if (column_level(column) + 1 == view.levels) {
         for (Index r = 0; r < 3; ++r) {
           answer.displacement(Index{3} * contacts[k].node + r) = contacts[k].displacement[r];
         }

@@ -8,6 +8,7 @@
 #include "formats/testing/dense_wavelet.hpp"
 #include "formats/view.hpp"
 #include "runtime/body.hpp"
+#include "runtime/contact_set.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop {
@@ -27,6 +28,8 @@ class DenseReference {
 
   /// Between the averages of level c; m/N.
   [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c) const { return compliance_[c]; }
+  /// Of the averages of level c per force on the nodes of the finest level; m/N.
+  [[nodiscard]] const Eigen::MatrixXd& finest_compliance(std::uint32_t c) const { return finest_compliance_[c]; }
   /// Displacement of the domain per force of level c, by the field columns of a body: 3 domain by 3 |K(c)|.
   [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
   /// The averages of level q of displacements of the domain.
@@ -35,6 +38,7 @@ class DenseReference {
  private:
   DenseWavelet wavelet_;
   std::vector<Eigen::MatrixXd> compliance_;
+  std::vector<Eigen::MatrixXd> finest_compliance_;
   std::vector<Eigen::MatrixXd> field_;
 };
 
@@ -45,7 +49,7 @@ struct DenseAnswer {
 };
 
 /// The capacitance matrix algorithm on dense matrices in double precision with a complete factorisation.
-[[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t c,
-                                      std::span<const Contact> contacts);
+[[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference,
+                                      const Resolution& resolution, std::span<const Contact> contacts);
 
 }  // namespace greenloop

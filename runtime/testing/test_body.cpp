@@ -80,8 +80,13 @@ std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes) {
 
 std::uint64_t hash_step(std::uint64_t hash, const StepReport& report, std::span<const float> force,
                         std::span<const float> field) {
-  const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status), report.constraint_level, report.field_level,
-                                 report.work, report.cached_factor ? 1U : 0U};
+  const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status),
+                                 report.constraint_level,
+                                 report.finer_level,
+                                 report.finer_contacts,
+                                 report.field_level,
+                                 report.work,
+                                 report.cached_factor ? 1U : 0U};
   hash = hash_bytes(hash, std::as_bytes(std::span(facts)));
   hash = hash_bytes(hash, std::as_bytes(force));
   return hash_bytes(hash, std::as_bytes(field));

@@ -1,0 +1,197 @@
+#include "runtime/mixture.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "runtime/cholesky.hpp"
+#include "runtime/testing/dense_reference.hpp"
+#include "runtime/testing/placed_body.hpp"
+#include "runtime/testing/test_body.hpp"
+
+namespace greenloop {
+namespace {
+
+// a choice of whole groups of a level's set, each with even odds
+std::vector<char> random_choice(const ContactSet& set, std::size_t contacts, std::mt19937_64& random) {
+  std::vector<char> of_group(set.columns), of_contact;
+  for (char& fine : of_group) {
+    fine = static_cast<char>(random() % 2);
+  }
+  for (std::size_t i = 0; i < contacts; ++i) {
+    of_contact.push_back(of_group[set.place[i]]);
+  }
+  return of_contact;
+}
+
+// forces of contacts as they are resolved, by a fresh factor; none if that is not positive definite
+std::vector<float> solve(Body& body, const std::vector<Contact>& contacts, const Resolution& resolution) {
+  ContactSet& set = body.set;
+  resolve_contacts(contacts, *body.view, body.facts, resolution, set);
+  clear(body.touched);
+  touch(body.refinement, set.column, set.columns, body.touched);
+  const std::uint32_t stride = body.cache.stride();
+  std::vector<Float4> matrix(std::size_t{stride} * stride / 4), x(stride / 4);
+  assemble_capacitance(body.refinement, {set.columns, set.column}, body.touched, body.capacitance, body.force, stride,
+                       matrix.data());
+  if (!cholesky_factor(3 * set.columns, stride, matrix.data())) {
+    return {};
+  }
+  average_displacements(contacts, set, reinterpret_cast<float*>(x.data()));
+  cholesky_solve(3 * set.columns, stride, matrix.data(), x.data());
+  std::vector<float> force(3 * contacts.size());
+  share_forces(reinterpret_cast<const float*>(x.data()), contacts.size(), set, force.data());
+  return force;
+}
+
+TEST_CASE("every mixture of a level and the finest is positive definite and agrees with dense matrices") {
+  for (const layout::Wavelet wavelet : {layout::Wavelet::lifted_linear, layout::Wavelet::linear,
+                                        layout::Wavelet::lifted_butterfly, layout::Wavelet::butterfly}) {
+    const ModelData data = synthetic_model({.levels = 4, .wavelet = wavelet});
+    const TestModel model(encode(data));
+    const DenseReference reference(data);
+    const PlacedBody placed(model.view(), 40);
+    Body& body = *placed.body;
+    std::mt19937_64 random(17);
+    for (int trial = 0; trial < 60; ++trial) {
+      auto contacts = patch(model, random() % 100, 10 + random() % 31);
+      std::shuffle(contacts.begin(), contacts.end(), random);
+      const std::uint32_t c = static_cast<std::uint32_t>(trial) % 3;
+      resolve_contacts(contacts, model.view(), body.facts, {c}, body.set);
+      const std::vector<char> choice = random_choice(body.set, contacts.size(), random);
+      const Resolution resolution{c, reinterpret_cast<const bool*>(choice.data())};
+      const std::vector<float> force = solve(body, contacts, resolution);
+      REQUIRE(force.size() == 3 * contacts.size());
+      CHECK(std::is_sorted(body.set.column, body.set.column + body.set.columns));
+      const DenseAnswer dense = solve_dense(model.view(), reference, resolution, contacts);
+      const Eigen::Map<const Eigen::VectorXf> computed(force.data(), dense.force.size());
+      const double error = (computed.cast<double>() - dense.force).cwiseAbs().maxCoeff();
+      CHECK(error <= 60 * dense.condition * 0x1p-24 * dense.force.cwiseAbs().maxCoeff());
+    }
+  }
+}
+
+TEST_CASE(
+    "the largest force of the last answer comes first, and what was chosen stays unless others are twice as large") {
+  const TestModel model({.levels = 4});
+  const PlacedBody placed(model.view(), 40);
+  Body& body = *placed.body;
+  const auto contacts = patch(model, 20, 40);
+  resolve_contacts(contacts, model.view(), body.facts, {1}, body.set);
+  REQUIRE(body.set.columns >= 4);
+  std::vector<float> force(3 * contacts.size());
+  const auto rank_after = [&](auto force_of_group) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const std::uint32_t k = body.set.place[i];
+      force[3 * i] = force_of_group(k) / static_cast<float>(body.set.members[k]);
+    }
+    body.glide.advance(contacts, body.set);
+    body.glide.blend(contacts, nullptr, force.data());
+    body.mixture.rank(contacts, body.set, body.facts, body.glide);
+    std::vector<std::uint32_t> columns;
+    for (std::uint32_t g = 0; g < body.mixture.groups(); ++g) {
+      columns.push_back(body.mixture.column(g));
+    }
+    return columns;
+  };
+  const std::uint32_t n = body.set.columns;
+  const std::vector<std::uint32_t> increasing(body.set.column, body.set.column + n);
+  CHECK(rank_after([&](std::uint32_t k) { return static_cast<float>(n - k); }) == increasing);
+  std::vector<std::uint32_t> last_first = increasing;
+  std::rotate(last_first.begin(), last_first.end() - 1, last_first.end());
+  CHECK(rank_after([&](std::uint32_t k) { return k + 1 == n ? 1.1F : 1.0F; }) == last_first);
+  body.mixture.choose(0);
+  body.mixture.remember(true, contacts, body.facts);
+  CHECK(body.mixture.has_last());
+  CHECK(rank_after([&](std::uint32_t k) { return k == 0 ? 1.9F : 1.0F; }) == last_first);
+  CHECK(rank_after([&](std::uint32_t k) { return k == 0 ? 2.1F : 1.0F; })[0] == increasing[0]);
+  body.mixture.remember(false, contacts, body.facts);
+  CHECK_FALSE(body.mixture.has_last());
+  CHECK(rank_after([&](std::uint32_t k) { return k == 0 ? 1.9F : 1.0F; })[0] == increasing[0]);
+}
+
+double distance(std::span<const float> a, std::span<const float> b) {
+  double sum = 0;
+  double norm = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += std::pow(double{a[i]} - b[i], 2);
+    norm += std::pow(double{b[i]}, 2);
+  }
+  return std::sqrt(sum / norm);
+}
+
+struct Slide {
+  double error = 0;  ///< of the forces, against the finest level, a mean
+  std::uint32_t mixed = 0;
+  std::uint32_t finest = 0;
+  std::uint32_t fine_contacts = 0;  ///< most in a mixed set
+  std::uint64_t digest = empty_hash;
+};
+
+// a patch that moves on by a node in every step
+Slide slide(const TestModel& model, std::uint64_t budget, std::uint64_t refining_work, std::uint32_t steps) {
+  const Limits limits{.max_contacts = 32, .refining_work = refining_work};
+  TestBody body(model, limits), exact(model, {.max_contacts = 32, .glide_cycles = 1});
+  const std::uint32_t finest = model.view().levels - 1;
+  Slide result;
+  for (std::uint32_t step = 0; step < steps; ++step) {
+    const auto contacts = patch(model, step, 32);
+    REQUIRE(exact.step(contacts, any_budget).status == Status::ok);
+    const StepReport report = body.step(contacts, budget);
+    REQUIRE(report.status <= Status::coarser);
+    CHECK(report.work <= budget);
+    CHECK(report.work <= body.requirement().worst_work[report.constraint_level]);
+    CHECK((report.finer_level == report.constraint_level) == (report.finer_contacts == contacts.size()));
+    const bool mixed = report.finer_level != report.constraint_level;
+    CHECK((!mixed || (report.finer_level == finest && report.status == Status::coarser)));
+    result.mixed += mixed ? 1 : 0;
+    result.finest += report.constraint_level == finest ? 1 : 0;
+    result.fine_contacts = mixed ? std::max(result.fine_contacts, report.finer_contacts) : result.fine_contacts;
+    result.error += distance(body.force(), exact.force()) / steps;
+    result.digest = hash_step(result.digest, report, body.force(), body.field());
+  }
+  return result;
+}
+
+TEST_CASE("contacts that change in every step are refined in part, within the budget") {
+  const TestModel model({.levels = 5, .touchable_above = 0.3});
+  const std::uint64_t whole = TestBody(model, {.max_contacts = 32}).step(patch(model, 0, 32), any_budget).work;
+  for (const std::uint64_t part : {2U, 3U}) {
+    const Slide mixed = slide(model, whole / part, ~std::uint64_t{0}, 40);
+    const Slide coarse = slide(model, whole / part, 1, 40);
+    MESSAGE("budget 1/", part, ": ", mixed.mixed, " of 40 steps mixed, up to ", mixed.fine_contacts,
+            " of 32 contacts, ", mixed.finest, " at the finest level; mean force error ", mixed.error,
+            ", without refining ", coarse.error);
+    CHECK(coarse.mixed == 0);
+    CHECK(mixed.mixed > 0);
+    CHECK(mixed.error < coarse.error);
+    CHECK(slide(model, whole / part, ~std::uint64_t{0}, 40).digest == mixed.digest);
+  }
+}
+
+TEST_CASE("contacts that stay keep their mixture until the factor of the finest level is complete") {
+  const TestModel model({.levels = 5, .touchable_above = 0.3});
+  TestBody body(model, {.max_contacts = 32});
+  const std::uint64_t budget = TestBody(model, {.max_contacts = 32}).step(patch(model, 0, 32), any_budget).work / 3;
+  StepReport report;
+  std::uint32_t at = 0;
+  do {
+    REQUIRE(at < 40);
+    report = body.step(patch(model, at++, 32), budget);
+  } while (report.finer_level == report.constraint_level);
+  const std::uint32_t fine = report.finer_contacts;
+  std::uint32_t stays = 0;
+  while ((report = body.step(patch(model, at - 1, 32), budget)).constraint_level < 4) {
+    REQUIRE(++stays < 100);
+    CHECK(report.finer_contacts == fine);
+    CHECK(report.cached_factor);
+  }
+  MESSAGE("finest level after ", stays, " steps more");
+}
+
+}  // namespace
+}  // namespace greenloop
