@@ -37,6 +37,11 @@ void FactorUpdateScratch::carve(Arena& arena, std::uint32_t columns) noexcept {
   border = arena.take<Float4>(3 * stride / 4);
 }
 
+bool may_share_columns(const Factor& factor, const ContactSet& set) noexcept {
+  return factor.columns > 0 && set.columns > 0 && factor.column[0] <= set.column[set.columns - 1] &&
+         set.column[0] <= factor.column[factor.columns - 1];
+}
+
 void list_changes(Factor& factor, const ContactSet& set, FactorChanges& changes) noexcept {
   changes.base = nullptr;
   changes.added = changes.removed = changes.missing = 0;
@@ -70,7 +75,7 @@ void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges
   for (std::uint32_t i = 0; i < cache.size(); ++i) {
     Factor& factor = cache[i];
     if (factor.key == 0 || factor.changes >= FactorChanges::most_in_a_row ||
-        distance(factor.columns, set.columns) > FactorChanges::most) {
+        distance(factor.columns, set.columns) > FactorChanges::most || !may_share_columns(factor, set)) {
       continue;
     }
     list_changes(factor, set, changes);

@@ -37,6 +37,10 @@ struct FactorUpdateScratch {
   void carve(Arena& arena, std::uint32_t columns) noexcept;
 };
 
+/// Whether a factor and a set may have columns in common: sets of different levels have none. For the loop; work:
+/// within list_changes'.
+[[nodiscard]] bool may_share_columns(const Factor& factor, const ContactSet& set) noexcept;
+
 /// What tells a factor from a set; base stays null if more than FactorChanges::most nodes have to leave.
 /// For the loop; work: two units a column and one for each change.
 void list_changes(Factor& factor, const ContactSet& set, FactorChanges& changes) noexcept;

@@ -15,6 +15,9 @@ std::uint64_t most_in_a_batch(const ModelCounts& model, const SetCounts& whole) 
 
 // nodes of a factor that stay, less those that have to leave; 0: rather begin anew
 std::uint32_t worth(Factor& factor, const ContactSet& set, FactorChanges& changes) {
+  if (!may_share_columns(factor, set)) {
+    return 0;
+  }
   list_changes(factor, set, changes);
   const std::uint32_t stay = changes.base == nullptr ? 0 : factor.columns - changes.removed;
   return stay > changes.removed ? stay - changes.removed : 0;

@@ -88,14 +88,13 @@ std::uint32_t most_entering(const Plan& plan, std::uint64_t budget) {
   return entering;
 }
 
-Room room_for_mixture(const Body& body, const Task& task, const Plan& plan) {
+Room room_for_mixture(const Body& body, const Task& task, const Plan& plan, bool contacts_stay) {
   const std::uint64_t coarser = planned_work(plan) + plan_set_work(body.counts, plan.counts);
   const std::uint64_t refining = body.counts.refining_work;
   Room room;
   room.budget = task.budget < refining ? task.budget : refining;
   room.planning = coarser < task.budget ? task.budget - coarser : 0;
-  // contacts that stay reach the finest level sooner by slices
-  room.entering = body.glide.stays(task.contacts) ? 0 : most_entering(plan, room.budget);
+  room.entering = contacts_stay ? 0 : most_entering(plan, room.budget);
   return room;
 }
 
@@ -168,7 +167,12 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
 
 // puts contacts of a coarser set to the finest level if that fits as well
 void refine(Body& body, const Task& task, Plan& plan) {
-  const Room room = room_for_mixture(body, task, plan);
+  // contacts that stay reach the finest level sooner by slices: they keep the mixture that they have
+  const bool contacts_stay = body.glide.stays(task.contacts);
+  if (contacts_stay && !body.mixture.has_last()) {
+    return;
+  }
+  const Room room = room_for_mixture(body, task, plan, contacts_stay);
   const Resolution coarser = plan.resolution;
   const bool chosen = choose_groups(body, task, room, plan);
   bool fits = false;

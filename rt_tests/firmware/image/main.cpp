@@ -112,7 +112,9 @@ void print_line(const Motion& motion, const Timing& timing) {
   print(timing.finest);
   print(" from step ");
   print(timing.refined);
-  print(" on, not answered ");
+  print(" on, mixed ");
+  print(timing.mixed);
+  print(", not answered ");
   print(timing.held);
   print(", late ");
   print(timing.late);

@@ -38,6 +38,7 @@ void note(const StepReport& report, std::uint32_t instructions) {
   if (report.status == Status::ok && timing.finest++ == 0) {
     timing.refined = cycle;
   }
+  timing.mixed += report.finer_level > report.constraint_level ? 1 : 0;
   timing.held += report.status > Status::coarser ? 1 : 0;
   timing.worst_work = std::max(timing.worst_work, report.work);
   loop.instructions[cycle] = instructions;
