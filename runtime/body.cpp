@@ -119,13 +119,13 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
   scratch.room = sizes.counts.capacitance_room;
   scratch.coefficients = arena.take<PointCoefficient>(entries);
   scratch.begin = arena.take<std::uint32_t>(sizes.set_columns + std::uint64_t{1});
-  scratch.column = arena.take<SlotColumn>(entries);
+  scratch.row = arena.take<SlotRow>(entries);
   scratch.slot_begin = arena.take<std::uint32_t>(sizes.slots + 1);
-  scratch.batch_begin = arena.take<std::uint32_t>(sizes.slots);
-  scratch.batch_end = arena.take<std::uint32_t>(sizes.slots);
   scratch.slot = arena.take<std::uint32_t>(view.domain_count);
+  scratch.coefficient = arena.take<std::uint32_t>(sizes.slots);
   scratch.root = arena.take<Block>(sizes.slots);
-  scratch.sum = arena.take<Block>(scratch.room);
+  scratch.inverse.carve(arena, sizes.slots, sizes.counts.butterfly);
+  scratch.sum = arena.take<BlockPair>(scratch.room);
   scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
   scratch.blocks = arena.take<Block>(sizes.longest_column + std::uint64_t{1});
 }

@@ -66,7 +66,7 @@ void plan_factor(Body& body, Plan& plan) {
   plan.work += touch_work(plan.counts) + find_changes_work(body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
   if (plan.changes.base != nullptr) {
-    const std::uint64_t update = update_factor_work(plan.counts, plan.changes, body.cost[c]);
+    const std::uint64_t update = update_factor_work(body.counts, plan.counts, plan.changes, body.cost[c]);
     plan.changes.base = update < plan.factor ? plan.changes.base : nullptr;
     plan.factor = update < plan.factor ? update : plan.factor;
   }

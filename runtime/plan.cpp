@@ -29,21 +29,23 @@ std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexc
 
 std::uint64_t touch_work(const SetCounts& set) noexcept { return 2 * set.visits + 8 * set.coefficients; }
 
-CapacitanceCounts capacitance_counts(const SetCounts& set) noexcept {
+CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
   return {.columns = set.columns,
+          .rows = set.columns,
           .slots = set.coefficients,
+          .set_visits = set.visits,
           .stored = set.stored,
           .visits = set.column_visits,
           .coefficients = set.column_coefficients,
-          .blocks = set.column_blocks};
+          .blocks = set.column_blocks,
+          .room = model.capacitance_room,
+          .bounds = set.bounds};
 }
 
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
-  CapacitanceCounts capacitance = capacitance_counts(set);
-  capacitance.room = model.capacitance_room;
   return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
-         assemble_capacitance_work(capacitance) + cholesky_factor_work(order);
+         assemble_capacitance_work(capacitance_counts(model, set)) + cholesky_factor_work(order);
 }
 
 std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept {
@@ -98,6 +100,7 @@ std::uint64_t count_field_blocks(const FieldColumns& columns, const ContactSet& 
 SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
                       std::uint32_t max_contacts, const ReachBound& reach) noexcept {
   SetCounts counts;
+  counts.bounds = true;
   counts.contacts = max_contacts;
   counts.columns = smaller(domain_up_to(view, c), max_contacts);
   counts.visits = counts.columns * reach.visits;

@@ -37,6 +37,7 @@ struct SetCounts {
   std::uint64_t column_coefficients = 0;  ///< ColumnCost over all columns
   std::uint64_t column_blocks = 0;
   std::uint64_t column_visits = 0;
+  bool bounds = false;  ///< of any set that holds no more, not of one
 };
 
 /// Work units of resolving contacts at a level, counting the blocks of their field and asking the cache.
@@ -46,7 +47,7 @@ struct SetCounts {
 [[nodiscard]] std::uint64_t touch_work(const SetCounts& set) noexcept;
 
 /// What the whole capacitance matrix of a set takes.
-[[nodiscard]] CapacitanceCounts capacitance_counts(const SetCounts& set) noexcept;
+[[nodiscard]] CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept;
 
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;

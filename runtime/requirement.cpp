@@ -57,23 +57,32 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
   count_model(view, limits, sizes);
   sizes.longest_column = couplings.longest_column;
   sizes.set_columns = view.domain_count < limits.max_contacts ? view.domain_count : limits.max_contacts;
+  SetCounts most_of[layout::max_levels];
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    const ReachBound reach = bound_reach(view, c, sizes.most_neighbours);
+    if (!reach.bounded) {
+      return;
+    }
+    most_of[c] = most_counts(view, couplings, c, limits.max_contacts, reach);
+    const std::uint64_t functional = most_of[c].columns > 0 ? most_of[c].column_coefficients / most_of[c].columns : 0;
+    sizes.functional = functional > sizes.functional ? functional : sizes.functional;
+  }
+  const std::uint64_t entries = sizes.set_columns * sizes.functional;
+  sizes.slots = entries < view.domain_count ? entries : view.domain_count;
+  sizes.counts.capacitance_room =
+      sizes.slots *
+      pairs(sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch);
   const std::uint32_t finest = view.levels - 1;
   std::uint64_t dropped = 0;       // batch of a finer level
   std::uint64_t finer_factor = 0;  // of a finer level, that the rest of a budget is spent on
   const std::uint64_t older = limits.glide_cycles > 1 ? older_forces_work(sizes.counts, sizes.set_columns) : 0;
   std::uint64_t plans = check_contacts_work(limits.max_contacts);
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
-    const ReachBound reach = bound_reach(view, c, sizes.most_neighbours);
-    if (!reach.bounded) {
-      return;
-    }
-    const SetCounts most = most_counts(view, couplings, c, limits.max_contacts, reach);
+    const SetCounts& most = most_of[c];
     const auto field = [&](std::uint32_t field_level) {
       const std::uint64_t blocks = most_field_blocks(view, most.columns, field_level);
       return limits.forces_only ? 0 : field_work(sizes.counts, most, {finest, field_level}, blocks);
     };
-    const std::uint64_t functional = most.columns > 0 ? most.column_coefficients / most.columns : 0;
-    sizes.functional = functional > sizes.functional ? functional : sizes.functional;
     plans +=
         resolve_work(sizes.counts, most) + touch_work(most) + find_changes_work(limits.cached_factors, most.columns);
     dropped = 2 * most.coefficients > dropped ? 2 * most.coefficients : dropped;
@@ -87,10 +96,6 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
         resolve_contacts_work(limits.max_contacts) + most_slice_work(sizes.counts, most) + dropped;
     finer_factor = slice > finer_factor ? slice : finer_factor;
   }
-  const std::uint64_t entries = sizes.set_columns * sizes.functional;
-  sizes.slots = entries < view.domain_count ? entries : view.domain_count;
-  sizes.counts.capacitance_room =
-      sizes.slots * (sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch);
   sizes.supported = true;
 }
 
