@@ -117,15 +117,18 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
   scratch.touched.carve(arena, view);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   scratch.room = sizes.counts.capacitance_room;
+  scratch.sorted = arena.take<std::uint32_t>(sizes.set_columns);
+  scratch.sorting = arena.take<std::uint32_t>(sizes.set_columns);
+  scratch.answer = arena.take<std::uint32_t>(sizes.set_columns);
   scratch.coefficients = arena.take<PointCoefficient>(entries);
   scratch.begin = arena.take<std::uint32_t>(sizes.set_columns + std::uint64_t{1});
-  scratch.column = arena.take<SlotColumn>(entries);
+  scratch.row = arena.take<SlotRow>(entries);
   scratch.slot_begin = arena.take<std::uint32_t>(sizes.slots + 1);
-  scratch.batch_begin = arena.take<std::uint32_t>(sizes.slots);
-  scratch.batch_end = arena.take<std::uint32_t>(sizes.slots);
   scratch.slot = arena.take<std::uint32_t>(view.domain_count);
+  scratch.coefficient = arena.take<std::uint32_t>(sizes.slots);
   scratch.root = arena.take<Block>(sizes.slots);
-  scratch.sum = arena.take<Block>(scratch.room);
+  scratch.inverse.carve(arena, sizes.slots, sizes.counts.butterfly);
+  scratch.sum = arena.take<BlockPair>(scratch.room);
   scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
   scratch.blocks = arena.take<Block>(sizes.longest_column + std::uint64_t{1});
 }

@@ -3,8 +3,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "runtime/cholesky.hpp"
-#include "runtime/column.hpp"
+#include "runtime/merge_sort.hpp"
 
 namespace greenloop {
 namespace {
@@ -13,26 +12,71 @@ Block scaled(Float4 factor, const Block& block) {
   return {{factor * block.column[0], factor * block.column[1], factor * block.column[2]}};
 }
 
-// gives every coefficient that the set touches a slot; returns their number
-std::uint32_t assign_slots(const ModelView& view, const Touched& touched, CapacitanceScratch& scratch) {
-  std::uint32_t slots = 0;
+void add(Float4 weight, const Block& block, Block& sum) {
+  sum.column[0] += weight * block.column[0];
+  sum.column[1] += weight * block.column[1];
+  sum.column[2] += weight * block.column[2];
+}
+
+void add(const Block& block, Block& sum) {
+  sum.column[0] += block.column[0];
+  sum.column[1] += block.column[1];
+  sum.column[2] += block.column[2];
+}
+
+// the first column whose row is computed
+std::uint32_t first_computed(const PartialCapacitance& partial) { return partial.set.count - partial.computed; }
+
+// rows 2 p and 2 p + 1 of sums, by slots
+BlockPair* sum_pair(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t p) {
+  return scratch.sum + std::size_t{p} * partial.slots;
+}
+
+Block& sum_at(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t t,
+              std::uint32_t slot) {
+  return sum_pair(scratch, partial, t / 2)[slot].row[t % 2];
+}
+
+// couplings of coefficients 2 p and 2 p + 1 with those of the computed rows
+BlockPair* panel_pair(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t p) {
+  return sum_pair(scratch, partial, (partial.computed + 1) / 2) + std::size_t{p} * partial.own;
+}
+
+Block& panel_at(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t slot,
+                std::uint32_t own) {
+  return panel_pair(scratch, partial, slot / 2)[own].row[slot % 2];
+}
+
+// gives the touched coefficients that have none slots from `slots` on; returns the number of slots
+std::uint32_t assign_slots(const ModelView& view, const Touched& touched, std::uint32_t slots,
+                           CapacitanceScratch& scratch) {
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       const std::uint32_t coefficient = touched.list[q][k];
-      scratch.slot[coefficient] = slots;
-      scratch.root[slots++] = symmetric_block(level.scales[coefficient - level.domain_begin].root);
+      if (scratch.slot[coefficient] == layout::none) {
+        scratch.slot[coefficient] = slots;
+        scratch.coefficient[slots] = coefficient;
+        scratch.root[slots++] = symmetric_block(level.scales[coefficient - level.domain_begin].root);
+      }
     }
   }
   return slots;
 }
 
-void release_slots(const Touched& touched, CapacitanceScratch& scratch) {
-  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      scratch.slot[touched.list[q][k]] = layout::none;
+// gives the coarser ones of some columns slots from `slots` on, and finds where the values of all come to stand;
+// returns the number of slots
+std::uint32_t assign_answers(const PartialCapacitance& partial, std::uint32_t first, std::uint32_t end,
+                             std::uint32_t finest, std::uint32_t slots, CapacitanceScratch& scratch) {
+  for (std::uint32_t i = first; i < end; ++i) {
+    const std::uint32_t column = partial.set.column[i];
+    const bool coarser = column_level(column) < finest;
+    scratch.answer[i] = coarser ? slots : scratch.slot[column_place(column)];
+    if (coarser) {
+      scratch.coefficient[slots++] = layout::none;
     }
   }
+  return slots;
 }
 
 // the functional of a column, from `begin`; returns its end
@@ -55,144 +99,219 @@ std::uint32_t write_functional(const Refinement& refinement, std::uint32_t colum
 }
 
 // the functionals' weights by slots
-void list_slot_columns(std::uint32_t columns, std::uint32_t slots, CapacitanceScratch& scratch) {
+void list_slot_rows(std::uint32_t rows, std::uint32_t slots, CapacitanceScratch& scratch) {
   std::uint32_t* begin = scratch.slot_begin;
   std::memset(begin, 0, sizeof(std::uint32_t) * (slots + std::size_t{1}));
-  for (std::uint32_t k = 0; k < scratch.begin[columns]; ++k) {
+  for (std::uint32_t k = 0; k < scratch.begin[rows]; ++k) {
     ++begin[scratch.coefficients[k].slot];
   }
-  std::uint32_t end = 0;
   for (std::uint32_t s = 0; s < slots; ++s) {
-    const std::uint32_t count = begin[s];
-    begin[s] = scratch.batch_end[s] = end;
-    end += count;
+    begin[s + 1] += begin[s];
   }
-  begin[slots] = end;
-  for (std::uint32_t i = 0; i < columns; ++i) {
+  for (std::uint32_t i = rows; i-- > 0;) {
     for (std::uint32_t k = scratch.begin[i]; k < scratch.begin[i + 1]; ++k) {
       const PointCoefficient& at = scratch.coefficients[k];
-      scratch.column[scratch.batch_end[at.slot]++] = {i, at.weight};
+      scratch.row[--begin[at.slot]] = {2 * slots * (i / 2) + i % 2, at.weight};
     }
-  }
-  for (std::uint32_t s = 0; s < slots; ++s) {
-    scratch.batch_end[s] = begin[s];
   }
 }
 
-// some columns of the matrix, and the sums of their slots
-struct Batch {
-  std::uint32_t first;
+// functionals of the computed rows, also by slots
+void list_functionals(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch,
+                      Float4* force) {
+  scratch.begin[0] = 0;
+  for (std::uint32_t t = 0; t < partial.computed; ++t) {
+    scratch.begin[t + 1] =
+        write_functional(refinement, partial.set.column[first_computed(partial) + t], scratch.begin[t], scratch, force);
+  }
+  list_slot_rows(partial.computed, partial.slots, scratch);
+}
+
+// sums of slot `to` += the weights of slot `from` times a block; returns their number
+std::uint32_t add_block(const Block& block, std::uint32_t from, std::uint32_t to, const CapacitanceScratch& scratch) {
+  const std::uint32_t begin = scratch.slot_begin[from];
+  const std::uint32_t end = scratch.slot_begin[from + 1];
+  auto* sums = reinterpret_cast<Block*>(scratch.sum + to);
+  for (std::uint32_t k = begin; k < end; ++k) {
+    const SlotRow at = scratch.row[k];
+    add(splat(at.weight), block, sums[at.first]);
+  }
+  return end - begin;
+}
+
+void set_diagonal(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch) {
+  for (std::uint32_t s = 0; s < partial.own; ++s) {
+    const std::uint32_t coefficient = scratch.coefficient[s];
+    if (coefficient == layout::none) {
+      continue;
+    }
+    const LevelView& level = refinement.view->level[refinement.level[coefficient]];
+    const Block scale = symmetric_block(level.scales[coefficient - level.domain_begin].diagonal);
+    const Block diagonal = product(scratch.root[s], product(scale, scratch.root[s]));
+    if (partial.panel) {
+      panel_at(scratch, partial, s, s) = diagonal;
+    } else {
+      add_block(diagonal, s, s, scratch);
+    }
+  }
+}
+
+// blocks of the column of a slot, scaled on both sides
+struct LoadedColumn {
+  std::uint32_t slot;
   std::uint32_t count;
+  Block root;  // of the slot, times the layer's factor
 };
 
-void begin_batch(const Batch& batch, std::uint32_t slots, CapacitanceScratch& scratch) {
-  for (std::uint32_t s = 0; s < slots; ++s) {
-    std::uint32_t end = scratch.batch_end[s];
-    scratch.batch_begin[s] = end;
-    while (end < scratch.slot_begin[s + 1] && scratch.column[end].column < batch.first + batch.count) {
-      ++end;
-    }
-    scratch.batch_end[s] = end;
-  }
-  std::memset(scratch.sum, 0, sizeof(Block) * slots * batch.count);
+Block loaded_block(const LoadedColumn& column, std::uint32_t n, const CapacitanceScratch& scratch) {
+  return product(scratch.root[scratch.places[n].target], product(scratch.blocks[n], column.root));
 }
 
-// sums of slot `to` += a block times the unit forces in slot `from`, in the columns that some row at or below the
-// diagonal asks slot `to` for; returns their number
-std::uint32_t add_block(const Batch& batch, const Block& block, std::uint32_t from, std::uint32_t to,
-                        CapacitanceScratch& scratch) {
-  const std::uint32_t last = scratch.column[scratch.slot_begin[to + 1] - 1].column;
-  Block* sums = scratch.sum + std::size_t{to} * batch.count;
-  std::uint32_t added = 0;
-  for (std::uint32_t k = scratch.batch_begin[from]; k < scratch.batch_end[from]; ++k) {
-    const SlotColumn at = scratch.column[k];
-    if (at.column > last) {
-      break;
-    }
-    Block& sum = sums[at.column - batch.first];
-    const Float4 weight = splat(at.weight);
-    sum.column[0] += weight * block.column[0];
-    sum.column[1] += weight * block.column[1];
-    sum.column[2] += weight * block.column[2];
-    ++added;
+// in both directions; returns the number of sums
+std::uint64_t add_to_sums(const LoadedColumn& column, const CapacitanceScratch& scratch) {
+  std::uint64_t added = 0;
+  for (std::uint32_t n = 0; n < column.count; ++n) {
+    const std::uint32_t row = scratch.places[n].target;
+    const Block block = loaded_block(column, n, scratch);
+    added += add_block(block, row, column.slot, scratch);
+    added += add_block(transposed(block), column.slot, row, scratch);
   }
   return added;
 }
 
-void add_diagonal(const LevelView& level, const std::uint32_t* list, std::uint32_t count, const Batch& batch,
-                  CapacitanceScratch& scratch) {
-  for (std::uint32_t k = 0; k < count; ++k) {
-    const std::uint32_t slot = scratch.slot[list[k]];
-    const Block diagonal = symmetric_block(level.scales[list[k] - level.domain_begin].diagonal);
-    add_block(batch, product(scratch.root[slot], product(diagonal, scratch.root[slot])), slot, slot, scratch);
-  }
-}
-
-// every block that a layer stores in a column and a row with a slot, in both directions; returns the work units
-std::uint64_t add_couplings(const LevelView& level, std::uint32_t layer, float factor, std::uint32_t coefficient,
-                            const Batch& batch, CapacitanceScratch& scratch) {
-  const std::uint32_t slot = scratch.slot[coefficient];
-  const std::uint32_t column = coefficient - level.domain_begin;
-  const std::uint32_t blocks =
-      load_slotted(level.couplings[layer], layer, column, scratch.slot, scratch.places, scratch.blocks);
-  const Block root = scaled(splat(factor), scratch.root[slot]);
-  std::uint64_t added = 0;
-  for (std::uint32_t n = 0; n < blocks; ++n) {
+// in both directions
+void add_to_panel(const PartialCapacitance& partial, const LoadedColumn& column, const CapacitanceScratch& scratch) {
+  BlockPair* const panel = panel_pair(scratch, partial, 0);
+  const std::size_t own = partial.own;
+  BlockPair* const of_slot = panel + column.slot / 2 * own;
+  for (std::uint32_t n = 0; n < column.count; ++n) {
     const std::uint32_t row = scratch.places[n].target;
-    const Block block = product(scratch.root[row], product(scratch.blocks[n], root));
-    added += add_block(batch, block, slot, row, scratch);
-    added += add_block(batch, transposed(block), row, slot, scratch);
-  }
-  return 20 * std::uint64_t{column_length(level.couplings[layer], column)} + 54 * std::uint64_t{blocks} + 9 * added;
-}
-
-// bound of what add_couplings returns
-std::uint64_t most_couplings_work(const LevelView& level, std::uint32_t layer, std::uint32_t coefficient,
-                                  const Batch& batch, const CapacitanceScratch& scratch) {
-  const std::uint32_t slot = scratch.slot[coefficient];
-  const std::uint64_t sums = scratch.batch_end[slot] - scratch.batch_begin[slot] + std::uint64_t{batch.count};
-  return column_length(level.couplings[layer], coefficient - level.domain_begin) * (74 + 9 * sums);
-}
-
-Block apply(const CapacitanceScratch& scratch, const Batch& batch, std::uint32_t i, std::uint32_t j) {
-  Block sum{};
-  for (std::uint32_t k = scratch.begin[i]; k < scratch.begin[i + 1]; ++k) {
-    const PointCoefficient& at = scratch.coefficients[k];
-    const Block& block = scratch.sum[std::size_t{at.slot} * batch.count + (j - batch.first)];
-    const Float4 weight = splat(at.weight);
-    sum.column[0] += weight * block.column[0];
-    sum.column[1] += weight * block.column[1];
-    sum.column[2] += weight * block.column[2];
-  }
-  return sum;
-}
-
-// a: top left entry of a 3x3 block in a matrix by columns
-void store(const Block& block, std::size_t stride, float* a) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      a[c * stride + r] = block.column[c][r];
+    const Block block = loaded_block(column, n, scratch);
+    if (row < own) {
+      add(block, of_slot[row].row[column.slot % 2]);
+    }
+    if (column.slot < own) {
+      add(transposed(block), panel[row / 2 * own + column.slot].row[row % 2]);
     }
   }
 }
 
-// slots, functionals and their columns by slots; returns the number of slots
-std::uint32_t list_functionals(const Refinement& refinement, const CapacitanceColumns& set, const Touched& touched,
-                               CapacitanceScratch& scratch, Float4* force) {
-  const std::uint32_t slots = assign_slots(*refinement.view, touched, scratch);
-  scratch.begin[0] = 0;
-  for (std::uint32_t i = 0; i < set.count; ++i) {
-    scratch.begin[i + 1] = write_functional(refinement, set.column[i], scratch.begin[i], scratch, force);
+// every block that a layer stores in the column of a slot and in a row with one, if the computed rows have either; in
+// both directions; returns the work units
+std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitance& partial,
+                            CapacitanceScratch& scratch) {
+  const std::uint32_t slot = partial.next;
+  const std::uint32_t coefficient = scratch.coefficient[slot];
+  const LevelView& level = refinement.view->level[refinement.level[coefficient]];
+  const CouplingsView& couplings = level.couplings[partial.layer];
+  const std::uint32_t column = coefficient - level.domain_begin;
+  LoadedColumn loaded;
+  loaded.slot = slot;
+  loaded.count = load_slotted(couplings, partial.layer, column, scratch.slot,
+                              slot < partial.own ? partial.slots : partial.own, scratch.places, scratch.blocks);
+  loaded.root = scaled(splat(block_factor(*refinement.view->info, partial.layer)), scratch.root[slot]);
+  std::uint64_t added = 0;
+  if (partial.panel) {
+    add_to_panel(partial, loaded, scratch);
+  } else {
+    added = add_to_sums(loaded, scratch);
   }
-  list_slot_columns(set.count, slots, scratch);
+  return 4 * std::uint64_t{column_length(couplings, column)} + 84 * std::uint64_t{loaded.count} + 9 * added;
+}
+
+// bound of what add_couplings returns
+std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCapacitance& partial,
+                                  const CapacitanceScratch& scratch) {
+  const std::uint32_t coefficient = scratch.coefficient[partial.next];
+  const LevelView& level = refinement.view->level[refinement.level[coefficient]];
+  const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
+  return length * (partial.panel ? 88 : 88 + 18 * std::uint64_t{partial.computed});
+}
+
+// T^-1 of two rows of coefficients, the first steps
+void reconstruct(const SparseInverse& inverse, std::uint32_t steps, BlockPair* x) {
+  const SparseInverse::Term* term = inverse.term;
+  for (std::uint32_t k = 0; k < steps; ++k) {
+    const auto [target, end] = inverse.step[k];
+    BlockPair sum = x[target];
+    for (; term != inverse.term + end; ++term) {
+      const Float4 weight = splat(term->weight);
+      add(weight, x[term->source].row[0], sum.row[0]);
+      add(weight, x[term->source].row[1], sum.row[1]);
+    }
+    x[target] = sum;
+  }
+}
+
+// the couplings of two coefficients with those of the computed rows become sums of these
+void transform_panel(const PartialCapacitance& partial, std::uint32_t pair, CapacitanceScratch& scratch) {
+  BlockPair* x = panel_pair(scratch, partial, pair);
+  reconstruct(scratch.inverse, scratch.inverse.steps, x);
+  for (std::uint32_t t = 0; t < partial.computed; ++t) {
+    const BlockPair& own = x[scratch.answer[first_computed(partial) + t]];
+    for (std::uint32_t s = 2 * pair; s < partial.slots && s < 2 * pair + 2; ++s) {
+      sum_at(scratch, partial, t, s) = own.row[s % 2];
+    }
+  }
+}
+
+// two rows of sums become rows of the matrix, up to the diagonal
+void transform_sums(const PartialCapacitance& partial, std::uint32_t pair, CapacitanceScratch& scratch) {
+  const std::uint32_t end = first_computed(partial) + 2 * pair + 2;
+  std::uint32_t steps = 0;
+  for (std::uint32_t i = 0; i < partial.set.count && i < end; ++i) {
+    const std::uint32_t settled = scratch.inverse.settled[scratch.answer[i]];
+    steps = settled > steps ? settled : steps;
+  }
+  reconstruct(scratch.inverse, steps, sum_pair(scratch, partial, pair));
+}
+
+// calls visit(i, block (t, i)) of the matrix for the columns up to the diagonal
+template <class Visit>
+void visit_row(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t t, Visit visit) {
+  for (std::uint32_t i = 0; i <= first_computed(partial) + t; ++i) {
+    visit(i, sum_at(scratch, partial, t, scratch.answer[i]));
+  }
+}
+
+std::uint64_t panel_pair_work(std::uint64_t own_visits, std::uint64_t rows) { return 18 * own_visits + 6 * rows; }
+
+std::uint64_t sum_pair_work(std::uint64_t set_visits) { return 18 * set_visits; }
+
+// three rows or columns of a matrix, `stride` floats apart, each with three entries
+void store(const Block& block, std::size_t stride, float* a) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    std::memcpy(a + c * stride, &block.column[c], 3 * sizeof(float));
+  }
+}
+
+std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
+
+// of touching the computed rows alone; the steps of T^-1 have no more terms
+std::uint64_t own_visits(const CapacitanceCounts& counts) { return smaller(counts.set_visits, counts.visits); }
+
+bool panel_of(const CapacitanceCounts& counts) { return has_panel(counts.room, counts.slots, counts.rows); }
+
+// most slots of a set that has a panel
+std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
+  std::uint64_t slots = counts.slots;
+  while (slots * slots > 2 * counts.room) {
+    slots = (slots + 2 * counts.room / slots) / 2;  // Newton's iteration falls to the root
+  }
   return slots;
 }
 
-void store_column(const CapacitanceScratch& scratch, const Batch& batch, std::uint32_t columns, std::uint32_t j,
-                  std::uint32_t stride, float* column) {
-  for (std::uint32_t i = j; i < columns; ++i) {
-    store(apply(scratch, batch, i, j), stride, column + std::size_t{3} * i);
-  }
+// what every batch of rows begins with
+std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
+  return 4 * own_visits(counts) + 2 * counts.set_visits + 60 * counts.slots + merge_sort_work(counts.rows);
+}
+
+std::uint64_t functionals_work(const CapacitanceCounts& counts) {
+  return 5 * counts.visits + 16 * counts.coefficients + counts.rows * counts.slots;
+}
+
+std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
+  return pairs(slots) * panel_pair_work(own_visits(counts), counts.rows);
 }
 
 }  // namespace
@@ -223,71 +342,154 @@ ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const
   return cost;
 }
 
+std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept {
+  const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
+  const std::uint64_t panel = panel_of(counts) || counts.bounds ? slots * slots : 0;
+  const std::uint64_t functionals = panel_of(counts) ? 0 : functionals_work(counts);
+  return begin_batch_work(counts) + (panel > functionals ? panel : functionals);
+}
+
+std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept {
+  const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
+  return 88 * counts.stored + pairs(counts.rows) * sum_pair_work(counts.set_visits) +
+         (panel_of(counts) ? 0 : 9 * counts.blocks) +
+         (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
+}
+
+std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept {
+  if (counts.rows == 0) {
+    return 0;
+  }
+  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
+  const std::uint64_t batches = panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
+  const std::uint64_t more = batches > 1 ? batches - 1 : 0;
+  return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
+         more * (begin_batch_work(counts) + 88 * counts.stored) + counts.rows * store_capacitance_work(counts.columns);
+}
+
+std::uint32_t count_slots(const CapacitanceColumns& set, const Touched& touched) noexcept {
+  auto slots = static_cast<std::uint32_t>(touched.coefficients());
+  for (std::uint32_t i = 0; i < set.count; ++i) {
+    slots += column_level(set.column[i]) < touched.finest ? 1 : 0;
+  }
+  return slots;
+}
+
 void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, std::uint32_t stride, Float4* a) noexcept {
-  const ModelView& view = *refinement.view;
-  const std::uint32_t slots = list_functionals(refinement, set, touched, scratch, force);
-  const std::uint64_t width = batch_width(scratch.room, slots);
-  for (Batch batch{0, 0}; batch.first < set.count; batch.first += batch.count) {
-    const std::uint32_t left = set.count - batch.first;
-    batch.count = left < width ? left : static_cast<std::uint32_t>(width);
-    begin_batch(batch, slots, scratch);
-    for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-      const LevelView& level = view.level[q];
-      add_diagonal(level, touched.list[q], touched.count[q], batch, scratch);
-      for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-        const float factor = block_factor(*view.info, layer);
-        for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-          add_couplings(level, layer, factor, touched.list[q][k], batch, scratch);
-        }
-      }
+  const std::uint32_t slots = count_slots(set, touched);
+  const bool panel = has_panel(scratch.room, slots, set.count);
+  const std::uint64_t width = panel ? set.count : batch_width(scratch.room, slots);
+  for (std::uint32_t first = 0; first < set.count;) {
+    PartialCapacitance batch;
+    batch.panel = panel;
+    batch.computed = static_cast<std::uint32_t>(smaller(set.count - first, width));
+    batch.set = {first + batch.computed, set.column};
+    begin_capacitance(refinement, touched, scratch, force, batch);
+    add_capacitance_blocks(refinement, touched, scratch, ~std::uint64_t{0}, batch);
+    for (std::uint32_t t = 0; t < batch.computed; ++t) {
+      float* rows = reinterpret_cast<float*>(a) + std::size_t{3} * (first + t);
+      visit_row(scratch, batch, t,
+                [&](std::uint32_t i, const Block& block) { store(block, stride, rows + std::size_t{3} * i * stride); });
     }
-    for (std::uint32_t j = batch.first; j < batch.first + batch.count; ++j) {
-      store_column(scratch, batch, set.count, j, stride, reinterpret_cast<float*>(a) + std::size_t{3} * j * stride);
-    }
+    release_capacitance(batch, scratch);
+    first += batch.computed;
   }
-  release_slots(touched, scratch);
 }
+
+namespace {
+
+// touches what the computed rows reach
+void touch_computed(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch) {
+  std::memcpy(scratch.sorted, partial.set.column + first_computed(partial), sizeof(std::uint32_t) * partial.computed);
+  merge_sort(partial.computed, scratch.sorted, scratch.sorting, [](std::uint32_t a, std::uint32_t b) { return a < b; });
+  touch(refinement, scratch.sorted, partial.computed, scratch.touched);
+}
+
+// the steps of T^-1 for what the columns from `first` on touch; values of coarser columns are copied between levels
+void list_steps(const Refinement& refinement, const PartialCapacitance& partial, std::uint32_t first,
+                const Touched& touched, CapacitanceScratch& scratch) {
+  const InverseAnswers answers{partial.set.count - first, partial.set.column + first, scratch.answer + first};
+  list_inverse(refinement, touched, scratch.slot, answers, scratch.inverse);
+}
+
+}  // namespace
 
 void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch, Float4* force,
                        PartialCapacitance& partial) noexcept {
-  const Batch batch{0, partial.computed};
-  begin_batch(batch, list_functionals(refinement, partial.set, touched, scratch, force), scratch);
-  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-    add_diagonal(refinement.view->level[q], touched.list[q], touched.count[q], batch, scratch);
+  touch_computed(refinement, partial, scratch);
+  const std::uint32_t first = first_computed(partial);
+  const std::uint32_t finest = touched.finest;
+  partial.own = assign_slots(*refinement.view, scratch.touched, 0, scratch);
+  partial.own = assign_answers(partial, first, partial.set.count, finest, partial.own, scratch);
+  partial.slots = assign_slots(*refinement.view, touched, partial.own, scratch);
+  partial.slots = assign_answers(partial, 0, first, finest, partial.slots, scratch);
+  partial.own_visits = scratch.touched.visits;
+  partial.layer = partial.next = partial.transformed = 0;
+  if (partial.panel) {
+    list_steps(refinement, partial, first, scratch.touched, scratch);
+  } else {
+    list_steps(refinement, partial, 0, touched, scratch);
   }
-  partial.finest = touched.finest;
-  partial.level = partial.layer = partial.next = 0;
+  clear(scratch.touched);
+  if (partial.panel) {
+    std::memset(panel_pair(scratch, partial, 0), 0, sizeof(BlockPair) * pairs(partial.slots) * partial.own);
+    std::memset(sum_pair(scratch, partial, partial.computed / 2), 0, sizeof(BlockPair) * partial.slots);
+  } else {
+    std::memset(scratch.sum, 0, sizeof(BlockPair) * pairs(partial.computed) * partial.slots);
+    list_functionals(refinement, partial, scratch, force);
+  }
+  set_diagonal(refinement, partial, scratch);
 }
 
-std::uint64_t add_capacitance_blocks(const ModelView& view, const Touched& touched, CapacitanceScratch& scratch,
+std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch,
                                      std::uint64_t allowance, PartialCapacitance& partial) noexcept {
-  const Batch batch{0, partial.computed};
   std::uint64_t work = 0;
-  while (partial.has_blocks_left()) {
-    const LevelView& level = view.level[partial.level];
-    const float factor = block_factor(*view.info, partial.layer);
-    for (; partial.next < touched.count[partial.level]; ++partial.next) {
-      const std::uint32_t coefficient = touched.list[partial.level][partial.next];
-      if (most_couplings_work(level, partial.layer, coefficient, batch, scratch) > allowance - work) {
-        return work;
-      }
-      work += add_couplings(level, partial.layer, factor, coefficient, batch, scratch);
+  while (partial.next < partial.slots) {
+    if (scratch.coefficient[partial.next] == layout::none) {
+      ++partial.next;
+      continue;
     }
-    partial.next = 0;
+    if (most_couplings_work(refinement, partial, scratch) > allowance - work) {
+      return work;
+    }
+    work += add_couplings(refinement, partial, scratch);
     partial.layer = (partial.layer + 1) % layout::layers;
-    partial.level += partial.layer == 0 ? 1 : 0;
+    partial.next += partial.layer == 0 ? 1 : 0;
+  }
+  for (const std::uint32_t panel = partial.panel_pairs(); partial.has_blocks_left(); ++partial.transformed) {
+    const bool in_panel = partial.transformed < panel;
+    const std::uint64_t pair =
+        in_panel ? panel_pair_work(partial.own_visits, partial.computed) : sum_pair_work(touched.visits);
+    if (pair > allowance - work) {
+      return work;
+    }
+    work += pair;
+    if (in_panel) {
+      transform_panel(partial, partial.transformed, scratch);
+    } else {
+      transform_sums(partial, partial.transformed - panel, scratch);
+    }
+    if (partial.transformed + 1 == panel && partial.computed < partial.set.count) {
+      list_steps(refinement, partial, 0, touched, scratch);
+    }
   }
   return work;
 }
 
-void store_capacitance_column(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t j,
-                              std::uint32_t stride, Float4* column) noexcept {
-  store_column(scratch, {0, partial.computed}, partial.set.count, j, stride, reinterpret_cast<float*>(column));
+void store_capacitance_row(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t t,
+                           std::uint32_t stride, Float4* row) noexcept {
+  visit_row(scratch, partial, t, [&](std::uint32_t i, const Block& block) {
+    store(transposed(block), stride, reinterpret_cast<float*>(row) + std::size_t{3} * i);
+  });
 }
 
-void release_capacitance(const Touched& touched, CapacitanceScratch& scratch) noexcept {
-  release_slots(touched, scratch);
+void release_capacitance(const PartialCapacitance& partial, CapacitanceScratch& scratch) noexcept {
+  for (std::uint32_t s = 0; s < partial.slots; ++s) {
+    if (scratch.coefficient[s] != layout::none) {
+      scratch.slot[scratch.coefficient[s]] = layout::none;
+    }
+  }
 }
 
 }  // namespace greenloop

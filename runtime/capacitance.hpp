@@ -33,28 +33,39 @@ struct ColumnCosts {
   }
 };
 
-/// A column that depends on a coefficient, and the weight.
-struct SlotColumn {
-  std::uint32_t column;
+/// A row that depends on a coefficient, among those that are computed, and the weight.
+struct SlotRow {
+  std::uint32_t first;  ///< its sum of slot 0, counted in blocks
   float weight;
 };
 
-/// Memory of assemble_capacitance. A coefficient of the set's functionals has a slot; there are `columns` columns and
-/// `entries` weights of functionals.
-struct CapacitanceScratch {
-  static constexpr std::uint32_t batch = 16;  ///< columns of the matrix that are summed together, at least
+/// What two rows of a matrix have in the same column.
+struct BlockPair {
+  Block row[2];
+};
 
-  Touched touched;                           ///< of one node at a time
-  PointCoefficient* coefficients = nullptr;  ///< [entries] the functionals, one after the other
+constexpr std::uint64_t pairs(std::uint64_t rows) { return (rows + 1) / 2; }
+
+/// Memory of assemble_capacitance. A coefficient of the set's functionals has a slot, and so has each coarser column of
+/// a mixed set, for the value that its node has on its own level; there are `columns` columns and `entries` weights of
+/// functionals.
+struct CapacitanceScratch {
+  static constexpr std::uint32_t batch = 16;  ///< rows of the matrix that are summed together, at least; even
+
+  Touched touched;                           ///< by the rows that are computed, or by one column
+  std::uint32_t* sorted = nullptr;           ///< [columns] those rows
+  std::uint32_t* sorting = nullptr;          ///< [columns] scratch
+  std::uint32_t* answer = nullptr;           ///< [columns] slot that holds each column's value in the end
+  PointCoefficient* coefficients = nullptr;  ///< [entries] functionals, one after the other
   std::uint32_t* begin = nullptr;            ///< [columns + 1] of each functional
-  SlotColumn* column = nullptr;              ///< [entries] the same by slots
+  SlotRow* row = nullptr;                    ///< [entries] the same by slots
   std::uint32_t* slot_begin = nullptr;       ///< [slots + 1] of each slot
-  std::uint32_t* batch_begin = nullptr;      ///< [slots] its columns in the batch
-  std::uint32_t* batch_end = nullptr;        ///< [slots]
   std::uint32_t* slot = nullptr;             ///< [domain], layout::none between calls
+  std::uint32_t* coefficient = nullptr;      ///< [slots] its place; layout::none: that of a column
   Block* root = nullptr;                     ///< [slots] scale
-  std::uint64_t room = 0;                    ///< slots * min(columns, batch), of the most there may be
-  Block* sum = nullptr;                      ///< [room]
+  SparseInverse inverse;                     ///< of the slots
+  std::uint64_t room = 0;                    ///< pairs: slots * pairs(min(columns, batch)) of the most there may be
+  BlockPair* sum = nullptr;                  ///< [room]
   BlockPlace* places = nullptr;              ///< [longest column + 1]
   Block* blocks = nullptr;                   ///< [longest column + 1]
 };
@@ -69,28 +80,40 @@ void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) 
 
 /// What the work of assemble_capacitance follows from.
 struct CapacitanceCounts {
-  std::uint64_t columns = 0;       ///< that are computed
-  std::uint64_t slots = 0;         ///< coefficients that the set touches
+  std::uint64_t columns = 0;       ///< of the set
+  std::uint64_t rows = 0;          ///< that are computed
+  std::uint64_t slots = 0;         ///< of the set
+  std::uint64_t set_visits = 0;    ///< of touching them
   std::uint64_t stored = 0;        ///< blocks in the columns of those in all layers
-  std::uint64_t visits = 0;        ///< ColumnCost summed over the columns of the set
+  std::uint64_t visits = 0;        ///< ColumnCost summed over the rows that are computed
   std::uint64_t coefficients = 0;  ///< the same
-  std::uint64_t blocks = 0;        ///< ColumnCost summed over the columns that are computed
+  std::uint64_t blocks = 0;        ///< the same
   std::uint64_t room = 0;          ///< of the scratch
+  bool bounds = false;             ///< of any set, not of one
 };
 
-/// Columns that are summed together: as many as the scratch has room for. slots: positive.
+/// Rows that are summed together by functionals: as many as the scratch has room for. slots: positive.
 constexpr std::uint64_t batch_width(std::uint64_t room, std::uint64_t slots) {
-  return room / slots > CapacitanceScratch::batch ? room / slots : CapacitanceScratch::batch;
+  const std::uint64_t width = 2 * (room / slots);
+  return width > CapacitanceScratch::batch ? width : CapacitanceScratch::batch;
 }
 
-/// Work units of assemble_capacitance.
-constexpr std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) {
-  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
-  const std::uint64_t batches = (counts.columns + width - 1) / width;
-  return 5 * counts.visits + 16 * counts.coefficients + 16 * counts.slots +
-         batches * (68 * counts.slots + 74 * counts.stored) + 9 * counts.blocks +
-         counts.columns * (3 * counts.slots + 9 * counts.coefficients);
+/// Whether the scratch holds the couplings of all slots beside the sums of the rows that are computed.
+constexpr bool has_panel(std::uint64_t room, std::uint64_t slots, std::uint64_t rows) {
+  return slots * (pairs(slots) + pairs(rows)) <= room;
 }
+
+/// Work units of begin_capacitance.
+[[nodiscard]] std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept;
+
+/// Bound of the work units of add_capacitance_blocks until no blocks are left.
+[[nodiscard]] std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept;
+
+/// Work units of store_capacitance_row.
+constexpr std::uint64_t store_capacitance_work(std::uint64_t columns) { return 9 * columns; }
+
+/// Work units of assemble_capacitance, or their bound.
+[[nodiscard]] std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept;
 
 /// Rows and columns of a capacitance matrix.
 struct CapacitanceColumns {
@@ -98,54 +121,64 @@ struct CapacitanceColumns {
   const std::uint32_t* column;  ///< [count] in any order
 };
 
-/// The lower half of the capacitance matrix in force form: block (i, j) is the
-/// displacement of the average of column i per force at column j (James & Pai 2003, sections 3.2 and 5.4), by all
-/// layers; it is symmetric. Every block between two touched coefficients is read once per batch of columns. touched: by
-/// the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after. For the loop; work:
-/// assemble_capacitance_work.
+/// Slots of a set: the coefficients that it touches, and its columns that are coarser than the finest. For the loop;
+/// work: a unit a column.
+[[nodiscard]] std::uint32_t count_slots(const CapacitanceColumns& set, const Touched& touched) noexcept;
+
+// The capacitance matrix in force form: block (i, j) is the displacement of the average of column i per force at column
+// j (James & Pai 2003, sections 3.2 and 5.4), by all layers. It is A = T^-1 S T^-T of the couplings S between the
+// touched coefficients. Where the scratch has room for these, T^-1 is applied to each of their rows, step by step;
+// otherwise, for many columns or such that share few coefficients, they are summed by functionals, which are rows of
+// T^-1. Then T^-1 is applied to each row of sums, step by step. A is symmetric.
+
+/// The lower half of the capacitance matrix. Every block between two touched coefficients is read once, or once per
+/// batch of rows. touched: by the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after. For
+/// the loop; work: assemble_capacitance_work.
 void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, std::uint32_t stride, Float4* a) noexcept;
 
-// The first columns of the same, in pieces: begin, add the blocks, store the columns, release. Until it is released,
+// The last rows of the same, in pieces: begin, add the blocks, store the rows, release. Until it is released,
 // `scratch` and the touched coefficients belong to it.
 
 struct PartialCapacitance {
   CapacitanceColumns set{};
-  std::uint32_t computed = 0;  ///< columns, no more than batch_width
-  std::uint32_t finest = 0;    ///< level of a coefficient
+  std::uint32_t computed = 0;  ///< rows, no more than batch_width
+  bool panel = false;          ///< has_panel of the set
+  std::uint32_t slots = 0;
+  std::uint32_t own = 0;         ///< slots, the first, of the rows that are computed
+  std::uint64_t own_visits = 0;  ///< of touching these
   // the coefficient whose blocks are added next
-  std::uint32_t level = 0;
   std::uint32_t layer = 0;
   std::uint32_t next = 0;
+  std::uint32_t transformed = 0;  ///< pairs of rows, of the panel and then of the sums
 
-  [[nodiscard]] bool has_blocks_left() const noexcept { return level <= finest; }
+  [[nodiscard]] std::uint32_t panel_pairs() const noexcept {
+    return panel ? static_cast<std::uint32_t>(pairs(slots)) : 0;
+  }
+  [[nodiscard]] bool has_blocks_left() const noexcept {
+    return next < slots || transformed < panel_pairs() + pairs(computed);
+  }
 };
 
-/// Work units of begin_capacitance.
-constexpr std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) {
-  return 5 * counts.visits + 16 * counts.coefficients + 84 * counts.slots;
-}
-
-/// Finds the functionals, and adds the diagonal. partial: its set and number of columns. For the loop.
+/// Finds the slots and the steps of T^-1 or the functionals, and sets the diagonal. partial: its set, number of
+/// rows and panel. For the loop; work: begin_capacitance_work.
 void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch, Float4* force,
                        PartialCapacitance& partial) noexcept;
 
-/// Adds the blocks of as many coefficients as `allowance` holds at 20 units for each that is stored, 54 for each
-/// between two touched coefficients and 9 for each sum that one adds to; returns the units spent. For the loop.
-std::uint64_t add_capacitance_blocks(const ModelView& view, const Touched& touched, CapacitanceScratch& scratch,
+/// Adds the blocks of as many coefficients as `allowance` holds, at 4 units for each that is stored, 84 for each that
+/// is between touched coefficients and, by functionals, 9 for each sum that one adds to; then transforms the couplings
+/// of two coefficients at a time, for 18 units for each visit that touching the computed rows takes and 6 for each of
+/// these, and two of these at a time, for 18 units for each visit that the set takes.
+/// Returns the units spent. For the loop.
+std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch,
                                      std::uint64_t allowance, PartialCapacitance& partial) noexcept;
 
-/// Work units of store_capacitance_column.
-constexpr std::uint64_t store_capacitance_work(const CapacitanceCounts& counts) {
-  return 3 * counts.slots + 9 * counts.coefficients;
-}
-
-/// Writes the three columns of j, from the diagonal down. column: `stride` floats each, row 3 i of column i. For the
+/// Writes the three rows of the t-th node that is computed, up to the diagonal. row: `stride` floats each. For the
 /// loop.
-void store_capacitance_column(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t j,
-                              std::uint32_t stride, Float4* column) noexcept;
+void store_capacitance_row(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t t,
+                           std::uint32_t stride, Float4* row) noexcept;
 
 /// Gives the scratch free. For the loop; work: within begin_capacitance's.
-void release_capacitance(const Touched& touched, CapacitanceScratch& scratch) noexcept;
+void release_capacitance(const PartialCapacitance& partial, CapacitanceScratch& scratch) noexcept;
 
 }  // namespace greenloop

@@ -22,12 +22,12 @@ void with_stored(std::uint32_t value_bits, Visit visit) {
 
 template <class Index>
 std::uint32_t choose(const Index* index, std::uint32_t begin, std::uint32_t end, const std::uint32_t* slot,
-                     BlockPlace* chosen) {
+                     std::uint32_t slots, BlockPlace* chosen) {
   std::uint32_t count = 0;
   for (std::uint32_t position = begin; position < end; ++position) {
     const std::uint32_t target = slot[index[position]];
     chosen[count] = {target, position};
-    count += target != layout::none ? 1 : 0;
+    count += target < slots ? 1 : 0;
   }
   return count;
 }
@@ -75,15 +75,15 @@ float block_factor(const layout::Info& info, std::uint32_t layer) noexcept {
 }
 
 std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
-                           const std::uint32_t* slot, BlockPlace* places, Block* blocks) noexcept {
+                           const std::uint32_t* slot, std::uint32_t slots, BlockPlace* places, Block* blocks) noexcept {
   if (view.columns == 0) {
     return 0;
   }
   const std::uint32_t begin = view.begin[column];
   const std::uint32_t end = view.begin[column + 1];
-  const std::uint32_t count = view.index_bytes == 2
-                                  ? choose(static_cast<const std::uint16_t*>(view.index), begin, end, slot, places)
-                                  : choose(static_cast<const std::uint32_t*>(view.index), begin, end, slot, places);
+  const std::uint32_t count =
+      view.index_bytes == 2 ? choose(static_cast<const std::uint16_t*>(view.index), begin, end, slot, slots, places)
+                            : choose(static_cast<const std::uint32_t*>(view.index), begin, end, slot, slots, places);
   with_stored(layout::value_bits[layer], [&](auto stored) {
     using Stored = decltype(stored);
     for (std::uint32_t n = 0; n < count; ++n) {

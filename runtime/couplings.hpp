@@ -45,11 +45,11 @@ void visit_rows(const CouplingsView& view, std::uint32_t column, std::uint32_t f
   }
 }
 
-/// The blocks of a column in the rows that have a slot (not layout::none), to be multiplied by block_factor; target:
-/// the slot. The others are not decoded. Returns their number. slot: [rows]; places, blocks: [blocks of the column +
-/// 1]. For the loop; work: 20 units per block.
+/// The blocks of a column in the rows with a slot below `slots`, to be multiplied by block_factor; target: the slot.
+/// The others are not decoded. Returns their number. slot: [rows], layout::none without one; places, blocks: [blocks of
+/// the column + 1]. For the loop; work: 4 units per block, and 12 for each that is returned.
 std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
-                           const std::uint32_t* slot, BlockPlace* places, Block* blocks) noexcept;
+                           const std::uint32_t* slot, std::uint32_t slots, BlockPlace* places, Block* blocks) noexcept;
 
 /// Blocks between the coefficients of a level and those of another.
 struct LevelPair {

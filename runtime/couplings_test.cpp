@@ -31,7 +31,8 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
       std::vector<BlockPlace> places(couplings.rows + 1);
       std::vector<Block> blocks(couplings.rows + 1);
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
-        const std::uint32_t count = load_slotted(couplings, layer, j, slot.data(), places.data(), blocks.data());
+        const std::uint32_t count =
+            load_slotted(couplings, layer, j, slot.data(), couplings.rows, places.data(), blocks.data());
         std::uint32_t n = 0;
         for (std::uint32_t b = written.begin[j]; b < written.begin[j + 1]; ++b) {
           if (written.index[b] % 3 != 0) {

@@ -11,29 +11,11 @@ namespace {
 
 std::uint32_t distance(std::uint32_t a, std::uint32_t b) { return a < b ? b - a : a - b; }
 
-// rows of the capacitance matrix between the new node `t` and those of the factor, the last of which are the new nodes
-// after it, backwards
-void write_border(const NewNode& place, std::uint32_t stride, const float* column, float* border) {
-  const auto [t, added, kept] = place;
-  for (std::uint32_t r = 0; r < 3; ++r, border += stride) {
-    const float* own = column + std::size_t{r} * stride;
-    std::memcpy(border, own + std::size_t{3} * added, sizeof(float) * 3 * kept);
-    std::uint32_t at = 3 * kept;
-    for (std::uint32_t s = added; --s > t; at += 3) {
-      std::memcpy(border + at, own + std::size_t{3} * s, sizeof(float) * 3);
-    }
-    for (std::uint32_t c = 0; c <= r; ++c) {
-      border[at + c] = column[std::size_t{c} * stride + std::size_t{3} * t + r];
-    }
-  }
-}
-
 }  // namespace
 
 void FactorUpdateScratch::carve(Arena& arena, std::uint32_t columns) noexcept {
   const std::uint64_t stride = padded_order(3 * columns);
   order = arena.take<std::uint32_t>(columns);
-  column = arena.take<Float4>(3 * stride / 4);
   border = arena.take<Float4>(3 * stride / 4);
 }
 
@@ -86,18 +68,25 @@ void find_changes(const FactorCache& cache, const ContactSet& set, FactorChanges
   }
 }
 
-std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes, const ColumnCosts& cost) noexcept {
-  std::uint64_t blocks = 0;
+ChangeCounts count_changes(const FactorChanges& changes, const ColumnCosts& cost) noexcept {
+  ChangeCounts counts;
+  counts.added = changes.added;
+  counts.removed = changes.removed;
   for (std::uint32_t t = 0; t < changes.added; ++t) {
-    blocks += cost.of(changes.in[t]).blocks;
+    const ColumnCost& own = cost.of(changes.in[t]);
+    counts.visits += own.visits;
+    counts.coefficients += own.coefficients;
+    counts.blocks += own.blocks;
   }
-  return update_factor_work(set, ChangeCounts{changes.added, changes.removed, blocks});
+  return counts;
 }
 
-std::uint64_t update_factor_work(const SetCounts& set, const ChangeCounts& changes) noexcept {
+std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set, const ChangeCounts& changes) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
-  CapacitanceCounts capacitance = capacitance_counts(set);
-  capacitance.columns = changes.added;
+  CapacitanceCounts capacitance = capacitance_counts(model, set);
+  capacitance.rows = changes.added;
+  capacitance.visits = changes.visits;
+  capacitance.coefficients = changes.coefficients;
   capacitance.blocks = changes.blocks;
   return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
          changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
@@ -124,10 +113,8 @@ void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float
   std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
 }
 
-bool append_node(const NewNode& place, std::uint32_t node, std::uint32_t stride, Factor& factor,
-                 FactorUpdateScratch& scratch) noexcept {
-  write_border(place, stride, reinterpret_cast<const float*>(scratch.column), reinterpret_cast<float*>(scratch.border));
-  if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, scratch.border)) {
+bool append_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
+  if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, border)) {
     return false;
   }
   factor.node[factor.columns++] = node;
@@ -147,21 +134,24 @@ void list_positions(const ContactSet& set, Factor& factor) noexcept {
 
 namespace {
 
-// borders a factor by the nodes that enter, the last of them first; false if it is not positive definite
+// borders a factor by the nodes that enter; false if it is not positive definite
 bool enter_nodes(const ContactSet& set, const FactorChanges& changes, const CapacitanceSource& source,
                  std::uint32_t stride, Factor& factor, FactorUpdateScratch& scratch) {
   const std::uint32_t kept = factor.columns;
-  std::memcpy(scratch.order, changes.in, sizeof(std::uint32_t) * changes.added);
-  std::memcpy(scratch.order + changes.added, factor.node, sizeof(std::uint32_t) * kept);
-  PartialCapacitance columns{{set.columns, scratch.order}, changes.added};
-  begin_capacitance(source.refinement, source.touched, source.scratch, source.force, columns);
-  add_capacitance_blocks(*source.refinement.view, source.touched, source.scratch, ~std::uint64_t{0}, columns);
+  std::memcpy(scratch.order, factor.node, sizeof(std::uint32_t) * kept);
+  std::memcpy(scratch.order + kept, changes.in, sizeof(std::uint32_t) * changes.added);
+  PartialCapacitance rows;
+  rows.set = {set.columns, scratch.order};
+  rows.computed = changes.added;
+  rows.panel = has_panel(source.scratch.room, count_slots(rows.set, source.touched), changes.added);
+  begin_capacitance(source.refinement, source.touched, source.scratch, source.force, rows);
+  add_capacitance_blocks(source.refinement, source.touched, source.scratch, ~std::uint64_t{0}, rows);
   bool definite = true;
-  for (std::uint32_t t = changes.added; definite && t-- > 0;) {
-    store_capacitance_column(source.scratch, columns, t, stride, scratch.column);
-    definite = append_node({t, changes.added, kept}, changes.in[t], stride, factor, scratch);
+  for (std::uint32_t t = 0; definite && t < changes.added; ++t) {
+    store_capacitance_row(source.scratch, rows, t, stride, scratch.border);
+    definite = append_node(changes.in[t], stride, factor, scratch.border);
   }
-  release_capacitance(source.touched, source.scratch);
+  release_capacitance(rows, source.scratch);
   return definite;
 }
 

@@ -29,9 +29,8 @@ struct FactorChanges {
 
 /// Memory of update_factor.
 struct FactorUpdateScratch {
-  std::uint32_t* order = nullptr;  ///< [columns] added nodes, then those of the factor
-  Float4* column = nullptr;        ///< [3 * stride / 4] of the node that enters
-  Float4* border = nullptr;        ///< [3 * stride / 4]
+  std::uint32_t* order = nullptr;  ///< [columns] nodes of the factor, then added ones
+  Float4* border = nullptr;        ///< [3 * stride / 4] of the node that enters
 
   /// Arrays out of `arena` for sets of `columns`; null while it counts.
   void carve(Arena& arena, std::uint32_t columns) noexcept;
@@ -53,17 +52,22 @@ constexpr std::uint64_t find_changes_work(std::uint64_t factors, std::uint64_t c
   return factors * (2 * columns + FactorChanges::most);
 }
 
-/// Work units of update_factor, the columns of the new nodes included. cost: of each column, by level and place.
-[[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const FactorChanges& changes,
-                                               const ColumnCosts& cost) noexcept;
-
 /// What the work of an update follows from.
 struct ChangeCounts {
   std::uint64_t added = 0;
   std::uint64_t removed = 0;
-  std::uint64_t blocks = 0;  ///< of ColumnCost, summed over the new nodes
+  // of ColumnCost, summed over the new nodes
+  std::uint64_t visits = 0;
+  std::uint64_t coefficients = 0;
+  std::uint64_t blocks = 0;
 };
-[[nodiscard]] std::uint64_t update_factor_work(const SetCounts& set, const ChangeCounts& changes) noexcept;
+
+/// cost: of each column. For the loop; work: within find_changes'.
+[[nodiscard]] ChangeCounts count_changes(const FactorChanges& changes, const ColumnCosts& cost) noexcept;
+
+/// Work units of update_factor, the columns of the new nodes included.
+[[nodiscard]] std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set,
+                                               const ChangeCounts& changes) noexcept;
 
 /// Whose coefficients are touched, and what computes their capacitance.
 struct CapacitanceSource {
@@ -80,18 +84,9 @@ void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept;
 /// a column.
 void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
 
-/// The place of a new node: the `t`-th of `added`, of which the last enters first, after the `kept` ones of a factor.
-struct NewNode {
-  std::uint32_t t;
-  std::uint32_t added;
-  std::uint32_t kept;
-};
-
-/// Borders a factor by a node. scratch.column: column t of the capacitance matrix of the new nodes, then the kept ones,
-/// from the diagonal down. False if it is not positive definite; then it is spoilt. For the loop; work:
-/// cholesky_append_work.
-[[nodiscard]] bool append_node(const NewNode& place, std::uint32_t node, std::uint32_t stride, Factor& factor,
-                               FactorUpdateScratch& scratch) noexcept;
+/// Borders a factor by a node. border: its rows of the capacitance matrix of the factor's nodes and itself, up to the
+/// diagonal. False if it is not positive definite; then it is spoilt. For the loop; work: cholesky_append_work.
+[[nodiscard]] bool append_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
 
 /// Lists where the set's columns stand in its factor. For the loop; work: two units a column.
 void list_positions(const ContactSet& set, Factor& factor) noexcept;

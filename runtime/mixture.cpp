@@ -64,7 +64,9 @@ void Mixture::choose(std::uint32_t g) noexcept {
   }
 }
 
-void Mixture::remember(bool answered, std::span<const Contact> contacts, NodeFacts* facts) noexcept {
+void Mixture::remember(bool answered, std::uint32_t level, std::span<const Contact> contacts,
+                       NodeFacts* facts) noexcept {
+  last_level_ = level;
   for (std::uint32_t k = 0; k < last_; ++k) {
     facts[last_node_[k]].fine = false;
   }

@@ -41,12 +41,15 @@ class Mixture {
   /// Chooses the g-th group. For the loop; work: within choose_work.
   void choose(std::uint32_t g) noexcept;
 
-  /// Marks the nodes of the chosen groups, or none, in place of those of the last choice. For the loop; work: within
-  /// choose_work.
-  void remember(bool answered, std::span<const Contact> contacts, NodeFacts* facts) noexcept;
+  /// Marks the nodes of the chosen groups of a level, or none, in place of those of the last choice. For the loop;
+  /// work: within choose_work.
+  void remember(bool answered, std::uint32_t level, std::span<const Contact> contacts, NodeFacts* facts) noexcept;
 
   /// Whether there was a last choice.
   [[nodiscard]] bool has_last() const noexcept { return last_ > 0; }
+
+  /// The level of its groups.
+  [[nodiscard]] std::uint32_t last_level() const noexcept { return last_level_; }
 
   /// [contacts] of those that rank was given: whether they are chosen.
   [[nodiscard]] const bool* fine() const noexcept { return fine_; }
@@ -64,6 +67,7 @@ class Mixture {
   bool* fine_ = nullptr;                ///< [contacts]
   std::uint32_t* last_node_ = nullptr;  ///< [contacts] that were chosen last
   std::uint32_t last_ = 0;
+  std::uint32_t last_level_ = 0;
 };
 
 }  // namespace greenloop

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -105,11 +106,11 @@ TEST_CASE(
   std::rotate(last_first.begin(), last_first.end() - 1, last_first.end());
   CHECK(rank_after([&](std::uint32_t k) { return k + 1 == n ? 1.1F : 1.0F; }) == last_first);
   body.mixture.choose(0);
-  body.mixture.remember(true, contacts, body.facts);
+  body.mixture.remember(true, 1, contacts, body.facts);
   CHECK(body.mixture.has_last());
   CHECK(rank_after([&](std::uint32_t k) { return k == 0 ? 1.9F : 1.0F; }) == last_first);
   CHECK(rank_after([&](std::uint32_t k) { return k == 0 ? 2.1F : 1.0F; })[0] == increasing[0]);
-  body.mixture.remember(false, contacts, body.facts);
+  body.mixture.remember(false, 1, contacts, body.facts);
   CHECK_FALSE(body.mixture.has_last());
   CHECK(rank_after([&](std::uint32_t k) { return k == 0 ? 1.9F : 1.0F; })[0] == increasing[0]);
 }
@@ -122,6 +123,17 @@ double distance(std::span<const float> a, std::span<const float> b) {
     norm += std::pow(double{b[i]}, 2);
   }
   return std::sqrt(sum / norm);
+}
+
+// whether the forces of a mixed step are those of a fresh factor of its set
+bool agrees(const Body& body, const StepReport& report, const std::vector<Contact>& contacts,
+            std::span<const float> force, Body& other) {
+  std::vector<char> fine;
+  for (const Contact& contact : contacts) {
+    fine.push_back(static_cast<char>(body.facts[contact.node].fine));
+  }
+  const Resolution resolution{report.constraint_level, reinterpret_cast<const bool*>(fine.data())};
+  return distance(force, solve(other, contacts, resolution)) <= 1e-3;
 }
 
 struct Slide {
@@ -171,6 +183,27 @@ TEST_CASE("contacts that change in every step are refined in part, within the bu
     CHECK(mixed.error < coarse.error);
     CHECK(slide(model, whole / part, ~std::uint64_t{0}, 40).digest == mixed.digest);
   }
+}
+
+TEST_CASE("a mixed factor that followed its contacts is that of its set") {
+  const TestModel model({.levels = 5, .touchable_above = 0.3});
+  const PlacedBody placed(model.view(), 32);
+  const std::uint64_t budget = TestBody(model, {.max_contacts = 32}).step(patch(model, 0, 32), any_budget).work / 2;
+  TestBody stepped(model, {.max_contacts = 32, .glide_cycles = 1});
+  const Body& body = *std::bit_cast<Body*>(stepped.body());
+  std::uint32_t mixed = 0;
+  std::uint32_t changed = 0;
+  for (std::uint32_t step = 0; step < 40; ++step) {
+    const auto contacts = patch(model, step, 32);
+    const StepReport report = stepped.step(contacts, budget);
+    if (report.finer_level > report.constraint_level) {
+      ++mixed;
+      changed += report.changed_nodes > 0 ? 1 : 0;
+      CHECK(agrees(body, report, contacts, stepped.force(), *placed.body));
+    }
+  }
+  CHECK(mixed > 3);
+  CHECK(changed > 3);
 }
 
 TEST_CASE("contacts that stay keep their mixture until the factor of the finest level is complete") {

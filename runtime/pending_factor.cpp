@@ -13,6 +13,13 @@ std::uint64_t most_in_a_batch(const ModelCounts& model, const SetCounts& whole) 
   return batch_width(model.capacitance_room, whole.coefficients > 0 ? whole.coefficients : 1);
 }
 
+// bounds for any batch of a set
+CapacitanceCounts batch_counts(const ModelCounts& model, const SetCounts& whole) {
+  CapacitanceCounts counts = capacitance_counts(model, whole);
+  counts.bounds = counts.bounds || !has_panel(counts.room, counts.slots, counts.rows);
+  return counts;
+}
+
 // nodes of a factor that stay, less those that have to leave; 0: rather begin anew
 std::uint32_t worth(Factor& factor, const ContactSet& set, FactorChanges& changes) {
   if (!may_share_columns(factor, set)) {
@@ -129,13 +136,14 @@ void begin_batch(Body& body, const SetCounts& whole) {
   PendingFactor& pending = body.pending;
   const Factor& factor = pending.factor;
   const auto width = static_cast<std::uint32_t>(most_in_a_batch(body.counts, whole));
-  const std::uint32_t added = list_batch(factor, body.set, width, body.update.order, pending.column);
+  std::memcpy(body.update.order, factor.node, sizeof(std::uint32_t) * factor.columns);
+  const std::uint32_t added = list_batch(factor, body.set, width, body.update.order + factor.columns, pending.column);
   pending.columns = factor.columns + added;
-  std::memcpy(body.update.order + added, factor.node, sizeof(std::uint32_t) * factor.columns);
   pending.batch.set = {pending.columns, body.update.order};
   pending.batch.computed = added;
   pending.entered = 0;
   touch(body.refinement, pending.column, pending.columns, pending.touched);
+  pending.batch.panel = has_panel(body.capacitance.room, count_slots(pending.batch.set, pending.touched), added);
   ContactSet after = body.set;
   after.column = pending.column;
   after.columns = pending.columns;
@@ -151,11 +159,10 @@ void enter(Body& body) {
   Factor& factor = pending.factor;
   const PartialCapacitance& batch = pending.batch;
   const std::uint32_t stride = body.cache.stride();
-  const std::uint32_t t = batch.computed - ++pending.entered;
-  const std::uint32_t node = batch.set.column[t];
-  store_capacitance_column(body.capacitance, batch, t, stride, body.update.column);
+  const std::uint32_t node = batch.set.column[factor.columns];
+  store_capacitance_row(body.capacitance, batch, pending.entered++, stride, body.update.border);
   put_in(node, factor);
-  if (!append_node({t, batch.computed, batch.set.count - batch.computed}, node, stride, factor, body.update)) {
+  if (!append_node(node, stride, factor, body.update.border)) {
     factor.columns = 0;
     pending.singular = true;
   }
@@ -164,7 +171,8 @@ void enter(Body& body) {
 // adds to `total`; false if the allowance does not hold what is next, or the factor failed
 bool continue_batch(Body& body, std::uint64_t allowance, std::uint64_t& total) {
   PendingFactor& pending = body.pending;
-  std::uint64_t work = add_capacitance_blocks(*body.view, pending.touched, body.capacitance, allowance, pending.batch);
+  std::uint64_t work =
+      add_capacitance_blocks(body.refinement, pending.touched, body.capacitance, allowance, pending.batch);
   bool holds = !pending.batch.has_blocks_left();
   while (holds && pending.entered < pending.batch.computed) {
     const std::uint64_t node = enter_work(pending.counts, pending.factor.columns);
@@ -190,7 +198,7 @@ bool continue_changes(Body& body, const SetCounts& whole, std::uint64_t allowanc
   if (pending.batch.computed > 0) {
     return continue_batch(body, allowance - work, work);
   }
-  const std::uint64_t begin = begin_batch_work(whole, pending.changes.removed);
+  const std::uint64_t begin = begin_batch_work(body.counts, whole, pending.changes.removed);
   if (begin > allowance - work) {
     return false;
   }
@@ -237,21 +245,21 @@ std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns)
   return find_changes_work(factors + 4, columns);
 }
 
-std::uint64_t begin_batch_work(const SetCounts& set, std::uint64_t removed) noexcept {
+std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set, std::uint64_t removed) noexcept {
   const std::uint64_t columns = set.columns + removed;
   const auto order = static_cast<std::uint32_t>(3 * columns);
   return std::uint64_t{order} * order / 2 + removed * (2 * columns + cholesky_remove_work(order, 0, 3)) + 12 * columns +
-         touch_work(set) + begin_capacitance_work(capacitance_counts(set));
+         touch_work(set) + begin_capacitance_work(batch_counts(model, set));
 }
 
 std::uint64_t enter_work(const SetCounts& set, std::uint64_t columns_before) noexcept {
-  return store_capacitance_work(capacitance_counts(set)) + columns_before +
+  return store_capacitance_work(set.columns) + columns_before +
          cholesky_append_work(static_cast<std::uint32_t>(3 * columns_before), 3);
 }
 
 std::uint64_t most_slice_work(const ModelCounts& model, const SetCounts& whole) noexcept {
   const std::uint64_t fresh = factor_work(model, whole);
-  const std::uint64_t begin = begin_batch_work(whole, FactorChanges::most);
+  const std::uint64_t begin = begin_batch_work(model, whole, FactorChanges::most);
   return compare_factors_work(model.cached_factors, whole.columns) + (fresh > begin ? fresh : begin);
 }
 
@@ -260,8 +268,11 @@ std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole, con
   const std::uint64_t most = most_in_a_batch(model, whole);
   const std::uint64_t adding = (missing + most - 1) / most;
   const std::uint64_t batches = adding == 0 && changes.removed > 0 ? 1 : adding;
-  const std::uint64_t blocks = adding * 74 * whole.stored + 9 * whole.column_blocks;
-  return batches * begin_batch_work(whole, changes.removed) + (missing > 0 ? blocks : 0) +
+  CapacitanceCounts counts = batch_counts(model, whole);
+  const std::uint64_t once = add_capacitance_blocks_work(counts);
+  counts.blocks = counts.rows = 0;  // each row is in one batch
+  const std::uint64_t blocks = adding > 0 ? once + (adding - 1) * add_capacitance_blocks_work(counts) : 0;
+  return batches * begin_batch_work(model, whole, changes.removed) + blocks +
          missing * enter_work(whole, whole.columns);
 }
 
@@ -311,7 +322,7 @@ std::uint64_t drop_batch_work(const PendingFactor& pending) noexcept {
 void drop_batch(Body& body) noexcept {
   PendingFactor& pending = body.pending;
   if (pending.batch.computed > 0) {
-    release_capacitance(pending.touched, body.capacitance);
+    release_capacitance(pending.batch, body.capacitance);
     clear(pending.touched);
     pending.batch.computed = 0;
     pending.spent = 0;

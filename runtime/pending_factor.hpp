@@ -38,7 +38,8 @@ struct PendingFactor {
 [[nodiscard]] std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns) noexcept;
 
 /// Work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of the batch.
-[[nodiscard]] std::uint64_t begin_batch_work(const SetCounts& set, std::uint64_t removed) noexcept;
+[[nodiscard]] std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set,
+                                             std::uint64_t removed) noexcept;
 
 /// Work units of bordering the factor of a whole set by a node.
 [[nodiscard]] std::uint64_t enter_work(const SetCounts& set, std::uint64_t columns_before) noexcept;

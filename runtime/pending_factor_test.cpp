@@ -49,8 +49,9 @@ std::uint64_t largest_piece(const Body& body, const SetCounts& whole) {
       }
     }
   }
-  const std::uint64_t blocks = longest * (74 + 9 * 2 * whole.columns);
-  return std::max({blocks, begin_batch_work(whole, 0), enter_work(whole, whole.columns)});
+  const std::uint64_t blocks = longest * (88 + 9 * 2 * whole.columns);
+  const std::uint64_t pair = 18 * whole.visits + 6 * whole.columns;
+  return std::max({blocks, pair, begin_batch_work(body.counts, whole, 0), enter_work(whole, whole.columns)});
 }
 
 // solution of the set's matrix for a right-hand side of ones, in the order of the set
@@ -117,7 +118,7 @@ TEST_CASE("less than a piece makes no progress, and says so") {
   const PlacedBody placed(model.view(), 12);
   Body& body = *placed.body;
   const SetCounts whole = resolve(body, patch(model, 0, 12));
-  const std::uint64_t begin = compare_factors_work(1, whole.columns) + begin_batch_work(whole, 0);
+  const std::uint64_t begin = compare_factors_work(1, whole.columns) + begin_batch_work(body.counts, whole, 0);
   for (const std::uint64_t allowance : {std::uint64_t{0}, std::uint64_t{100}, begin - 1}) {
     const PendingProgress progress = continue_factor(body, whole, allowance);
     CHECK(progress.work <= allowance);

@@ -29,21 +29,23 @@ std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexc
 
 std::uint64_t touch_work(const SetCounts& set) noexcept { return 2 * set.visits + 8 * set.coefficients; }
 
-CapacitanceCounts capacitance_counts(const SetCounts& set) noexcept {
+CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
   return {.columns = set.columns,
-          .slots = set.coefficients,
+          .rows = set.columns,
+          .slots = set.slots,
+          .set_visits = set.visits,
           .stored = set.stored,
           .visits = set.column_visits,
           .coefficients = set.column_coefficients,
-          .blocks = set.column_blocks};
+          .blocks = set.column_blocks,
+          .room = model.capacitance_room,
+          .bounds = set.bounds};
 }
 
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
-  CapacitanceCounts capacitance = capacitance_counts(set);
-  capacitance.room = model.capacitance_room;
   return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
-         assemble_capacitance_work(capacitance) + cholesky_factor_work(order);
+         assemble_capacitance_work(capacitance_counts(model, set)) + cholesky_factor_work(order);
 }
 
 std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept {
@@ -73,6 +75,7 @@ std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const F
 void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
                   SetCounts& counts) noexcept {
   counts.coefficients = touched.coefficients();
+  counts.slots = count_slots({set.columns, set.column}, touched);
   counts.visits = touched.visits;
   for (std::uint32_t k = 0; k < set.columns; ++k) {
     const ColumnCost& of_column = cost.of(set.column[k]);
@@ -99,6 +102,7 @@ std::uint64_t count_field_blocks(const FieldColumns& columns, const ContactSet& 
 SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
                       std::uint32_t max_contacts, const ReachBound& reach) noexcept {
   SetCounts counts;
+  counts.bounds = true;
   counts.contacts = max_contacts;
   counts.columns = smaller(domain_up_to(view, c), max_contacts);
   counts.visits = counts.columns * reach.visits;
@@ -113,6 +117,7 @@ SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, st
       counts.column_blocks += counts.columns * most_blocks(couplings.stored[q][other], of_column);
     }
   }
+  counts.slots = counts.coefficients;
   return counts;
 }
 

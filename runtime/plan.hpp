@@ -32,11 +32,13 @@ struct SetCounts {
   std::uint64_t columns = 0;
   // what follows only if a factor is to be made
   std::uint64_t coefficients = 0;         ///< that the columns touch, none counted twice
+  std::uint64_t slots = 0;                ///< of the capacitance matrix
   std::uint64_t visits = 0;               ///< of touching them
   std::uint64_t stored = 0;               ///< blocks of all layers in those columns
   std::uint64_t column_coefficients = 0;  ///< ColumnCost over all columns
   std::uint64_t column_blocks = 0;
   std::uint64_t column_visits = 0;
+  bool bounds = false;  ///< of any set that holds no more, not of one
 };
 
 /// Work units of resolving contacts at a level, counting the blocks of their field and asking the cache.
@@ -46,7 +48,7 @@ struct SetCounts {
 [[nodiscard]] std::uint64_t touch_work(const SetCounts& set) noexcept;
 
 /// What the whole capacitance matrix of a set takes.
-[[nodiscard]] CapacitanceCounts capacitance_counts(const SetCounts& set) noexcept;
+[[nodiscard]] CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept;
 
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;

@@ -45,7 +45,7 @@ void choose_factor(Body& body, Plan& plan) {
   plan.work += touch_work(plan.counts) + find_changes_work(body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
   if (body.changes.base != nullptr) {
-    const std::uint64_t update = update_factor_work(plan.counts, body.changes, body.cost);
+    const std::uint64_t update = update_factor_work(body.counts, plan.counts, count_changes(body.changes, body.cost));
     plan.update = update < plan.factor;
     plan.factor = plan.update ? update : plan.factor;
   }
@@ -75,12 +75,14 @@ struct Room {
 };
 
 // most contacts that can enter a factor of about as many coefficients as the finest set has
-std::uint32_t most_entering(const Plan& plan, std::uint64_t budget) {
+std::uint32_t most_entering(const ModelCounts& model, const Plan& plan, std::uint64_t budget) {
   const SetCounts& whole = plan.wanted.counts;
   std::uint32_t entering = FactorChanges::most;
   for (; entering > 0; entering /= 2) {
-    const std::uint64_t blocks = entering * whole.column_blocks / whole.columns;
-    const std::uint64_t factor = update_factor_work(whole, {entering, entering, blocks});
+    const auto share = [&](std::uint64_t sum) { return entering * sum / whole.columns; };
+    const std::uint64_t factor = update_factor_work(
+        model, whole,
+        {entering, entering, share(whole.column_visits), share(whole.column_coefficients), share(whole.column_blocks)});
     if (plan.work + factor + force_work(whole) + plan.field <= budget) {
       break;
     }
@@ -94,7 +96,7 @@ Room room_for_mixture(const Body& body, const Task& task, const Plan& plan, bool
   Room room;
   room.budget = task.budget < refining ? task.budget : refining;
   room.planning = coarser < task.budget ? task.budget - coarser : 0;
-  room.entering = contacts_stay ? 0 : most_entering(plan, room.budget);
+  room.entering = contacts_stay ? 0 : most_entering(body.counts, plan, room.budget);
   return room;
 }
 
@@ -174,15 +176,20 @@ void refine(Body& body, const Task& task, Plan& plan) {
   }
   const Room room = room_for_mixture(body, task, plan, contacts_stay);
   const Resolution coarser = plan.resolution;
+  // the factor of the last mixture is one of its level
+  const std::uint32_t level = body.mixture.has_last() ? body.mixture.last_level() : coarser.level;
+  if (level != coarser.level) {
+    plan_set(body, task, {level}, plan);
+  }
   const bool chosen = choose_groups(body, task, room, plan);
   bool fits = false;
   if (chosen) {
-    plan_set(body, task, {coarser.level, body.mixture.fine()}, plan);
+    plan_set(body, task, {level, body.mixture.fine()}, plan);
     plan_factor(body, task, plan);
     fits = planned_work(plan) <= room.budget;
   }
-  body.mixture.remember(fits, task.contacts, body.facts);
-  if (chosen && !fits) {
+  body.mixture.remember(fits, level, task.contacts, body.facts);
+  if (!fits && (chosen || level != coarser.level)) {
     plan_set(body, task, coarser, plan);
     plan_factor(body, task, plan);
   }
@@ -195,7 +202,7 @@ std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noex
 }
 
 std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return Mixture::choose_work(set.contacts) + plan_set_work(model, set);
+  return Mixture::choose_work(set.contacts) + resolve_work(model, set) + plan_set_work(model, set);
 }
 
 Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field,

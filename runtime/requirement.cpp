@@ -75,6 +75,35 @@ std::uint64_t fresh_forces_work(const ModelCounts& model, const SetCounts& most,
   return other.dropped + factor_work(model, most) + force_work(most);
 }
 
+void bound_work(const ModelView& view, const Limits& limits, const SetCounts* most_of, const SetCounts* mixed_of,
+                const BodySizes& sizes, Requirement& requirement) {
+  const ModelCounts& counts = sizes.counts;
+  const std::uint32_t finest = view.levels - 1;
+  const auto field = [&](const SetCounts& set, std::uint32_t field_level) {
+    const std::uint64_t blocks = most_field_blocks(view, set.columns, field_level);
+    return limits.forces_only ? 0 : field_work(counts, set, {finest, field_level}, blocks);
+  };
+  OtherWork other;
+  other.plans = check_contacts_work(limits.max_contacts);
+  other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
+  for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
+    const SetCounts& most = most_of[c];
+    add_set(counts, most, other);
+    std::uint64_t mixed_answer = 0;
+    if (c < finest) {
+      other.mixture = larger(other.mixture, mixture_work(counts, mixed_of[c]) + plan_set_work(counts, most));
+      mixed_answer = other.plans + fresh_forces_work(counts, mixed_of[c], other) + field(mixed_of[c], finest);
+    }
+    // at the coarsest level the field is cut as well
+    const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
+    const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
+    const std::uint64_t answer = larger(forces + field(most, finest), mixed_answer) + other.mixture + other.older;
+    requirement.worst_work[c] = with_slices(answer, other.slices, limits.refining_work);
+    requirement.least_work = forces + field(most, 0);
+    add_slices(counts, most, other);
+  }
+}
+
 }  // namespace
 
 bool in_range(const Limits& limits) noexcept {
@@ -94,44 +123,28 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
   count_model(view, limits, sizes);
   sizes.longest_column = couplings.longest_column;
   sizes.set_columns = view.domain_count < limits.max_contacts ? view.domain_count : limits.max_contacts;
-  const ModelCounts& counts = sizes.counts;
+  SetCounts most_of[layout::max_levels];
+  SetCounts mixed_of[layout::max_levels];
   const std::uint32_t finest = view.levels - 1;
-  OtherWork other;
-  other.plans = check_contacts_work(limits.max_contacts);
-  other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
   ReachBound finest_reach;
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const ReachBound reach = bound_reach(view, c, sizes.most_neighbours);
     if (!reach.bounded) {
       return;
     }
-    const SetCounts most = most_counts(view, couplings, c, limits.max_contacts, reach);
-    const auto field = [&](const SetCounts& set, std::uint32_t field_level) {
-      const std::uint64_t blocks = most_field_blocks(view, set.columns, field_level);
-      return limits.forces_only ? 0 : field_work(counts, set, {finest, field_level}, blocks);
-    };
-    sizes.functional = larger(sizes.functional, most.columns > 0 ? most.column_coefficients / most.columns : 0);
-    add_set(counts, most, other);
     finest_reach = c == finest ? reach : finest_reach;
-    std::uint64_t mixed_answer = 0;
-    if (c < finest) {
-      const SetCounts mixed =
-          most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
-      other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
-      mixed_answer = other.plans + fresh_forces_work(counts, mixed, other) + field(mixed, finest);
-    }
-    // at the coarsest level the field is cut as well
-    const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
-    const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
-    const std::uint64_t answer = larger(forces + field(most, finest), mixed_answer) + other.mixture + other.older;
-    requirement.worst_work[c] = with_slices(answer, other.slices, limits.refining_work);
-    requirement.least_work = forces + field(most, 0);
-    add_slices(counts, most, other);
+    most_of[c] = most_counts(view, couplings, c, limits.max_contacts, reach);
+    mixed_of[c] = most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
+    mixed_of[c].slots += mixed_of[c].columns;
+    const std::uint64_t functional = most_of[c].columns > 0 ? most_of[c].column_coefficients / most_of[c].columns : 0;
+    sizes.functional = larger(sizes.functional, functional);
   }
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
-  sizes.slots = entries < view.domain_count ? entries : view.domain_count;
+  sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
   sizes.counts.capacitance_room =
-      sizes.slots * (sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch);
+      sizes.slots *
+      pairs(sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch);
+  bound_work(view, limits, most_of, mixed_of, sizes, requirement);
   sizes.supported = true;
 }
 

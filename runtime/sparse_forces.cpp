@@ -188,6 +188,57 @@ void transform_forces(const Refinement& refinement, const Touched& touched, Floa
   }
 }
 
+void SparseInverse::carve(Arena& arena, std::uint64_t slots, bool butterfly) noexcept {
+  // a slot is predicted once, lifted into two, and may be copied from another
+  step = arena.take<Step>(4 * slots);
+  term = arena.take<Term>(slots * (prediction_length(butterfly) + std::uint64_t{3}));
+  settled = arena.take<std::uint32_t>(slots);
+}
+
+void list_inverse(const Refinement& refinement, const Touched& touched, const std::uint32_t* slot,
+                  const InverseAnswers& answers, SparseInverse& inverse) noexcept {
+  std::uint32_t terms = 0;
+  inverse.steps = 0;
+  const auto add_term = [&](std::uint32_t place, float weight) { inverse.term[terms++] = {slot[place], weight}; };
+  const auto end_step = [&](std::uint32_t target) {
+    const std::uint32_t begin = inverse.steps == 0 ? 0 : inverse.step[inverse.steps - 1].end;
+    if (terms > begin) {
+      inverse.step[inverse.steps++] = {target, terms};
+      inverse.settled[target] = inverse.steps;
+    }
+  };
+  const auto copy_columns = [&](std::uint32_t level) {
+    for (std::uint32_t i = 0; i < answers.count; ++i) {
+      const std::uint32_t place = column_place(answers.column[i]);
+      if (column_level(answers.column[i]) == level && answers.slot[i] != slot[place]) {
+        add_term(place, 1);
+        end_step(answers.slot[i]);
+      }
+    }
+  };
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      inverse.settled[slot[touched.list[q][k]]] = 0;
+    }
+  }
+  copy_columns(0);
+  for (std::uint32_t level = 1; level <= touched.finest; ++level) {
+    for (std::uint32_t q = 0; q < level; ++q) {
+      for (std::uint32_t k = 0; k < touched.even[level][q]; ++k) {
+        const std::uint32_t even = touched.list[q][k];
+        visit_neighbours(refinement, level, even, [&](std::uint32_t odd, float lift) { add_term(odd, -lift); });
+        end_step(slot[even]);
+      }
+    }
+    for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
+      const std::uint32_t odd = touched.list[level][k];
+      visit_prediction(refinement, odd, add_term);
+      end_step(slot[odd]);
+    }
+    copy_columns(level);
+  }
+}
+
 void clear_forces(const Touched& touched, Float4* force) noexcept {
   for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {

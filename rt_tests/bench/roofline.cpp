@@ -187,25 +187,52 @@ class RooflineRun {
     return static_cast<double>(bytes);
   }
 
-  // of scaling blocks, adding them to sums and making elements of these, batch by batch as assemble_capacitance does
+  // of scaling a block between two slots and adding it in both directions
+  static std::uint64_t block_operations(const PartialCapacitance& batch, const CapacitanceScratch& scratch,
+                                        std::uint32_t slot, std::uint32_t other) {
+    if (batch.panel) {
+      return 54 + 18;
+    }
+    const auto rows = [&](std::uint32_t s) { return scratch.slot_begin[s + 1] - scratch.slot_begin[s]; };
+    return std::min(slot, other) < batch.own ? 54 + 9 * std::uint64_t{rows(slot) + rows(other)} : 0;
+  }
+
+  std::uint64_t couplings_operations(const PartialCapacitance& batch, const CapacitanceScratch& scratch,
+                                     const Body& body) const {
+    std::uint64_t operations = 0;
+    for (std::uint32_t slot = 0; slot < batch.slots; ++slot) {
+      const std::uint32_t coefficient = scratch.coefficient[slot];
+      const LevelView& level = view_->level[body.refinement.level[coefficient]];
+      for (const CouplingsView& couplings : level.couplings) {
+        visit_rows(couplings, coefficient - level.domain_begin, 0, coefficient, [&](std::uint32_t row, std::uint32_t) {
+          const std::uint32_t other = scratch.slot[row];
+          operations += other == layout::none ? 0 : block_operations(batch, scratch, slot, other);
+        });
+      }
+    }
+    return operations;
+  }
+
+  // of scaling and adding blocks and of all steps of T^-1, batch by batch as assemble_capacitance does
   double capacitance_flops(Patch& patch) const {
     Body& body = patch.body;
     CapacitanceScratch& scratch = body.capacitance;
-    SetCounts counts;
-    count_factor(body.set, body.touched, body.cost, body.stored, counts);
-    const std::uint64_t width = batch_width(scratch.room, counts.coefficients);
+    const std::uint64_t slots = body.touched.coefficients();
+    const std::uint32_t columns = body.set.columns;
+    const bool panel = has_panel(scratch.room, slots, columns);
+    const std::uint64_t width = panel ? columns : batch_width(scratch.room, slots);
     std::uint64_t operations = 0;
-    for (std::uint64_t first = 0; first < body.set.columns; first += width) {
+    for (std::uint64_t first = 0; first < columns; first += width) {
       PartialCapacitance batch;
-      batch.set = {body.set.columns - static_cast<std::uint32_t>(first), body.set.column + first};
-      batch.computed = static_cast<std::uint32_t>(std::min<std::uint64_t>(width, batch.set.count));
+      batch.panel = panel;
+      batch.computed = static_cast<std::uint32_t>(std::min<std::uint64_t>(width, columns - first));
+      batch.set = {static_cast<std::uint32_t>(first) + batch.computed, body.set.column};
       begin_capacitance(body.refinement, body.touched, scratch, body.force, batch);
-      operations += add_capacitance_blocks(*view_, body.touched, scratch, UINT64_MAX, batch) - 20 * counts.stored;
-      for (std::uint32_t i = 0; i < batch.set.count; ++i) {
-        const std::uint64_t weights = scratch.begin[i + 1] - scratch.begin[i];
-        operations += 9 * weights * std::min(i + 1, batch.computed);
-      }
-      release_capacitance(body.touched, scratch);
+      const SparseInverse& inverse = scratch.inverse;
+      const std::uint64_t terms = inverse.steps > 0 ? inverse.step[inverse.steps - 1].end : 0;
+      operations += couplings_operations(batch, scratch, body);
+      operations += 9 * terms * (batch.computed + (panel ? slots : 0));
+      release_capacitance(batch, scratch);
     }
     return 2.0 * static_cast<double>(operations);
   }

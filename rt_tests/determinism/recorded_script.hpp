@@ -79,9 +79,9 @@ struct ScriptOutcome {
 };
 
 /// The digests of the script on write_recorded_model's models: what every target has to find.
-inline constexpr std::uint64_t recorded_digest = 0xfbec035cb3e1816d;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xade9be64c533f98d;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0x425df6346ae688cc;
+inline constexpr std::uint64_t recorded_digest = 0x6bff80ef4752fee9;  ///< lifted Linear wavelets
+inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xdd24a24da8e36dfd;
+inline constexpr std::uint64_t recorded_butterfly_digest = 0x3a1ad3a26e30055e;
 
 /// A body that ran the whole script, or why it did not.
 struct RecordedRun {
