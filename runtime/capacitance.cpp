@@ -386,7 +386,9 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
   clear(scratch.touched);
   if (partial.panel) {
     std::memset(panel_pair(scratch, partial, 0), 0, sizeof(BlockPair) * pairs(partial.slots) * partial.own);
-    std::memset(sum_pair(scratch, partial, partial.computed / 2), 0, sizeof(BlockPair) * partial.slots);
+    if (partial.computed % 2 == 1) {
+      std::memset(sum_pair(scratch, partial, partial.computed / 2), 0, sizeof(BlockPair) * partial.slots);
+    }
   } else {
     std::memset(scratch.sum, 0, sizeof(BlockPair) * pairs(partial.computed) * partial.slots);
     list_functionals(refinement, partial, scratch, force);
