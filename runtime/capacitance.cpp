@@ -233,13 +233,14 @@ void reconstruct(const SparseInverse& inverse, std::uint32_t steps, BlockPair* x
   const SparseInverse::Term* term = inverse.term;
   for (std::uint32_t k = 0; k < steps; ++k) {
     const auto [target, end] = inverse.step[k];
-    BlockPair sum = x[target];
+    BlockPair sum{};  // of terms alone: details are smaller than what they are added to
     for (; term != inverse.term + end; ++term) {
       const Float4 weight = splat(term->weight);
       add(weight, x[term->source].row[0], sum.row[0]);
       add(weight, x[term->source].row[1], sum.row[1]);
     }
-    x[target] = sum;
+    add(sum.row[0], x[target].row[0]);
+    add(sum.row[1], x[target].row[1]);
   }
 }
 
@@ -434,12 +435,13 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
   clear(scratch.touched);
   if (partial.panel) {
     std::memset(panel_pair(scratch, partial, 0), 0, sizeof(BlockPair) * pairs(partial.slots) * partial.own);
-    std::memset(sum_pair(scratch, partial, partial.computed / 2), 0, sizeof(BlockPair) * partial.slots);
+    if (partial.computed % 2 == 1) {
+      std::memset(sum_pair(scratch, partial, partial.computed / 2), 0, sizeof(BlockPair) * partial.slots);
+    }
   } else {
     std::memset(scratch.sum, 0, sizeof(BlockPair) * pairs(partial.computed) * partial.slots);
     list_functionals(refinement, partial, scratch, force);
   }
-  set_diagonal(refinement, partial, scratch);
 }
 
 std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch,
@@ -456,6 +458,9 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
     work += add_couplings(refinement, partial, scratch);
     partial.layer = (partial.layer + 1) % layout::layers;
     partial.next += partial.layer == 0 ? 1 : 0;
+    if (partial.next == partial.slots) {
+      set_diagonal(refinement, partial, scratch);  // the largest last
+    }
   }
   for (const std::uint32_t panel = partial.panel_pairs(); partial.has_blocks_left(); ++partial.transformed) {
     const bool in_panel = partial.transformed < panel;

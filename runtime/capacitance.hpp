@@ -160,8 +160,8 @@ struct PartialCapacitance {
   }
 };
 
-/// Finds the slots and the steps of T^-1 or the functionals, and sets the diagonal. partial: its set, number of
-/// rows and panel. For the loop; work: begin_capacitance_work.
+/// Finds the slots and the steps of T^-1 or the functionals. partial: its set, number of rows and panel. For the loop;
+/// work: begin_capacitance_work, which holds that of the diagonal, to be added after the blocks.
 void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch, Float4* force,
                        PartialCapacitance& partial) noexcept;
 

@@ -79,9 +79,9 @@ struct ScriptOutcome {
 };
 
 /// The digests of the script on write_recorded_model's models: what every target has to find.
-inline constexpr std::uint64_t recorded_digest = 0x6bff80ef4752fee9;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xdd24a24da8e36dfd;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0x3a1ad3a26e30055e;
+inline constexpr std::uint64_t recorded_digest = 0x2f5d0ec3f455b9bd;  ///< lifted Linear wavelets
+inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0x124f782078ecea76;
+inline constexpr std::uint64_t recorded_butterfly_digest = 0xfd95647687482350;
 
 /// A body that ran the whole script, or why it did not.
 struct RecordedRun {
