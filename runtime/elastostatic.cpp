@@ -176,7 +176,7 @@ void answer_field(Body& body, std::span<const Contact> contacts, const FieldLeve
   const NodeForces forces{body.set.level, body.set.columns, body.set.column,
                           reinterpret_cast<const float*>(body.column_force)};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(model, forces, levels, body.field_touched, x);
+  compute_field(model, forces, levels, body.field_scratch(), x);
   if (body.set.level + 1 == view.levels) {
     // held nodes stand where they are held: only the others need the approximation
     for (const Contact& contact : contacts) {

@@ -98,8 +98,8 @@ double spread(std::uint32_t level) {
 }
 
 // the upper half of a block; what is left of it stays
-ColumnBlock take_half(Block& block, std::uint32_t node) {
-  ColumnBlock half = {.byte_offset = node * static_cast<std::uint32_t>(sizeof(Float4)), .value = {}, .zero = 0};
+ColumnBlock take_half(Block& block, std::uint32_t place) {
+  ColumnBlock half = {.byte_offset = place * static_cast<std::uint32_t>(sizeof(Float4)), .value = {}, .zero = 0};
   for (std::uint32_t k = 0; k < 9; ++k) {
     half.value[k] = upper_half(block.column[k / 3][k % 3]);
     block.column[k / 3][k % 3] -= std::bit_cast<float>(std::uint32_t{half.value[k]} << 16);
@@ -144,11 +144,10 @@ void add_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t plac
   const ColumnBlock* const first = columns.block + begin[0];
   const ColumnBlock* const last = columns.block + begin[field_level + 1];
   auto* const value = reinterpret_cast<std::byte*>(sums.value);
+  std::uint8_t* const touched = sums.touched;
   for (const ColumnBlock* at = first; at != last; ++at) {
     product_with_force.add(*at, *reinterpret_cast<Float4*>(value + at->byte_offset));
-  }
-  for (const ColumnBlock* at = first; sums.touched != nullptr && at != last; ++at) {
-    sums.touched[at->byte_offset / sizeof(Float4)] = 1;
+    touched[moved_place(*at)] = 1;
   }
 }
 
@@ -306,7 +305,7 @@ void FieldColumnMaker::keep_level(std::uint32_t q, const Limits& limits, const R
     counts.finite = counts.finite && norm <= DBL_MAX;
     if (norm > 0 && read_[i] != 0 && (norm >= least || norm >= limits.norm)) {
       for (std::uint32_t half = 0; half < view_->info->field_halves; ++half) {
-        const ColumnBlock block = take_half(sum_[i], level.node_begin + (i - level.domain_begin));
+        const ColumnBlock block = take_half(sum_[i], i);
         counts.finite = counts.finite && is_finite(block);
         if (room.block != nullptr && counts.blocks < room.blocks) {
           room.block[counts.blocks] = block;

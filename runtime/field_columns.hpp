@@ -4,7 +4,6 @@
 
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
-#include "runtime/domain.hpp"
 #include "runtime/float4.hpp"
 #include "runtime/sparse_forces.hpp"
 
@@ -17,7 +16,7 @@ namespace greenloop {
 
 /// A block of a column, m/N.
 struct alignas(8) ColumnBlock {
-  std::uint32_t byte_offset;  ///< of the moved coefficient's node in an array of Float4
+  std::uint32_t byte_offset;  ///< of the moved coefficient in an array of Float4 per domain node
   std::uint16_t value[9];     ///< by columns, upper halves of floats
   std::uint16_t zero;
 };
@@ -39,8 +38,8 @@ inline std::uint32_t column_blocks(const FieldColumns& columns, std::uint32_t c,
 }
 
 /// Place in the domain of the coefficient that a block moves.
-inline std::uint32_t moved_place(const ModelView& view, const ColumnBlock& block) {
-  return domain_place(view, block.byte_offset / static_cast<std::uint32_t>(sizeof(Float4)));
+inline std::uint32_t moved_place(const ColumnBlock& block) {
+  return block.byte_offset / static_cast<std::uint32_t>(sizeof(Float4));
 }
 
 /// Asks the processor for a column.
