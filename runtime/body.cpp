@@ -190,6 +190,7 @@ bool prepare_fields(const ModelView& view, Tables& tables, Body& body) {
   const FieldColumnMaker::Room room{tables.field_block, counts.field_blocks, counts.longest_field_column};
   const auto made = tables.field_columns.make(body.refinement, body.touched, body.force, room);
   body.columns = tables.field_columns.columns();
+  body.columns.add = fastest_add_blocks();
   return made.within(room);
 }
 

@@ -14,51 +14,6 @@ namespace {
 
 constexpr std::ptrdiff_t most_prefetched = 2048;  // bytes of a column; the rest follows by itself
 
-#if defined(__SSE2__) || defined(__ARM_NEON)
-// blocks times one force; fourth lanes: any of a block's values times 0
-class Product {
- public:
-  explicit Product(Float4 force) : force_{splat3(force[0]), splat3(force[1]), splat3(force[2])} {}
-
-  void add(const ColumnBlock& block, Float4& sum) const {
-    const Block values{{detail::load_upper_halves(block.value), detail::load_upper_halves(block.value + 3),
-                        detail::load_upper_halves(block.value + 6)}};
-    sum += product(values, force_);
-  }
-
- private:
-  Float4 force_[3];
-};
-#else
-// the same on a processor without vectors: three lanes, two values a load
-class Product {
- public:
-  explicit Product(Float4 force) : force_{force[0], force[1], force[2]} {}
-
-  void add(const ColumnBlock& block, Float4& sum) const {
-    const std::uint32_t v01 = pair(block, 0);
-    const std::uint32_t v23 = pair(block, 2);
-    const std::uint32_t v45 = pair(block, 4);
-    const std::uint32_t v67 = pair(block, 6);
-    auto* const x = reinterpret_cast<float*>(&sum);
-    x[0] += (first(v01) * force_[0] + second(v23) * force_[1]) + first(v67) * force_[2];
-    x[1] += (second(v01) * force_[0] + first(v45) * force_[1]) + second(v67) * force_[2];
-    x[2] += (first(v23) * force_[0] + second(v45) * force_[1]) + first(pair(block, 8)) * force_[2];
-  }
-
- private:
-  static std::uint32_t pair(const ColumnBlock& block, std::size_t at) {
-    std::uint32_t two;
-    std::memcpy(&two, reinterpret_cast<const std::byte*>(&block) + offsetof(ColumnBlock, value) + 2 * at, sizeof two);
-    return two;
-  }
-  static float first(std::uint32_t two) { return std::bit_cast<float>(two << 16); }
-  static float second(std::uint32_t two) { return std::bit_cast<float>(two & 0xffff0000); }
-
-  float force_[3];
-};
-#endif
-
 // the nearest number of 8 significant bits, of two the even one: the upper half of a float
 std::uint16_t upper_half(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
@@ -139,16 +94,8 @@ void prefetch_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t
 
 void add_column(const FieldColumns& columns, std::uint32_t c, std::uint32_t place, std::uint32_t field_level,
                 Float4 force, const SparseCoefficients& sums) noexcept {
-  const Product product_with_force(force);
   const std::uint32_t* begin = columns.begin[c] + std::size_t{place} * columns.levels;
-  const ColumnBlock* const first = columns.block + begin[0];
-  const ColumnBlock* const last = columns.block + begin[field_level + 1];
-  auto* const value = reinterpret_cast<std::byte*>(sums.value);
-  std::uint8_t* const touched = sums.touched;
-  for (const ColumnBlock* at = first; at != last; ++at) {
-    product_with_force.add(*at, *reinterpret_cast<Float4*>(value + at->byte_offset));
-    touched[moved_place(*at)] = 1;
-  }
+  columns.add(columns.block + begin[0], columns.block + begin[field_level + 1], force, sums);
 }
 
 void FieldColumnMaker::carve(Arena& arena, const ModelView& view) noexcept {

@@ -4,6 +4,7 @@
 
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
+#include "runtime/column_blocks.hpp"
 #include "runtime/float4.hpp"
 #include "runtime/sparse_forces.hpp"
 
@@ -14,19 +15,13 @@ namespace greenloop {
 // at start-up and thresholded as layout.hpp says, so that a step reads a fraction of what the two-sided form would make
 // it read. Values are upper halves of floats, which load without conversion.
 
-/// A block of a column, m/N.
-struct alignas(8) ColumnBlock {
-  std::uint32_t byte_offset;  ///< of the moved coefficient in an array of Float4 per domain node
-  std::uint16_t value[9];     ///< by columns, upper halves of floats
-  std::uint16_t zero;
-};
-
 /// The field columns of all constraint levels; nodes that stand for no touchable node have empty ones.
 struct FieldColumns {
   std::uint32_t levels = 0;
   /// [c][domain nodes of K(c) * levels + 1] into block: of every node, by the level that is moved
   const std::uint32_t* begin[layout::max_levels] = {};
   const ColumnBlock* block = nullptr;
+  AddBlocks add = add_blocks;  ///< what columns are summed with
 };
 
 /// Blocks in the column of the node at `place` of K(c) that move coefficients of levels 0..field_level. For the loop;
@@ -35,11 +30,6 @@ inline std::uint32_t column_blocks(const FieldColumns& columns, std::uint32_t c,
                                    std::uint32_t field_level) {
   const std::uint32_t* begin = columns.begin[c] + std::size_t{place} * columns.levels;
   return begin[field_level + 1] - begin[0];
-}
-
-/// Place in the domain of the coefficient that a block moves.
-inline std::uint32_t moved_place(const ColumnBlock& block) {
-  return block.byte_offset / static_cast<std::uint32_t>(sizeof(Float4));
 }
 
 /// Asks the processor for a column.
