@@ -135,8 +135,8 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
-  if (!sizes.counts.forces_only && layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet))) {
-    body.field_touched = arena.take_zeroed<std::uint8_t>(view.node_count);
+  if (!sizes.counts.forces_only) {
+    body.field_touched = arena.take_zeroed<std::uint8_t>(view.domain_count);
   }
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
@@ -194,6 +194,7 @@ bool prepare_fields(const ModelView& view, Tables& tables, Body& body) {
   const FieldColumnMaker::Room room{tables.field_block, counts.field_blocks, counts.longest_field_column};
   const auto made = tables.field_columns.make(body.refinement, body.touched, body.force, room);
   body.columns = tables.field_columns.columns();
+  body.columns.add = fastest_add_blocks();
   return made.within(room);
 }
 

@@ -29,7 +29,7 @@ struct Body {
   Lifting lifting;
   Refinement refinement;
   FieldColumns columns;
-  std::uint8_t* field_touched = nullptr;   ///< see compute_field
+  std::uint8_t* field_touched = nullptr;   ///< [domain] zero between steps
   const ParentOffsets* parents = nullptr;  ///< [domain]
   std::uint32_t* stored = nullptr;         ///< [domain] blocks of all layers in a coefficient's column
   ColumnCosts cost;
@@ -47,6 +47,9 @@ struct Body {
   Glide glide;
   Mixture mixture;
   const std::byte* last_red_zone = nullptr;
+
+  /// Where fields are summed; forces are not in `force` meanwhile.
+  [[nodiscard]] SparseCoefficients field_scratch() const { return {force, field_touched}; }
 };
 
 /// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts, and if the model's

@@ -102,7 +102,7 @@ void answer_field(Body& body, std::span<const Contact> contacts, const FieldLeve
   const FieldModel model{view, body.columns, body.parents};
   const ColumnForces forces{body.set.columns, body.set.column, reinterpret_cast<const float*>(body.column_force)};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(model, forces, levels, body.field_touched, x);
+  compute_field(model, forces, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].displacement;

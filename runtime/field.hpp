@@ -23,9 +23,9 @@ struct ColumnForces {
 };
 
 /// Fast summation (James & Pai 2003, section 5.4): the displacement of the nodes of K(levels.nodes) by some forces,
-/// with details up to levels.details, interpolated beyond. touched: [node_count], 0 before and after; null if the
-/// wavelets are not lifted; x: [nodes of K(levels.nodes)]. For the loop; work: field_work.
+/// with details up to levels.details, interpolated beyond. scratch: zero before and after; x: [nodes of
+/// K(levels.nodes)], all of which are written. For the loop; work: field_work.
 void compute_field(const FieldModel& model, const ColumnForces& forces, const FieldLevels& levels,
-                   std::uint8_t* touched, Float4* x) noexcept;
+                   const SparseCoefficients& scratch, Float4* x) noexcept;
 
 }  // namespace greenloop

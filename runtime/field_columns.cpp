@@ -14,51 +14,6 @@ namespace {
 
 constexpr std::ptrdiff_t most_prefetched = 2048;  // bytes of a column; the rest follows by itself
 
-#if defined(__SSE2__) || defined(__ARM_NEON)
-// blocks times one force; fourth lanes: any of a block's values times 0
-class Product {
- public:
-  explicit Product(Float4 force) : force_{splat3(force[0]), splat3(force[1]), splat3(force[2])} {}
-
-  void add(const ColumnBlock& block, Float4& sum) const {
-    const Block values{{detail::load_upper_halves(block.value), detail::load_upper_halves(block.value + 3),
-                        detail::load_upper_halves(block.value + 6)}};
-    sum += product(values, force_);
-  }
-
- private:
-  Float4 force_[3];
-};
-#else
-// the same on a processor without vectors: three lanes, two values a load
-class Product {
- public:
-  explicit Product(Float4 force) : force_{force[0], force[1], force[2]} {}
-
-  void add(const ColumnBlock& block, Float4& sum) const {
-    const std::uint32_t v01 = pair(block, 0);
-    const std::uint32_t v23 = pair(block, 2);
-    const std::uint32_t v45 = pair(block, 4);
-    const std::uint32_t v67 = pair(block, 6);
-    auto* const x = reinterpret_cast<float*>(&sum);
-    x[0] += (first(v01) * force_[0] + second(v23) * force_[1]) + first(v67) * force_[2];
-    x[1] += (second(v01) * force_[0] + first(v45) * force_[1]) + second(v67) * force_[2];
-    x[2] += (first(v23) * force_[0] + second(v45) * force_[1]) + first(pair(block, 8)) * force_[2];
-  }
-
- private:
-  static std::uint32_t pair(const ColumnBlock& block, std::size_t at) {
-    std::uint32_t two;
-    std::memcpy(&two, reinterpret_cast<const std::byte*>(&block) + offsetof(ColumnBlock, value) + 2 * at, sizeof two);
-    return two;
-  }
-  static float first(std::uint32_t two) { return std::bit_cast<float>(two << 16); }
-  static float second(std::uint32_t two) { return std::bit_cast<float>(two & 0xffff0000); }
-
-  float force_[3];
-};
-#endif
-
 // the nearest number of 8 significant bits, of two the even one: the upper half of a float
 std::uint16_t upper_half(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
@@ -98,8 +53,8 @@ double spread(std::uint32_t level) {
 }
 
 // the upper half of a block; what is left of it stays
-ColumnBlock take_half(Block& block, std::uint32_t node) {
-  ColumnBlock half = {.byte_offset = node * static_cast<std::uint32_t>(sizeof(Float4)), .value = {}, .zero = 0};
+ColumnBlock take_half(Block& block, std::uint32_t place) {
+  ColumnBlock half = {.byte_offset = place * static_cast<std::uint32_t>(sizeof(Float4)), .value = {}, .zero = 0};
   for (std::uint32_t k = 0; k < 9; ++k) {
     half.value[k] = upper_half(block.column[k / 3][k % 3]);
     block.column[k / 3][k % 3] -= std::bit_cast<float>(std::uint32_t{half.value[k]} << 16);
@@ -139,17 +94,8 @@ void prefetch_column(const FieldColumns& columns, std::uint32_t column) noexcept
 
 void add_column(const FieldColumns& columns, std::uint32_t column, std::uint32_t field_level, Float4 force,
                 const SparseCoefficients& sums) noexcept {
-  const Product product_with_force(force);
   const std::uint32_t* begin = column_begin(columns, column);
-  const ColumnBlock* const first = columns.block + begin[0];
-  const ColumnBlock* const last = columns.block + begin[field_level + 1];
-  auto* const value = reinterpret_cast<std::byte*>(sums.value);
-  for (const ColumnBlock* at = first; at != last; ++at) {
-    product_with_force.add(*at, *reinterpret_cast<Float4*>(value + at->byte_offset));
-  }
-  for (const ColumnBlock* at = first; sums.touched != nullptr && at != last; ++at) {
-    sums.touched[at->byte_offset / sizeof(Float4)] = 1;
-  }
+  columns.add(columns.block + begin[0], columns.block + begin[field_level + 1], force, sums);
 }
 
 void FieldColumnMaker::carve(Arena& arena, const ModelView& view) noexcept {
@@ -307,7 +253,7 @@ void FieldColumnMaker::keep_level(std::uint32_t q, const Limits& limits, const R
     counts.finite = counts.finite && norm <= DBL_MAX;
     if (norm > 0 && read_[i] != 0 && (norm >= least || norm >= limits.norm)) {
       for (std::uint32_t half = 0; half < view_->info->field_halves; ++half) {
-        const ColumnBlock block = take_half(sum_[i], level.node_begin + (i - level.domain_begin));
+        const ColumnBlock block = take_half(sum_[i], i);
         counts.finite = counts.finite && is_finite(block);
         if (room.block != nullptr && counts.blocks < room.blocks) {
           room.block[counts.blocks] = block;

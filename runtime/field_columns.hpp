@@ -5,7 +5,7 @@
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
 #include "runtime/column.hpp"
-#include "runtime/domain.hpp"
+#include "runtime/column_blocks.hpp"
 #include "runtime/float4.hpp"
 #include "runtime/sparse_forces.hpp"
 
@@ -16,19 +16,13 @@ namespace greenloop {
 // at start-up and thresholded as layout.hpp says, so that a step reads a fraction of what the two-sided form would make
 // it read. Values are upper halves of floats, which load without conversion.
 
-/// A block of a column, m/N.
-struct alignas(8) ColumnBlock {
-  std::uint32_t byte_offset;  ///< of the moved coefficient's node in an array of Float4
-  std::uint16_t value[9];     ///< by columns, upper halves of floats
-  std::uint16_t zero;
-};
-
 /// The field columns of all constraint levels; nodes that stand for no touchable node have empty ones.
 struct FieldColumns {
   std::uint32_t levels = 0;
   /// [c][domain nodes of K(c) * levels + 1] into block: of every node, by the level that is moved
   const std::uint32_t* begin[layout::max_levels] = {};
   const ColumnBlock* block = nullptr;
+  AddBlocks add = add_blocks;  ///< what columns are summed with
 };
 
 /// Where the blocks of a column begin, by the level that they move. For the loop; work: one unit.
@@ -40,11 +34,6 @@ inline const std::uint32_t* column_begin(const FieldColumns& columns, std::uint3
 inline std::uint32_t column_blocks(const FieldColumns& columns, std::uint32_t column, std::uint32_t field_level) {
   const std::uint32_t* begin = column_begin(columns, column);
   return begin[field_level + 1] - begin[0];
-}
-
-/// Place in the domain of the coefficient that a block moves.
-inline std::uint32_t moved_place(const ModelView& view, const ColumnBlock& block) {
-  return domain_place(view, block.byte_offset / static_cast<std::uint32_t>(sizeof(Float4)));
 }
 
 /// Asks the processor for a column.

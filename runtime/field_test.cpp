@@ -100,9 +100,9 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
         const Forces forces(view, c, random);
         std::vector<Float4> x(view.node_count, splat(1e30F));
         compute_field({view, body.columns, body.parents}, forces.on(c), {view.levels - 1, field_level},
-                      body.field_touched, x.data());
-        CHECK((body.field_touched == nullptr ||
-               std::count(body.field_touched, body.field_touched + view.node_count, 0) == view.node_count));
+                      body.field_scratch(), x.data());
+        CHECK(std::count(body.field_touched, body.field_touched + view.domain_count, 0) == view.domain_count);
+        CHECK(all_zero(body.force, view.domain_count));
         for (std::uint32_t q = 0; q < view.levels; ++q) {
           const LevelView& level = view.level[q];
           CHECK(all_zero(x.data() + level.node_begin + level.counts->domain_count,
@@ -112,8 +112,8 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
           }
         }
         std::vector<Float4> coarse(nodes_up_to(view, field_level), splat(1e30F));
-        compute_field({view, body.columns, body.parents}, forces.on(c), {field_level, field_level}, body.field_touched,
-                      coarse.data());
+        compute_field({view, body.columns, body.parents}, forces.on(c), {field_level, field_level},
+                      body.field_scratch(), coarse.data());
         CHECK(std::memcmp(coarse.data(), x.data(), sizeof(Float4) * coarse.size()) == 0);
         const Eigen::VectorXd whole = reference.field(c) * forces.dense;
         const Eigen::VectorXd averages = reference.averages(field_level, whole);

@@ -11,38 +11,75 @@ Float4& at_offset(Float4* x, std::uint32_t byte_offset) {
   return *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + byte_offset);
 }
 
-// calls visit(i) for every i < count whose byte is not 0, in order, and clears it
+// calls visit(i) for every i < count whose byte is not 0, in order; visit may clear it
 template <class Visit>
-void take_touched(std::uint8_t* touched, std::uint32_t count, Visit visit) {
-  for (std::uint32_t i = 0; i < count; i += 8) {
-    std::uint64_t eight = 0;
-    std::memcpy(&eight, touched + i, count - i < 8 ? count - i : 8);
-    while (eight != 0) {
-      visit(i + static_cast<std::uint32_t>(std::countr_zero(eight)) / 8);
-      eight &= eight - 1;
+void visit_touched(const std::uint8_t* touched, std::uint32_t count, Visit visit) {
+  constexpr std::uint32_t words = 4;  // looked at together: most are 0
+  std::uint32_t i = 0;
+  for (; i + 8 * words <= count; i += 8 * words) {
+    std::uint64_t bytes[words];
+    std::memcpy(bytes, touched + i, sizeof bytes);
+    if ((bytes[0] | bytes[1] | bytes[2] | bytes[3]) == 0) {
+      continue;
+    }
+    for (std::uint32_t k = 0; k < words; ++k) {
+      for (std::uint64_t eight = bytes[k]; eight != 0; eight &= eight - 1) {
+        visit(i + 8 * k + static_cast<std::uint32_t>(std::countr_zero(eight)) / 8);
+      }
     }
   }
-  std::memset(touched, 0, count);
+  for (; i < count; ++i) {
+    if (touched[i] != 0) {
+      visit(i);
+    }
+  }
 }
 
-void undo_lifting(const LevelView& level, const ParentOffsets* parents, std::uint8_t* touched, Float4* x) {
+void undo_lifting(const LevelView& level, const ParentOffsets* parents, const SparseCoefficients& coefficients,
+                  Float4* x) {
   const ParentOffsets* of_level = parents + level.domain_begin;
-  const Float4* odd = x + level.node_begin;
-  take_touched(touched + level.node_begin, level.counts->domain_count, [&](std::uint32_t i) {
-    const Float4 detail = odd[i];
+  const Float4* value = coefficients.value + level.domain_begin;
+  visit_touched(coefficients.touched + level.domain_begin, level.counts->domain_count, [&](std::uint32_t i) {
+    const Float4 detail = value[i];
     const float* lift = level.refinement[i].lift;
     at_offset(x, of_level[i].byte_offset[0]) -= splat(lift[0]) * detail;
     at_offset(x, of_level[i].byte_offset[1]) -= splat(lift[1]) * detail;
   });
 }
 
+// halfway between the parents; 0 outside the domain
 void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   Float4* odd = x + level.node_begin;
   const ParentOffsets* of_level = parents + level.domain_begin;
   const std::uint32_t count = level.counts->domain_count;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    odd[i] += splat(0.5F) * (at_offset(x, of_level[i].byte_offset[0]) + at_offset(x, of_level[i].byte_offset[1]));
+  const auto halfway = [&](std::uint32_t i) {
+    const auto both = std::bit_cast<std::uint64_t>(of_level[i]);  // one load; their order does not matter
+    odd[i] = splat(0.5F) *
+             (at_offset(x, static_cast<std::uint32_t>(both)) + at_offset(x, static_cast<std::uint32_t>(both >> 32)));
+  };
+  std::uint32_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    halfway(i);
+    halfway(i + 1);
+    halfway(i + 2);
+    halfway(i + 3);
   }
+  for (; i < count; ++i) {
+    halfway(i);
+  }
+  std::memset(odd + count, 0, sizeof(Float4) * (level.counts->node_count - count));
+}
+
+// moves a level's details to its nodes
+void add_details(const LevelView& level, const SparseCoefficients& coefficients, Float4* x) {
+  Float4* node = x + level.node_begin;
+  Float4* value = coefficients.value + level.domain_begin;
+  std::uint8_t* touched = coefficients.touched + level.domain_begin;
+  visit_touched(touched, level.counts->domain_count, [&](std::uint32_t i) {
+    node[i] += value[i];
+    value[i] = Float4{};
+    touched[i] = 0;
+  });
 }
 
 void add_stencils(const LevelView& level, Float4* x) {
@@ -135,19 +172,21 @@ void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept
 }
 
 void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
-                       const SparseCoefficients& coefficients) noexcept {
-  const bool lifted = coefficients.touched != nullptr;
-  if (lifted) {
-    std::memset(coefficients.touched, 0, view.level[0].counts->domain_count);
-  }
+                       const SparseCoefficients& coefficients, Float4* x) noexcept {
+  const bool lifted = layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet));
+  std::memset(x, 0, sizeof(Float4) * view.level[0].counts->node_count);
+  add_details(view.level[0], coefficients, x);
   for (std::uint32_t q = 1; q <= levels.nodes; ++q) {
     const LevelView& level = view.level[q];
     if (lifted && q <= levels.details) {
-      undo_lifting(level, parents, coefficients.touched, coefficients.value);
+      undo_lifting(level, parents, coefficients, x);
     }
-    predict(level, parents, coefficients.value);
+    predict(level, parents, x);
+    if (q <= levels.details) {
+      add_details(level, coefficients, x);
+    }
     if (level.stencils != nullptr) {
-      add_stencils(level, coefficients.value);
+      add_stencils(level, x);
     }
   }
 }

@@ -62,18 +62,17 @@ struct FieldLevels {
   std::uint32_t details = 0;  ///< finest level whose details are summed, at most `nodes`
 };
 
-/// A field in the making: wavelet coefficients, few of which are not zero, where the displacements of their nodes will
-/// stand.
+/// A field in the making: wavelet coefficients, few of which are not zero.
 struct SparseCoefficients {
-  Float4* value = nullptr;          ///< [node_count] by file index; 0 outside the domain
-  std::uint8_t* touched = nullptr;  ///< [node_count] 1 where the value may not be 0, 0 between uses; null if unlifted
+  Float4* value = nullptr;          ///< [domain] 0 where not touched, and everywhere between uses
+  std::uint8_t* touched = nullptr;  ///< [domain] 1 where the value may not be 0, else 0
 };
 
-/// The inverse transform in place, of the nodes of K(levels.nodes); `touched` is zero again. Levels above
-/// levels.details, which must be 0, are interpolated. parents: [domain]. Only the nodes around a coefficient that was
-/// touched are lifted. For the loop; work: inverse_transform_work.
+/// The inverse transform: displacements x of the nodes of K(levels.nodes), all of which are written. Levels above
+/// levels.details, where nothing may be touched, are interpolated. parents: [domain]. Only details that were touched
+/// are read; they are zero and untouched again afterwards. For the loop; work: inverse_transform_work.
 void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
-                       const SparseCoefficients& coefficients) noexcept;
+                       const SparseCoefficients& coefficients, Float4* x) noexcept;
 
 /// Work units of inverse_transform. odd_nodes: of the domain above level 0; touched: coefficients, at most.
 constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t touched,

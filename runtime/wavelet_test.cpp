@@ -25,21 +25,24 @@ std::vector<std::uint32_t> domain_nodes(const ModelView& view) {
   return nodes;
 }
 
-// a field to be: coefficients by file index
+// a field to be
 struct Coefficients {
-  explicit Coefficients(const ModelView& view) : value(view.node_count), touched(view.node_count) {}
+  explicit Coefficients(const ModelView& model) : view(model), value(view.domain_count), touched(view.domain_count) {}
   void add(std::uint32_t node, Float4 coefficient) {
-    value[node] = coefficient;
-    touched[node] = 1;
+    value[domain_place(view, node)] = coefficient;
+    touched[domain_place(view, node)] = 1;
   }
-  // in place; touched is checked to be zero again
-  const std::vector<Float4>& inverse(const PlacedBody& placed, std::uint32_t field_level) {
-    const ModelView& view = *placed.body->view;
-    std::uint8_t* lifted = placed.body->field_touched == nullptr ? nullptr : touched.data();
-    inverse_transform(view, placed.body->parents, {view.levels - 1, field_level}, {value.data(), lifted});
-    CHECK((lifted == nullptr || std::count(touched.begin(), touched.end(), 0) == static_cast<int>(touched.size())));
-    return value;
+  // by file index; the coefficients are checked to be zero again
+  std::vector<Float4> inverse(const PlacedBody& placed, std::uint32_t field_level) {
+    std::vector<Float4> x(view.node_count, splat(1e30F));
+    inverse_transform(view, placed.body->parents, {view.levels - 1, field_level}, {value.data(), touched.data()},
+                      x.data());
+    CHECK(std::count(touched.begin(), touched.end(), 0) == static_cast<int>(touched.size()));
+    CHECK(std::all_of(value.begin(), value.end(),
+                      [](Float4 v) { return v[0] == 0 && v[1] == 0 && v[2] == 0 && v[3] == 0; }));
+    return x;
   }
+  const ModelView& view;
   std::vector<Float4> value;
   std::vector<std::uint8_t> touched;
 };
@@ -84,7 +87,7 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
     coefficients.add(
         node, Float4{static_cast<float>(of_node[0]), static_cast<float>(of_node[1]), static_cast<float>(of_node[2])});
   }
-  const std::vector<Float4>& field = coefficients.inverse(placed, view.levels - 1);
+  const std::vector<Float4> field = coefficients.inverse(placed, view.levels - 1);
   for (std::uint32_t node = 0; node < view.node_count; ++node) {
     for (std::size_t r = 0; r < 3; ++r) {
       CHECK(std::abs(double{field[node][r]} - x[node][r]) <= 8 * view.levels * 0x1p-24);
@@ -106,13 +109,11 @@ TEST_CASE("a few details give what all of them give that are zero but those") {
       few.add(node, splat3(0.25F + static_cast<float>(node)));
     }
     Coefficients all = few;
-    for (const std::uint32_t node : nodes) {
-      all.touched[node] = 1;
-    }
-    const std::vector<Float4>* x[] = {&few.inverse(placed, view.levels - 1), &all.inverse(placed, view.levels - 1)};
+    std::fill(all.touched.begin(), all.touched.end(), 1);
+    const std::vector<Float4> x[] = {few.inverse(placed, view.levels - 1), all.inverse(placed, view.levels - 1)};
     for (std::uint32_t node = 0; node < view.node_count; ++node) {
       for (int r = 0; r < 4; ++r) {
-        CHECK(float{(*x[0])[node][r]} == float{(*x[1])[node][r]});
+        CHECK(float{x[0][node][r]} == float{x[1][node][r]});
       }
     }
   }
@@ -126,7 +127,7 @@ TEST_CASE("details above the field level are interpolated") {
   for (std::uint32_t i = 0; i < view.level[0].counts->domain_count; ++i) {
     coarse.add(i, splat3(1.0F + static_cast<float>(i)));
   }
-  const std::vector<Float4>& field = coarse.inverse(placed, 0);
+  const std::vector<Float4> field = coarse.inverse(placed, 0);
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {

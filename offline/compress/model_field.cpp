@@ -72,9 +72,6 @@ ModelField::ModelField(const ModelView& view) {
   (void)maker.make({blocks, counts_.blocks, counts_.longest});
   columns_ = maker.columns.columns();
   tables_memory_ = std::move(maker.memory);
-  for (std::uint32_t node = 0; node < view.node_count; ++node) {
-    place_.push_back(domain_place(view, node));
-  }
 }
 
 std::vector<double> ModelField::column(const SurfaceWavelet& wavelet, std::size_t level, std::size_t j) const {
@@ -82,7 +79,7 @@ std::vector<double> ModelField::column(const SurfaceWavelet& wavelet, std::size_
   const std::uint32_t* begin = columns_.begin[level] + j * columns_.levels;
   for (std::uint32_t b = begin[0]; b < begin[columns_.levels]; ++b) {
     const ColumnBlock& block = columns_.block[b];
-    double* to = x.data() + 9 * std::size_t{place_[block.byte_offset / sizeof(Float4)]};
+    double* to = x.data() + 9 * std::size_t{moved_place(block)};
     for (std::size_t k = 0; k < 9; ++k) {
       to[k] += static_cast<double>(std::bit_cast<float>(std::uint32_t{block.value[k]} << 16));
     }

@@ -47,7 +47,6 @@ class ModelField {
   FieldColumnMaker::Counts counts_;
   AlignedBytes tables_memory_, blocks_memory_;
   FieldColumns columns_;
-  std::vector<std::uint32_t> place_;  // in the domain, of every node
 };
 
 }  // namespace greenloop::offline

@@ -79,7 +79,7 @@ class FieldSums {
     for (const Columns& set : sets_) {
       const auto count = static_cast<std::uint32_t>(set.column.size());
       compute_field({*body.view, body.columns, body.parents}, {count, set.column.data(), set.force.data()},
-                    {level_, level_}, body.field_touched, x_.data());
+                    {level_, level_}, body.field_scratch(), x_.data());
     }
   }
 

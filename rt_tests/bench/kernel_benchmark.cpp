@@ -96,23 +96,21 @@ TransformFigures measure_transform(const Model& model, const GreenStore& store, 
   const ExactColumns columns(store, one);
   const float unit[3] = {1, 0.5F, -0.25F};
   Eigen::VectorXf field(3 * static_cast<Eigen::Index>(store.contents().row_node.size()));
-  std::vector<Float4> x(view.node_count), sums(view.node_count);
-  std::vector<std::uint8_t> touched(view.node_count), ones(view.node_count);
-  const bool lifted = patch.body.field_touched != nullptr;
+  std::vector<Float4> x(view.node_count), sums(view.domain_count), value(view.domain_count);
+  std::vector<std::uint8_t> touched(view.domain_count), ones(view.domain_count);
   for (std::uint32_t k = 0; k < patch.body.set.columns; ++k) {
-    add_column(patch.body.columns, patch.body.set.column[k], patch.level, splat3(1e-3F),
-               {sums.data(), lifted ? ones.data() : nullptr});
+    add_column(patch.body.columns, patch.body.set.column[k], patch.level, splat3(1e-3F), {sums.data(), ones.data()});
   }
   std::vector<double> transform, dense, ratio;
   for (std::size_t round = 0; round < rounds; ++round) {
     dense.push_back(time_of(at_once, [&] { columns.sum(one.front(), unit, field); }));
     double sum = 0;
     for (std::size_t i = 0; i < at_once; ++i) {
-      x = sums;
+      value = sums;
       touched = ones;
       sum += time_of(1, [&] {
-        inverse_transform(view, patch.body.parents, {patch.level, patch.level},
-                          {x.data(), lifted ? touched.data() : nullptr});
+        inverse_transform(view, patch.body.parents, {patch.level, patch.level}, {value.data(), touched.data()},
+                          x.data());
       });
     }
     transform.push_back(sum / static_cast<double>(at_once));

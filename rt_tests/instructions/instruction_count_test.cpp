@@ -78,7 +78,7 @@ TEST_CASE("kernels take the same instructions whatever the numbers") {
   std::vector<Float4> x(view.node_count);
   const auto field = counts([&](float value) {
     const float force[] = {value, value, value};
-    compute_field({view, body.columns, body.parents}, {1, &column, force}, {1, 1}, body.field_touched, x.data());
+    compute_field({view, body.columns, body.parents}, {1, &column, force}, {1, 1}, body.field_scratch(), x.data());
   });
   CHECK(all_equal(field));
   CHECK(field[0] > 100);

@@ -63,7 +63,7 @@ MatrixXd dense_field_columns(const Body& body, std::uint32_t c) {
     const std::uint32_t* begin = body.columns.begin[c] + place * view.levels;
     for (std::uint32_t b = begin[0]; b < begin[view.levels]; ++b) {
       const ColumnBlock& block = body.columns.block[b];
-      const Index row = moved_place(view, block);
+      const Index row = moved_place(block);
       for (Index k = 0; k < 9; ++k) {
         columns(3 * row + k % 3, 3 * place + k / 3) +=
             double{std::bit_cast<float>(std::uint32_t{block.value[k]} << 16)};
