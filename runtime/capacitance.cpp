@@ -448,14 +448,11 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
                                      std::uint64_t allowance, PartialCapacitance& partial) noexcept {
   std::uint64_t work = 0;
   while (partial.next < partial.slots) {
-    if (scratch.coefficient[partial.next] == layout::none) {
-      ++partial.next;
-      continue;
-    }
-    if (most_couplings_work(refinement, partial, scratch) > allowance - work) {
+    const bool has_blocks = scratch.coefficient[partial.next] != layout::none;
+    if (has_blocks && most_couplings_work(refinement, partial, scratch) > allowance - work) {
       return work;
     }
-    work += add_couplings(refinement, partial, scratch);
+    work += has_blocks ? add_couplings(refinement, partial, scratch) : 0;
     partial.layer = (partial.layer + 1) % layout::layers;
     partial.next += partial.layer == 0 ? 1 : 0;
     if (partial.next == partial.slots) {

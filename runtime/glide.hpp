@@ -49,6 +49,9 @@ class Glide {
   /// Whether all are, and no other. For the loop; work: a unit a contact.
   [[nodiscard]] bool stays(std::span<const Contact> contacts) const noexcept;
 
+  /// Whether the last answer was not of one level, or mixture, alone.
+  [[nodiscard]] bool under_way() const noexcept { return left_ > 0; }
+
   /// [3] of a node in the last answer, N; null if it was not held. For the loop; work: a unit.
   [[nodiscard]] const float* last_force(std::uint32_t node) const noexcept;
 

@@ -1,5 +1,6 @@
 #include "runtime/mixture.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace greenloop {
@@ -26,6 +27,7 @@ void Mixture::carve(Arena& arena, std::uint32_t contacts) noexcept {
   order_ = arena.take<std::uint32_t>(contacts);
   sorting_ = arena.take<std::uint32_t>(contacts);
   weight_ = arena.take<float>(contacts);
+  kept_ = arena.take<bool>(contacts);
   fine_ = arena.take<bool>(contacts);
   last_node_ = arena.take<std::uint32_t>(contacts);
 }
@@ -52,8 +54,8 @@ void Mixture::rank(std::span<const Contact> contacts, const ContactSet& set, con
   for (std::uint32_t k = 0; k < groups_; ++k) {
     order_[k] = k;
     const auto group = contacts_of(k);
-    const float kept = facts[contacts[group[0]].node].fine ? 4.0F : 1.0F;
-    weight_[k] = kept * square_force(contacts, group, last);
+    kept_[k] = std::any_of(group.begin(), group.end(), [&](std::uint32_t i) { return facts[contacts[i].node].fine; });
+    weight_[k] = (kept_[k] ? 4.0F : 1.0F) * square_force(contacts, group, last);
   }
   merge_sort(groups_, order_, sorting_, [this](std::uint32_t a, std::uint32_t b) { return weight_[a] > weight_[b]; });
 }

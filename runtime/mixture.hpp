@@ -38,6 +38,9 @@ class Mixture {
     return {member_ + begin_[k], begin_[k + 1] - begin_[k]};
   }
 
+  /// Whether some of the g-th group were chosen last.
+  [[nodiscard]] bool was_chosen(std::uint32_t g) const noexcept { return kept_[order_[g]]; }
+
   /// Chooses the g-th group. For the loop; work: within choose_work.
   void choose(std::uint32_t g) noexcept;
 
@@ -64,6 +67,7 @@ class Mixture {
   std::uint32_t* order_ = nullptr;      ///< [groups]
   std::uint32_t* sorting_ = nullptr;    ///< [groups] scratch
   float* weight_ = nullptr;             ///< [groups]
+  bool* kept_ = nullptr;                ///< [groups] some were chosen last
   bool* fine_ = nullptr;                ///< [contacts]
   std::uint32_t* last_node_ = nullptr;  ///< [contacts] that were chosen last
   std::uint32_t last_ = 0;

@@ -72,6 +72,7 @@ struct Room {
   std::uint64_t budget = 0;    // for all of it
   std::uint64_t planning = 0;  // for nothing but planning: the rest is the coarser answer's
   std::uint32_t entering = 0;  // contacts that enter a factor
+  bool grows = false;          // whether groups may be added to those of the last choice
 };
 
 // most contacts that can enter a factor of about as many coefficients as the finest set has
@@ -97,6 +98,7 @@ Room room_for_mixture(const Body& body, const Task& task, const Plan& plan, bool
   room.budget = task.budget < refining ? task.budget : refining;
   room.planning = coarser < task.budget ? task.budget - coarser : 0;
   room.entering = contacts_stay ? 0 : most_entering(body.counts, plan, room.budget);
+  room.grows = !contacts_stay && !body.glide.under_way();
   return room;
 }
 
@@ -150,7 +152,7 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   for (std::uint32_t k = 0; k < body.set.columns; ++k) {
     choice.add(body, task, plan.field_levels, body.set.column[k]);
   }
-  if ((room.entering == 0 && !body.mixture.has_last()) || !holds(body, task, plan, room, choice)) {
+  if ((!room.grows && !body.mixture.has_last()) || !holds(body, task, plan, room, choice)) {
     return false;
   }
   plan.work += Mixture::choose_work(task.contacts.size());
@@ -158,7 +160,7 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   bool chosen = false;
   for (std::uint32_t g = 0; g < body.mixture.groups(); ++g) {
     const Choice finer = with_group(body, task, plan, g, choice);
-    if (holds(body, task, plan, room, finer)) {
+    if ((room.grows || body.mixture.was_chosen(g)) && holds(body, task, plan, room, finer)) {
       body.mixture.choose(g);
       choice = finer;
       chosen = true;
@@ -171,7 +173,7 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
 void refine(Body& body, const Task& task, Plan& plan) {
   // contacts that stay reach the finest level sooner by slices: they keep the mixture that they have
   const bool contacts_stay = body.glide.stays(task.contacts);
-  if (contacts_stay && !body.mixture.has_last()) {
+  if ((contacts_stay || body.glide.under_way()) && !body.mixture.has_last()) {
     return;
   }
   const Room room = room_for_mixture(body, task, plan, contacts_stay);
