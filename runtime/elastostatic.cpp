@@ -170,9 +170,11 @@ void prepare_finer_level(Body& body, std::span<const Contact> contacts, const Pl
   if (!plan.wanted.exists || plan.wanted.level <= report.constraint_level) {
     return;
   }
+  // the step that makes a mixed factor has had the scratch, and its share of the work
+  const bool mixed = plan.resolution.fine != nullptr && plan.cached == nullptr;
   const std::uint64_t resolving = resolve_contacts_work(contacts.size());
   const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
-  if (report.work + resolving > limit) {
+  if (mixed || report.work + resolving > limit) {
     report.pending_work = pending_work(body.counts, plan.wanted.counts);
     return;
   }

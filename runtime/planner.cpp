@@ -75,15 +75,19 @@ struct Room {
   bool grows = false;          // whether groups may be added to those of the last choice
 };
 
+// work of changing a factor of the set by as many nodes as enter and leave
+std::uint64_t change_work(const ModelCounts& model, const SetCounts& set, std::uint64_t nodes) {
+  const auto share = [&](std::uint64_t sum) { return nodes * sum / set.columns; };
+  return update_factor_work(
+      model, set, {nodes, nodes, share(set.column_visits), share(set.column_coefficients), share(set.column_blocks)});
+}
+
 // most contacts that can enter a factor of about as many coefficients as the finest set has
 std::uint32_t most_entering(const ModelCounts& model, const Plan& plan, std::uint64_t budget) {
   const SetCounts& whole = plan.wanted.counts;
   std::uint32_t entering = FactorChanges::most;
   for (; entering > 0; entering /= 2) {
-    const auto share = [&](std::uint64_t sum) { return entering * sum / whole.columns; };
-    const std::uint64_t factor = update_factor_work(
-        model, whole,
-        {entering, entering, share(whole.column_visits), share(whole.column_coefficients), share(whole.column_blocks)});
+    const std::uint64_t factor = change_work(model, whole, entering);
     if (plan.work + factor + force_work(whole) + plan.field <= budget) {
       break;
     }
@@ -180,6 +184,11 @@ void refine(Body& body, const Task& task, Plan& plan) {
   const Resolution coarser = plan.resolution;
   // the factor of the last mixture is one of its level
   const std::uint32_t level = body.mixture.has_last() ? body.mixture.last_level() : coarser.level;
+  SetCounts each;
+  each.contacts = each.columns = task.contacts.size();
+  if (mixture_work(body.counts, each) > room.planning) {
+    return;
+  }
   if (level != coarser.level) {
     plan_set(body, task, {level}, plan);
   }
@@ -188,7 +197,8 @@ void refine(Body& body, const Task& task, Plan& plan) {
   if (chosen) {
     plan_set(body, task, {level, body.mixture.fine()}, plan);
     plan_factor(body, task, plan);
-    fits = planned_work(plan) <= room.budget;
+    // where no factor is near, slices of the finest one are worth more than a fresh one of a mixture
+    fits = planned_work(plan) <= room.budget && (plan.cached != nullptr || body.changes.base != nullptr);
   }
   body.mixture.remember(fits, level, task.contacts, body.facts);
   if (!fits && (chosen || level != coarser.level)) {
@@ -201,6 +211,13 @@ void refine(Body& body, const Task& task, Plan& plan) {
 
 std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noexcept {
   return resolve_work(model, set) + touch_work(set) + find_changes_work(model.cached_factors, set.columns);
+}
+
+std::uint64_t most_change_work(const ModelCounts& model, const SetCounts& most) noexcept {
+  const std::uint64_t fresh = factor_work(model, most);
+  const std::uint64_t change =
+      change_work(model, most, most.columns < FactorChanges::most ? most.columns : FactorChanges::most);
+  return change < fresh ? change : fresh;
 }
 
 std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept {

@@ -89,16 +89,20 @@ void bound_work(const ModelView& view, const Limits& limits, const SetCounts* mo
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const SetCounts& most = most_of[c];
     add_set(counts, most, other);
-    std::uint64_t mixed_answer = 0;
-    if (c < finest) {
-      other.mixture = larger(other.mixture, mixture_work(counts, mixed_of[c]) + plan_set_work(counts, most));
-      mixed_answer = other.plans + fresh_forces_work(counts, mixed_of[c], other) + field(mixed_of[c], finest);
-    }
     // at the coarsest level the field is cut as well
     const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
     const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
-    const std::uint64_t answer = larger(forces + field(most, finest), mixed_answer) + other.mixture + other.older;
-    requirement.worst_work[c] = with_slices(answer, other.slices, limits.refining_work);
+    std::uint64_t answer = forces + field(most, finest);
+    std::uint64_t mixed_factor = 0;
+    if (c < finest) {
+      const SetCounts& mixed = mixed_of[c];
+      other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
+      const std::uint64_t mixed_answer = other.plans + force_work(mixed) + field(mixed, finest);
+      mixed_factor = mixed_answer + other.dropped + most_change_work(counts, mixed);
+      answer = larger(answer, mixed_answer);
+    }
+    const std::uint64_t refined = larger(with_slices(answer, other.slices, limits.refining_work), mixed_factor);
+    requirement.worst_work[c] = refined + other.mixture + other.older;
     requirement.least_work = forces + field(most, 0);
     add_slices(counts, most, other);
   }

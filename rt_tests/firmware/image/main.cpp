@@ -25,7 +25,7 @@ constexpr std::uint64_t refining_work = 12'500;  // the same
 constexpr std::uint32_t most_steps_to_the_finest = 40;
 
 constexpr std::size_t most_nodes = 300;
-alignas(64) std::byte arena[456 * 1024];
+alignas(64) std::byte arena[464 * 1024];
 alignas(16) float field[4 * most_nodes];
 Requirement requirement;
 RecordedRun recorded;
