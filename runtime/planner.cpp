@@ -173,6 +173,13 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   return chosen;
 }
 
+// of ranking the groups of a set, and of resolving it twice
+std::uint64_t least_planning_work(const ModelCounts& model, std::uint64_t contacts) {
+  SetCounts set;
+  set.contacts = set.columns = contacts;
+  return Mixture::choose_work(contacts) + 2 * resolve_work(model, set);
+}
+
 // puts contacts of a coarser set to the finest level if that fits as well
 void refine(Body& body, const Task& task, Plan& plan) {
   // contacts that stay reach the finest level sooner by slices: they keep the mixture that they have
@@ -184,9 +191,7 @@ void refine(Body& body, const Task& task, Plan& plan) {
   const Resolution coarser = plan.resolution;
   // the factor of the last mixture is one of its level
   const std::uint32_t level = body.mixture.has_last() ? body.mixture.last_level() : coarser.level;
-  SetCounts each;
-  each.contacts = each.columns = task.contacts.size();
-  if (mixture_work(body.counts, each) > room.planning) {
+  if (least_planning_work(body.counts, task.contacts.size()) > room.planning) {
     return;
   }
   if (level != coarser.level) {
