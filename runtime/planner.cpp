@@ -189,8 +189,9 @@ void refine(Body& body, const Task& task, Plan& plan) {
   }
   const Room room = room_for_mixture(body, task, plan, contacts_stay);
   const Resolution coarser = plan.resolution;
-  // the factor of the last mixture is one of its level
-  const std::uint32_t level = body.mixture.has_last() ? body.mixture.last_level() : coarser.level;
+  // the factor of the last mixture is one of its level, which may be finer
+  const bool finer = body.mixture.has_last() && body.mixture.last_level() > coarser.level;
+  const std::uint32_t level = finer ? body.mixture.last_level() : coarser.level;
   if (least_planning_work(body.counts, task.contacts.size()) > room.planning) {
     return;
   }

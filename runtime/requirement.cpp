@@ -83,6 +83,11 @@ void bound_work(const ModelView& view, const Limits& limits, const SetCounts* mo
     const std::uint64_t blocks = most_field_blocks(view, set.columns, field_level);
     return limits.forces_only ? 0 : field_work(counts, set, {finest, field_level}, blocks);
   };
+  // a mixed set may be planned after all levels were, whatever its own
+  std::uint64_t all_plans = check_contacts_work(limits.max_contacts);
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    all_plans += plan_set_work(counts, most_of[c]);
+  }
   OtherWork other;
   other.plans = check_contacts_work(limits.max_contacts);
   other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
@@ -97,7 +102,7 @@ void bound_work(const ModelView& view, const Limits& limits, const SetCounts* mo
     if (c < finest) {
       const SetCounts& mixed = mixed_of[c];
       other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
-      const std::uint64_t mixed_answer = other.plans + force_work(mixed) + field(mixed, finest);
+      const std::uint64_t mixed_answer = all_plans + force_work(mixed) + field(mixed, finest);
       mixed_factor = mixed_answer + other.dropped + most_change_work(counts, mixed);
       answer = larger(answer, mixed_answer);
     }
