@@ -7,9 +7,11 @@
 #include <bit>
 #include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "runtime/cholesky.hpp"
+#include "runtime/domain.hpp"
 #include "runtime/testing/dense_reference.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -123,6 +125,103 @@ double distance(std::span<const float> a, std::span<const float> b) {
     norm += std::pow(double{b[i]}, 2);
   }
   return std::sqrt(sum / norm);
+}
+
+// the touchable nodes next to one, displaced by a linear function of their places
+std::vector<Contact> smooth_patch(const TestModel& model, std::size_t first, std::size_t count) {
+  const auto nodes = model.touchable();
+  const auto position = [&](std::uint32_t node) {
+    return Eigen::Vector3f(Eigen::Map<const Eigen::Vector3f>(node_record(model.view(), node).position));
+  };
+  const Eigen::Vector3f centre = position(nodes[first % nodes.size()]);
+  std::vector<std::pair<float, std::uint32_t>> near;
+  for (const std::uint32_t node : nodes) {
+    near.emplace_back((position(node) - centre).norm(), node);
+  }
+  std::sort(near.begin(), near.end());
+  std::vector<Contact> contacts;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3f x = (position(near[i].second) - centre) / near[count].first;
+    contacts.push_back({near[i].second, {1e-4F * (1 - x[1]), 1e-4F * (x[0] + x[2] / 2), -2e-4F + 5e-5F * x[1]}});
+  }
+  return contacts;
+}
+
+// mean error of the forces, against those of the finest level, with a part of the contacts there, by groups in an order
+// that `weight` decides: (group of the set, its force, its contacts)
+template <class Weight>
+double order_error(const TestModel& model, Body& body, bool smooth, double part, Weight weight) {
+  constexpr int patches = 20;
+  const std::uint32_t finest = model.view().levels - 1;
+  double sum = 0;
+  for (int trial = 0; trial < patches; ++trial) {
+    const auto first = static_cast<std::size_t>(13 * trial);
+    const auto contacts = smooth ? smooth_patch(model, first, 40) : patch(model, first, 40);
+    const std::vector<float> exact = solve(body, contacts, {finest});
+    const std::vector<float> coarse = solve(body, contacts, {finest - 1});
+    const std::vector<std::uint32_t> place(body.set.place, body.set.place + contacts.size());
+    std::vector<std::vector<std::size_t>> groups(body.set.columns);
+    std::vector<Eigen::Vector3f> force(body.set.columns, Eigen::Vector3f::Zero());
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      groups[place[i]].push_back(i);
+      force[place[i]] += Eigen::Map<const Eigen::Vector3f>(coarse.data() + 3 * i);
+    }
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      order.emplace_back(-weight(contacts, groups[k], force[k]), k);
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<char> fine(contacts.size());
+    std::size_t chosen = 0;
+    for (const auto& [key, k] : order) {
+      const bool fits = static_cast<double>(chosen + groups[k].size()) <= part * static_cast<double>(contacts.size());
+      for (const std::size_t i : groups[k]) {
+        fine[i] = static_cast<char>(fits);
+        chosen += fits ? 1 : 0;
+      }
+    }
+    sum += distance(solve(body, contacts, {finest - 1, reinterpret_cast<const bool*>(fine.data())}), exact);
+  }
+  return sum / patches;
+}
+
+struct OrderErrors {
+  double by_force, by_chance, by_deviation;
+};
+
+OrderErrors order_errors(const TestModel& model, bool smooth, double part) {
+  const PlacedBody placed(model.view(), 40);
+  std::mt19937_64 random(3);
+  const auto error = [&](auto weight) { return order_error(model, *placed.body, smooth, part, weight); };
+  const OrderErrors errors{
+      error([](const auto&, const auto&, const Eigen::Vector3f& f) { return f.squaredNorm(); }),
+      error([&](const auto&, const auto&, const auto&) { return static_cast<double>(random() % 1000); }),
+      error([](const std::vector<Contact>& contacts, const auto& group, const auto&) {
+        Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+        double sum = 0;
+        for (const std::size_t i : group) {
+          mean += Eigen::Map<const Eigen::Vector3f>(contacts[i].displacement) / static_cast<float>(group.size());
+        }
+        for (const std::size_t i : group) {
+          sum += (Eigen::Map<const Eigen::Vector3f>(contacts[i].displacement) - mean).squaredNorm();
+        }
+        return sum;
+      })};
+  const std::string kind = smooth ? "smooth" : "rough";
+  MESSAGE(kind, ", ", part, " of the contacts at the finest level: error by force ",
+          errors.by_force, ", by chance ", errors.by_chance, ", by deviation ", errors.by_deviation);
+  return errors;
+}
+
+TEST_CASE("large forces come first: where displacements are smooth, chance and deviation leave larger errors") {
+  const TestModel model({.levels = 5, .touchable_above = 0.3});
+  for (const double part : {0.25, 0.5, 0.75}) {
+    const OrderErrors smooth = order_errors(model, true, part);
+    CHECK(smooth.by_force < smooth.by_chance);
+    CHECK(smooth.by_force < smooth.by_deviation);
+    const OrderErrors rough = order_errors(model, false, part);
+    CHECK(rough.by_deviation < rough.by_force);
+  }
 }
 
 // whether the forces of a mixed step are those of a fresh factor of its set
