@@ -24,6 +24,19 @@ struct ColumnCost {
   std::uint32_t visits = 0;        ///< of touch
 };
 
+/// Costs summed over some columns.
+struct ColumnSums {
+  std::uint64_t coefficients = 0;
+  std::uint64_t blocks = 0;
+  std::uint64_t visits = 0;
+
+  void add(const ColumnCost& cost) noexcept {
+    coefficients += cost.coefficients;
+    blocks += cost.blocks;
+    visits += cost.visits;
+  }
+};
+
 /// The costs of all columns.
 struct ColumnCosts {
   const ColumnCost* level[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]

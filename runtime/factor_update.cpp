@@ -73,10 +73,7 @@ ChangeCounts count_changes(const FactorChanges& changes, const ColumnCosts& cost
   counts.added = changes.added;
   counts.removed = changes.removed;
   for (std::uint32_t t = 0; t < changes.added; ++t) {
-    const ColumnCost& own = cost.of(changes.in[t]);
-    counts.visits += own.visits;
-    counts.coefficients += own.coefficients;
-    counts.blocks += own.blocks;
+    counts.entering.add(cost.of(changes.in[t]));
   }
   return counts;
 }
@@ -85,9 +82,9 @@ std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set,
   const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
   CapacitanceCounts capacitance = capacitance_counts(model, set);
   capacitance.rows = changes.added;
-  capacitance.visits = changes.visits;
-  capacitance.coefficients = changes.coefficients;
-  capacitance.blocks = changes.blocks;
+  capacitance.visits = changes.entering.visits;
+  capacitance.coefficients = changes.entering.coefficients;
+  capacitance.blocks = changes.entering.blocks;
   return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
          changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
 }

@@ -56,10 +56,7 @@ constexpr std::uint64_t find_changes_work(std::uint64_t factors, std::uint64_t c
 struct ChangeCounts {
   std::uint64_t added = 0;
   std::uint64_t removed = 0;
-  // of ColumnCost, summed over the new nodes
-  std::uint64_t visits = 0;
-  std::uint64_t coefficients = 0;
-  std::uint64_t blocks = 0;
+  ColumnSums entering;  ///< over the new nodes
 };
 
 /// cost: of each column. For the loop; work: within find_changes'.

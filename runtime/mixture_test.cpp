@@ -208,8 +208,8 @@ OrderErrors order_errors(const TestModel& model, bool smooth, double part) {
         return sum;
       })};
   const std::string kind = smooth ? "smooth" : "rough";
-  MESSAGE(kind, ", ", part, " of the contacts at the finest level: error by force ",
-          errors.by_force, ", by chance ", errors.by_chance, ", by deviation ", errors.by_deviation);
+  MESSAGE(kind, ", ", part, " of the contacts at the finest level: error by force ", errors.by_force, ", by chance ",
+          errors.by_chance, ", by deviation ", errors.by_deviation);
   return errors;
 }
 

@@ -35,9 +35,9 @@ CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& 
           .slots = set.slots,
           .set_visits = set.visits,
           .stored = set.stored,
-          .visits = set.column_visits,
-          .coefficients = set.column_coefficients,
-          .blocks = set.column_blocks,
+          .visits = set.column.visits,
+          .coefficients = set.column.coefficients,
+          .blocks = set.column.blocks,
           .room = model.capacitance_room,
           .bounds = set.bounds};
 }
@@ -78,10 +78,7 @@ void count_factor(const ContactSet& set, const Touched& touched, const ColumnCos
   counts.slots = count_slots({set.columns, set.column}, touched);
   counts.visits = touched.visits;
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    const ColumnCost& of_column = cost.of(set.column[k]);
-    counts.column_coefficients += of_column.coefficients;
-    counts.column_blocks += of_column.blocks;
-    counts.column_visits += of_column.visits;
+    counts.column.add(cost.of(set.column[k]));
   }
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
@@ -106,15 +103,15 @@ SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, st
   counts.contacts = max_contacts;
   counts.columns = smaller(domain_up_to(view, c), max_contacts);
   counts.visits = counts.columns * reach.visits;
-  counts.column_visits = counts.visits;
+  counts.column.visits = counts.visits;
   for (std::uint32_t q = 0; q <= c; ++q) {
     const std::uint64_t of_set = most_touched(view, reach, q, counts.columns);
     const std::uint64_t of_column = most_touched(view, reach, q, 1);
     counts.coefficients += of_set;
-    counts.column_coefficients += counts.columns * of_column;
+    counts.column.coefficients += counts.columns * of_column;
     for (std::uint32_t other = 0; other <= c; ++other) {
       counts.stored += other <= q ? most_blocks(couplings.stored[q][other], of_set) : 0;
-      counts.column_blocks += counts.columns * most_blocks(couplings.stored[q][other], of_column);
+      counts.column.blocks += counts.columns * most_blocks(couplings.stored[q][other], of_column);
     }
   }
   counts.slots = counts.coefficients;

@@ -31,14 +31,12 @@ struct SetCounts {
   std::uint64_t contacts = 0;
   std::uint64_t columns = 0;
   // what follows only if a factor is to be made
-  std::uint64_t coefficients = 0;         ///< that the columns touch, none counted twice
-  std::uint64_t slots = 0;                ///< of the capacitance matrix
-  std::uint64_t visits = 0;               ///< of touching them
-  std::uint64_t stored = 0;               ///< blocks of all layers in those columns
-  std::uint64_t column_coefficients = 0;  ///< ColumnCost over all columns
-  std::uint64_t column_blocks = 0;
-  std::uint64_t column_visits = 0;
-  bool bounds = false;  ///< of any set that holds no more, not of one
+  std::uint64_t coefficients = 0;  ///< that the columns touch, none counted twice
+  std::uint64_t slots = 0;         ///< of the capacitance matrix
+  std::uint64_t visits = 0;        ///< of touching them
+  std::uint64_t stored = 0;        ///< blocks of all layers in those columns
+  ColumnSums column;               ///< over all columns
+  bool bounds = false;             ///< of any set that holds no more, not of one
 };
 
 /// Work units of resolving contacts at a level, counting the blocks of their field and asking the cache.

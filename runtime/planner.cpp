@@ -78,8 +78,8 @@ struct Room {
 // work of changing a factor of the set by as many nodes as enter and leave
 std::uint64_t change_work(const ModelCounts& model, const SetCounts& set, std::uint64_t nodes) {
   const auto share = [&](std::uint64_t sum) { return nodes * sum / set.columns; };
-  return update_factor_work(
-      model, set, {nodes, nodes, share(set.column_visits), share(set.column_coefficients), share(set.column_blocks)});
+  const ColumnSums entering{share(set.column.coefficients), share(set.column.blocks), share(set.column.visits)};
+  return update_factor_work(model, set, {nodes, nodes, entering});
 }
 
 // most contacts that can enter a factor of about as many coefficients as the finest set has

@@ -145,7 +145,7 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
     most_of[c] = most_counts(view, couplings, c, limits.max_contacts, reach);
     mixed_of[c] = most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
     mixed_of[c].slots += mixed_of[c].columns;
-    const std::uint64_t functional = most_of[c].columns > 0 ? most_of[c].column_coefficients / most_of[c].columns : 0;
+    const std::uint64_t functional = most_of[c].columns > 0 ? most_of[c].column.coefficients / most_of[c].columns : 0;
     sizes.functional = larger(sizes.functional, functional);
   }
   const std::uint64_t entries = sizes.set_columns * sizes.functional;

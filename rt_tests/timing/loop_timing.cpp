@@ -109,8 +109,8 @@ void time_kernels(const TestModel& model) {
   std::printf("field               %8.0f ns, %6.3f ns/block\n", field, field / blocks);
   std::printf("inverse transform   %8.0f ns, %6.3f ns/node\n", transform, transform / view.domain_count);
   std::printf("capacitance column  %8.0f ns, %6.3f ns/block of %.0f\n", capacitance / body.set.columns,
-              capacitance / static_cast<double>(counts.column_blocks),
-              static_cast<double>(counts.column_blocks) / body.set.columns);
+              capacitance / static_cast<double>(counts.column.blocks),
+              static_cast<double>(counts.column.blocks) / body.set.columns);
 }
 
 void run(const TestModel& model) {
