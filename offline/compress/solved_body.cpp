@@ -85,7 +85,7 @@ SemiRegularMesh eared_ball(int levels) {
   });
 }
 
-SemiRegularMesh bowl(int levels) {
+SemiRegularMesh sharp_bowl(int levels) {
   return moved(octasphere(levels), [](const Eigen::Vector3d& x) -> Eigen::Vector3d {
     return {x.x(), x.y(), 0.04 * x.z() + 0.3 * (x.x() * x.x() + x.y() * x.y())};
   });

@@ -19,6 +19,6 @@ using Region = std::function<bool(const Eigen::Vector3d&)>;  ///< of positions, 
 [[nodiscard]] SemiRegularMesh eared_ball(int levels);
 
 /// A bowl 2 m across and at most 8 cm thick, with a sharp rim.
-[[nodiscard]] SemiRegularMesh bowl(int levels);
+[[nodiscard]] SemiRegularMesh sharp_bowl(int levels);
 
 }  // namespace greenloop::offline::test

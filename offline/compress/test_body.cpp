@@ -39,7 +39,18 @@ Triangles split(SemiRegularMesh& mesh, const Triangles& triangles) {
   return finer;
 }
 
-SemiRegularMesh refine(std::vector<Eigen::Vector3d> positions, const Triangles& base, int levels, bool on_sphere) {
+using Projection = Eigen::Vector3d (*)(const Eigen::Vector3d&);
+
+Eigen::Vector3d stay(const Eigen::Vector3d& x) { return x; }
+
+Eigen::Vector3d onto_sphere(const Eigen::Vector3d& x) { return x.normalized(); }
+
+Eigen::Vector3d onto_torus(const Eigen::Vector3d& x) {
+  const Eigen::Vector3d ring = Eigen::Vector3d(x.x(), x.y(), 0).normalized();
+  return ring + torus_tube * (x - ring).normalized();
+}
+
+SemiRegularMesh refine(std::vector<Eigen::Vector3d> positions, const Triangles& base, int levels, Projection project) {
   SemiRegularMesh mesh;
   mesh.positions = std::move(positions);
   mesh.parents.assign(mesh.positions.size(), {-1, -1});
@@ -48,9 +59,7 @@ SemiRegularMesh refine(std::vector<Eigen::Vector3d> positions, const Triangles& 
   Triangles triangles = base;
   for (int level = 0; level < levels; ++level) {
     triangles = split(mesh, triangles);
-    if (on_sphere) {
-      for (auto& position : mesh.positions) position.normalize();
-    }
+    for (auto& position : mesh.positions) position = project(position);
     mesh.vertex_end.push_back(mesh.positions.size());
   }
   return mesh;
@@ -98,12 +107,30 @@ SemiRegularMesh icosphere(int levels) {
   const Triangles base = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
                           {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
                           {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-  return refine(std::move(positions), base, levels, true);
+  return refine(std::move(positions), base, levels, onto_sphere);
 }
 
 SemiRegularMesh octasphere(int levels) {
   return refine({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-                {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}, levels, true);
+                {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}, levels,
+                onto_sphere);
+}
+
+SemiRegularMesh torus(int levels) {
+  constexpr int along = 10, around = 4;
+  std::vector<Eigen::Vector3d> positions;
+  Triangles base;
+  for (int i = 0; i < along; ++i) {
+    const Eigen::AngleAxisd turn(2 * std::numbers::pi * i / along, Eigen::Vector3d::UnitZ());
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * std::numbers::pi * k / around;
+      positions.emplace_back(turn * Eigen::Vector3d(1 + torus_tube * std::cos(angle), 0, torus_tube * std::sin(angle)));
+      const auto corner = [&](int di, int dk) { return (i + di) % along * around + (k + dk) % around; };
+      base.push_back({corner(0, 0), corner(1, 0), corner(1, 1)});
+      base.push_back({corner(0, 0), corner(1, 1), corner(0, 1)});
+    }
+  }
+  return refine(std::move(positions), base, levels, onto_torus);
 }
 
 SemiRegularMesh blob(int levels) {
@@ -113,7 +140,7 @@ SemiRegularMesh blob(int levels) {
 }
 
 SemiRegularMesh square(int levels) {
-  return refine({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, levels, false);
+  return refine({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}, levels, stay);
 }
 
 std::vector<double> nodal_area(const SemiRegularMesh& mesh) {

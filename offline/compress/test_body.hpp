@@ -14,6 +14,11 @@ namespace greenloop::offline::test {
 /// An octahedron split `levels` times and projected onto the unit sphere.
 [[nodiscard]] SemiRegularMesh octasphere(int levels);
 
+/// A ring of 40 vertices split `levels` times, projected onto the torus around z with a circle of radius 1 in its
+/// middle and a tube of radius `torus_tube`.
+[[nodiscard]] SemiRegularMesh torus(int levels);
+inline constexpr double torus_tube = 0.5;
+
 /// The icosphere's connectivity on a lobed blob about 1.5 m across.
 [[nodiscard]] SemiRegularMesh blob(int levels);
 

@@ -456,7 +456,9 @@ TEST_CASE("refused: a scene file that is not there") {
 TEST_CASE("the examples are accepted: the files, and the one in the documentation") {
   CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/bear.toml").mesh.name == "bear_bis.off");
   CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/bunny.toml").mesh.name == "bunny.obj");
-  CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/blob.toml").mesh.name == "blob.off");
+  for (const std::string name : {"blob", "ear", "bowl", "handle", "web"}) {
+    CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/" + name + ".toml").mesh.name == name + ".off");
+  }
   std::ifstream stream(GREENLOOP_SOURCE "/docs/scene.md");
   const std::string page(std::istreambuf_iterator<char>(stream), {});
   const auto begin = page.find("```toml\n");

@@ -1,0 +1,67 @@
+#include "offline/compress/thin_shapes.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <map>
+#include <utility>
+
+#include "offline/compress/measured_model.hpp"
+#include "offline/compress/solved_body.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+// every edge has one triangle on each side and the outside is outside
+void check_closed(const SemiRegularMesh& mesh, int holes) {
+  const auto triangles = triangles_of_level(mesh, mesh.finest_level());
+  std::map<std::pair<int, int>, int> edges;
+  double volume = 0;
+  for (const auto& [a, b, c] : triangles) {
+    for (const auto& edge : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) ++edges[edge];
+    const auto at = [&](int node) { return mesh.positions[static_cast<std::size_t>(node)]; };
+    volume += at(a).dot(at(b).cross(at(c))) / 6;
+  }
+  for (const auto& [edge, count] : edges) {
+    REQUIRE(count == 1);
+    REQUIRE(edges.contains({edge.second, edge.first}));
+  }
+  CHECK(volume > 0);
+  CHECK(mesh.positions.size() + triangles.size() + 2 * static_cast<std::size_t>(holes) == edges.size() / 2 + 2);
+}
+
+// filled with tetrahedra, which refuses surfaces that intersect themselves, solved and built
+void check_built(const SemiRegularMesh& mesh, const test::Region& fixed) {
+  const auto model = test::measure_model(test::solve_body(mesh, fixed, {1e5, 0.3}));
+  CHECK(model.patch_force <= test::default_accuracy.patch_force);
+  CHECK(model.certified);
+  CHECK(model.definite);
+}
+
+TEST_CASE("thin shapes are closed surfaces at every level") {
+  for (int levels = 0; levels <= 4; ++levels) {
+    check_closed(test::ear(levels), 0);
+    check_closed(test::bowl(levels), 0);
+    check_closed(test::handle(levels), 1);
+    check_closed(test::web(levels), 0);
+  }
+}
+
+TEST_CASE("an ear is built, as accurate as asked") {
+  check_built(test::ear(3), [](const Eigen::Vector3d& x) { return x.z() < -0.6; });
+}
+
+TEST_CASE("a bowl is built, as accurate as asked") {
+  check_built(test::bowl(3), [](const Eigen::Vector3d& x) { return x.z() < 0.06; });
+}
+
+TEST_CASE("a body with a handle is built, as accurate as asked") {
+  check_built(test::handle(2), [](const Eigen::Vector3d& x) { return x.x() < -1.5; });
+}
+
+TEST_CASE("a web is built, as accurate as asked") {
+  check_built(test::web(3), [](const Eigen::Vector3d& x) { return x.x() < -0.8; });
+}
+
+}  // namespace
+}  // namespace greenloop::offline
