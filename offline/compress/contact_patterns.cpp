@@ -21,6 +21,7 @@ constexpr double turn = 5 * std::numbers::pi / 180;
 constexpr double gather = 0.05;
 constexpr double sphere_radius = 2, sphere_depth = 0.25;  // over the radius of a patch
 constexpr std::size_t most_shots = 512;
+constexpr std::size_t least_sites = 4, site_overlap = 4;  // a point lies in about so many patches at most
 
 // SplitMix64 (Steele, Lea & Flood 2014)
 class Generator {
@@ -273,16 +274,17 @@ std::vector<std::uint32_t> pattern_sizes(std::uint32_t max_contacts, std::size_t
 
 std::vector<ContactSite> contact_patterns(const TouchedSurface& surface, std::uint32_t max_contacts,
                                           std::size_t sites) {
-  const Points places = farthest_points(surface.positions(), sites);
   const auto thin = thin_places(surface);
   std::vector<ContactSite> all;
   for (const std::uint32_t contacts : pattern_sizes(max_contacts, surface.size())) {
+    const std::size_t most = std::max(least_sites, site_overlap * surface.size() / contacts);
+    const Points places = farthest_points(surface.positions(), std::min(sites, most));
     for (std::size_t s = 0; s < places.size(); ++s) {
       all.push_back(patch_site(surface, places[s], contacts, 1000 * std::uint64_t{contacts} + s));
       all.push_back(sphere_site(surface, places[s], contacts));
     }
     if (contacts == 1) continue;
-    add_pinches(surface, thin, contacts, sites, all);
+    add_pinches(surface, thin, contacts, places.size(), all);
     add_opposed(surface, places, contacts, all);
   }
   std::erase_if(all, [](const ContactSite& site) { return site.kinds.empty(); });

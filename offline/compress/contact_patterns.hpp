@@ -34,10 +34,11 @@ struct ContactSite {
 
 /// Contacts that people make, for one to `max_contacts` contacts (1, 4, 16, 64 and, up to
 /// layout::most_pattern_contacts, max_contacts itself), as far as the surface has as many points: layout::PatternKind
-/// says which. At most `sites` places of each kind and number, spread as far from each other as can be; those of a
-/// pinch are the thinnest third of up to 512 places that the inward normal was shot through. A body without opposite
-/// sides has no pinches, one without distant places nothing opposed. Deterministic, the same on every machine. Work:
-/// some passes over the points for each site, 512 over the triangles. Offline only.
+/// says which. At most `sites` places of each kind and number, fewer where patches would cover the surface more than
+/// four times, spread as far from each other as can be; those of a pinch are the thinnest third of up to 512 places
+/// that the inward normal was shot through. A body without opposite sides has no pinches, one without distant places
+/// nothing opposed. Deterministic, the same on every machine. Work: some passes over the points for each site, 512 over
+/// the triangles. Offline only.
 [[nodiscard]] std::vector<ContactSite> contact_patterns(const TouchedSurface& surface, std::uint32_t max_contacts,
                                                         std::size_t sites);
 
