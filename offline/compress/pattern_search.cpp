@@ -113,6 +113,7 @@ std::vector<AnswerError> answer_errors(const TrialBench& bench, const ExactConta
 }
 
 double search_threshold(const TrialBench& bench, const ExactContacts& contacts, double threshold, double floor) {
+  if (!std::isfinite(bench.accuracy.field) && !std::isfinite(bench.accuracy.field_peak)) return threshold;
   ThresholdSearch search(bench, contacts, floor);
   for (int round = 0; round < checks; ++round) {
     const double excess = search.check(threshold);
