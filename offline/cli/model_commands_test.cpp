@@ -102,7 +102,7 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 + 4 Representatives, 3 Scales, 3 x 4 Couplings,
   // 2 Patterns
   REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 + 4 + 3 + 3 * 4 + 2);
-  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 1088}, {"bytes", 256}});
+  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 1152}, {"bytes", 256}});
   CHECK(found["sections"].back()["kind"] == "Patterns(2)");
   CHECK(found["patterns"] == Json::array());
 }
