@@ -33,7 +33,7 @@ constexpr int rounds = 6;                  // of search and measurement per tran
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
 constexpr std::size_t many_rows = 5000;    // where exact fields take room and fewer sites have to do
-constexpr std::size_t pattern_sites = 16, few_pattern_sites = 8;
+constexpr std::size_t pattern_sites = 24, few_pattern_sites = 12;
 
 void require_fit(const CompressionInput& input, const SurfaceWavelet& wavelet) {
   if (input.mesh.vertex_end.size() > layout::max_levels) {
