@@ -421,13 +421,6 @@ TEST_CASE("fields may be off by more than themselves, but neither not at all nor
   check_refused(smallest + "[accuracy]\nfield_peek = 0.1\n", {"did you mean \"field_peak\"?"});
 }
 
-TEST_CASE("the canonical text leaves out goals for fields that are zero, as stores' fingerprints need it") {
-  auto scene = parse_scene(smallest, "s.toml");
-  CHECK(canonical_text(scene).find("\nfield = 0.05\nfield_peak = 0.1\n") != std::string::npos);
-  scene.accuracy.field = scene.accuracy.field_peak = 0;
-  CHECK(canonical_text(scene).find("patch_force = 0.05\n\n[compression]") != std::string::npos);
-}
-
 TEST_CASE("every wavelet can be asked for by name, or the best") {
   for (const auto& [name, wavelet] : {std::pair("lifted linear", greenloop::layout::Wavelet::lifted_linear),
                                       {"linear", greenloop::layout::Wavelet::linear},
