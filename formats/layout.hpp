@@ -220,7 +220,7 @@ struct PatternRecord {
   std::uint32_t contacts;  ///< nodes, at most (a sphere only holds those it pushes)
   std::uint32_t samples;   ///< sites times displacements
   std::uint32_t reserved;
-  float field_error[3];  ///< ||u^ - u|| / ||u||, L2 over the surface around the nodes with node_read
+  float field_error[3];  ///< ||u^ - u|| / ||u||, nodes weighted by area; u^ - u: at nodes with node_read
   float field_peak[3];   ///< largest |u^_i - u_i| of nodes with node_read over the largest |u_i| of any node
   float force_error[3];  ///< ||f^ - f|| / ||f|| of the nodal forces
   float

@@ -96,8 +96,8 @@ AnsweredContacts::AnsweredContacts(const ModelView& view, const CompressedCompli
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
       place_[level.node_begin + i] = level.domain_begin + i;
-      const bool read = (level.nodes[i].flags & layout::node_read) != 0;
-      weight_.push_back(read ? double{level.nodes[i].area} : 0.0);
+      area_.push_back(double{level.nodes[i].area});
+      read_.push_back((level.nodes[i].flags & layout::node_read) != 0);
     }
   }
 }
@@ -135,7 +135,7 @@ std::vector<AnswerError> AnsweredContacts::site_errors(std::size_t number, std::
     if (layout::has_total_force(site.kinds[k])) errors[k].total_force = total_force_error(site, found, exact);
   }
 
-  std::vector<double> f(3 * samples * compressed_.rows(level), 0.0), x(3 * samples * weight_.size());
+  std::vector<double> f(3 * samples * compressed_.rows(level), 0.0), x(3 * samples * area_.size());
   for (std::size_t c = 0; c < set.columns.size(); ++c) {
     Eigen::Map<Eigen::Matrix3Xd>(f.data() + 3 * samples * set.columns[c], 3, static_cast<Eigen::Index>(samples)) =
         force.middleRows<3>(static_cast<Eigen::Index>(3 * c));
@@ -149,23 +149,23 @@ void AnsweredContacts::compare_fields(std::size_t number, std::size_t level, con
                                       std::vector<AnswerError>& errors) const {
   const Eigen::MatrixXd& exact = exact_.field(number);
   const std::size_t samples = errors.size();
-  std::vector<double> weight = weight_;
+  std::vector<bool> compared = read_;
   if (level == compressed_.finest()) {  // these nodes are held where they are
-    for (const std::size_t row : exact_.sites()[number].rows) weight[row] = -weight[row];
+    for (const std::size_t row : exact_.sites()[number].rows) compared[row] = false;
   }
   for (std::size_t k = 0; k < samples; ++k) {
     double off = 0, norm = 0, largest_off = 0, largest = 0;
-    for (std::size_t row = 0; row < weight.size(); ++row) {
+    for (std::size_t row = 0; row < area_.size(); ++row) {
       const Eigen::Vector3d u = exact.col(static_cast<Eigen::Index>(k)).segment<3>(static_cast<Eigen::Index>(3 * row));
       largest = std::max(largest, u.squaredNorm());
-      norm += std::abs(weight[row]) * u.squaredNorm();
-      if (!(weight[row] > 0)) continue;
+      norm += area_[row] * u.squaredNorm();
+      if (!compared[row]) continue;
       const double error =
           (Eigen::Map<const Eigen::Vector3d>(found.data() + 3 * (samples * row + k)) - u).squaredNorm();
-      off += weight[row] * error;
+      off += area_[row] * error;
       largest_off = std::max(largest_off, error);
     }
-    errors[k].field = norm > 0 ? std::sqrt(off / norm) : 0;
+    errors[k].field = std::sqrt(off / norm);
     errors[k].peak = std::sqrt(largest_off / largest);
   }
 }

@@ -63,7 +63,8 @@ class AnsweredContacts {
   const CompressedCompliance& compressed_;
   const ExactContacts& exact_;
   std::vector<std::uint32_t> place_;  // by file index: in the domain
-  std::vector<double> weight_;        // by row: m^2; 0 if it is not read
+  std::vector<double> area_;          // by row: m^2
+  std::vector<bool> read_;            // by row
 };
 
 /// By kind, then by contacts.

@@ -239,6 +239,33 @@ TEST_CASE("errors of every level are those of a dense computation with represent
   }
 }
 
+TEST_CASE("errors count where nodes are read, relative to the whole field") {
+  ModelData half = model_at(0.02);
+  std::size_t read = 0;
+  for (LevelData& level : half.levels) {
+    for (auto& node : level.nodes) {
+      if (node.position[0] < 0) node.flags &= ~std::uint32_t{layout::node_read};
+      read += (node.flags & layout::node_read) != 0 ? 1 : 0;
+    }
+  }
+  REQUIRE(read > 10);
+  ModelData other = model_at(0.02);
+  for (LevelData& level : other.levels) {
+    for (auto& node : level.nodes) {
+      if (node.position[0] >= 0) node.flags &= ~std::uint32_t{layout::node_read};
+    }
+  }
+  const Model right(half), left(other);
+  const std::size_t finest = right.compressed.finest();
+  const auto all = coarse_model().answered.all_errors(finest), of_right = right.answered.all_errors(finest),
+             of_left = left.answered.all_errors(finest);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(std::hypot(of_right[i].field, of_left[i].field) == doctest::Approx(all[i].field));
+    CHECK(std::max(of_right[i].peak, of_left[i].peak) == all[i].peak);
+    CHECK(of_right[i].force == all[i].force);
+  }
+}
+
 TEST_CASE("total forces of two fingers are told apart, and are better known than the nodal ones") {
   const auto& answered = coarse_model().answered;
   const auto summary = summarise(answered.all_errors(coarse_model().compressed.finest()));
