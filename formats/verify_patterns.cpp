@@ -8,6 +8,8 @@ namespace {
 using layout::PatternKind;
 using layout::PatternRecord;
 
+constexpr std::uint64_t most_records = std::uint64_t{layout::pattern_kinds} * layout::most_pattern_contacts;
+
 // three quantiles: finite, not negative, none below the one before
 bool verify_quantiles(SectionCheck& check, const char* field, std::uint32_t i, const float (&error)[3]) {
   double least = 0;
@@ -54,13 +56,12 @@ bool comes_before(const PatternRecord& a, const PatternRecord& b) {
 
 bool verify_patterns(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  const std::uint64_t count = section.bytes / sizeof(PatternRecord);
+  const std::uint64_t count = section.bytes / sizeof(PatternRecord), whole = count * sizeof(PatternRecord);
   const auto* records = section.as<PatternRecord>();
-  if (!check.require(section.bytes == count * sizeof(PatternRecord), VerifyRule::section_size, "bytes", 0,
-                     static_cast<double>(section.bytes), static_cast<double>(count * sizeof(PatternRecord))) ||
-      !check.require(count <= layout::pattern_kinds * layout::most_pattern_contacts, VerifyRule::section_size, "bytes",
-                     0, static_cast<double>(section.bytes),
-                     layout::pattern_kinds * layout::most_pattern_contacts * sizeof(PatternRecord))) {
+  if (!check.require(section.bytes == whole, VerifyRule::section_size, "bytes", 0, static_cast<double>(section.bytes),
+                     static_cast<double>(whole)) ||
+      !check.require(count <= most_records, VerifyRule::section_size, "bytes", 0, static_cast<double>(section.bytes),
+                     static_cast<double>(most_records * sizeof(PatternRecord)))) {
     return false;
   }
   for (std::uint32_t i = 0; i < count; ++i) {
