@@ -39,6 +39,8 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
       return fmt::format("Scales({})", a);
     case SectionKind::couplings:
       return fmt::format("Couplings({}, {})", a, b);
+    case SectionKind::patterns:
+      return fmt::format("Patterns({})", a);
   }
   return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);
 }
@@ -53,6 +55,30 @@ std::string_view wavelet_name(std::uint32_t wavelet) {
       return "lifted butterfly";
     case layout::Wavelet::butterfly:
       return "butterfly";
+  }
+  return "unknown";
+}
+
+std::string_view pattern_name(std::uint32_t kind) {
+  switch (static_cast<layout::PatternKind>(kind)) {
+    case layout::PatternKind::node:
+      return "node";
+    case layout::PatternKind::patch:
+      return "patch";
+    case layout::PatternKind::sphere:
+      return "sphere";
+    case layout::PatternKind::turned:
+      return "turned";
+    case layout::PatternKind::gathered:
+      return "gathered";
+    case layout::PatternKind::pinch:
+      return "pinch";
+    case layout::PatternKind::opposed:
+      return "opposed";
+    case layout::PatternKind::alternating:
+      return "alternating";
+    case layout::PatternKind::random:
+      return "random";
   }
   return "unknown";
 }

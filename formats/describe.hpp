@@ -13,6 +13,9 @@ namespace greenloop {
 /// "lifted linear": the name of a layout::Wavelet; "unknown" if it is none. Offline only.
 [[nodiscard]] std::string_view wavelet_name(std::uint32_t wavelet);
 
+/// "pinch": the name of a layout::PatternKind; "unknown" if it is none. Offline only.
+[[nodiscard]] std::string_view pattern_name(std::uint32_t kind);
+
 /// "section_checksum": the rule's name as in VerifyRule. Offline only.
 [[nodiscard]] std::string_view rule_name(VerifyRule rule);
 

@@ -18,8 +18,10 @@
 //       Representatives(q, r) for r = 0..q-1             u32 [node_count(r)]
 //       Scales(q)                                        Scale [domain_count(q)]
 //       Couplings(q, layer) for each layer               CouplingsHeader and its arrays
+//       Patterns(q) if q >= first                        PatternRecord[], by kind, then contacts; none: not measured
 //
-// `first` is Info::coarsest_constraint_level; levels below it have no Representatives. A touchable node is represented
+// `first` is Info::coarsest_constraint_level; levels below it have no Representatives and no
+// Patterns. A touchable node is represented
 // on constraint level c by a domain node of K(c), by itself if it is one; any other node by `none`.
 // So the first sections of a file, cut after any level, are again a valid and coarser model once the header says so.
 // A node is named by its place in the file: coarse to fine, and within a level the *domain* (nodes whose displacement
@@ -59,6 +61,7 @@ enum class SectionKind : std::uint32_t {
   scales = 10,          ///< (q) Scale[]
   couplings = 11,       ///< (q, layer) CouplingsHeader and its arrays
   stencils = 12,        ///< (q) StencilRecord[]
+  patterns = 13,        ///< (q) PatternRecord[]
 };
 
 /// Couplings are stored in layers by size. The first, of a coarser quantum, is for what is too large for the second;
@@ -183,6 +186,47 @@ struct StencilRecord {
 static_assert(sizeof(StencilRecord) == 24);
 
 inline constexpr float wing_weight = 0.125F, outer_weight = -0.0625F;
+
+/// What people do to a body: contacts that a model's answers are measured on.
+enum class PatternKind : std::uint32_t {
+  node = 1,         ///< a single node displaced along x, y or z
+  patch = 2,        ///< the nodes nearest to one, displaced as a whole along x, y or z
+  sphere = 3,       ///< a rigid sphere pushed in along the inward normal; contacts that only push
+  turned = 4,       ///< a patch turned by 5 degrees about its normal or a tangent, through its centre
+  gathered = 5,     ///< a patch squeezed tangentially by 5 % towards its centre
+  pinch = 6,        ///< two fingers on opposite sides of a thin part, pressed towards each other
+  opposed = 7,      ///< two distant patches moved oppositely
+  alternating = 8,  ///< neighbours displaced along plus and minus the normal
+  random = 9,       ///< every node of a patch displaced at random
+};
+inline constexpr std::uint32_t pattern_kinds = 9;
+inline constexpr std::uint32_t most_pattern_contacts = 256;
+
+/// Whether groups of contacts are pushed as a whole, so that their total forces say something.
+constexpr bool has_total_force(PatternKind kind) {
+  return kind == PatternKind::node || kind == PatternKind::patch || kind == PatternKind::sphere ||
+         kind == PatternKind::pinch || kind == PatternKind::opposed;
+}
+
+/// Fewest contacts of a pattern of this kind.
+constexpr std::uint32_t least_contacts(PatternKind kind) {
+  return kind == PatternKind::node || kind == PatternKind::sphere ? 1 : 2;
+}
+
+/// Relative errors of the complete model's answers at constraint level q to all patterns of one kind and size: median,
+/// 95th percentile and worst, against the exact answer of the finest level to the same contacts.
+struct PatternRecord {
+  std::uint32_t kind;      ///< PatternKind
+  std::uint32_t contacts;  ///< nodes, at most (a sphere only holds those it pushes)
+  std::uint32_t samples;   ///< sites times displacements
+  std::uint32_t reserved;
+  float field_error[3];  ///< ||u^ - u|| / ||u||, nodes weighted by area; u^ - u: at nodes with node_read
+  float field_peak[3];   ///< largest |u^_i - u_i| of nodes with node_read over the largest |u_i| of any node
+  float force_error[3];  ///< ||f^ - f|| / ||f|| of the nodal forces
+  float
+      total_force_error[3];  ///< sum_g |F^_g - F_g| / sum_g |F_g| of the groups' total forces; has_total_force, else 0
+};
+static_assert(sizeof(PatternRecord) == 64);
 
 /// The scale of a coefficient: two symmetric positive definite matrices xx, xy, xz, yy, yz, zz.
 struct Scale {

@@ -36,7 +36,7 @@ class SectionWalk {
            (q == 0 ? next(SectionKind::base_triangles, 0, 0, verify_base_triangles)
                    : next(SectionKind::refinement, q, 0, verify_refinement)) &&
            stencils(q) && representatives(q) && next(SectionKind::scales, q, 0, verify_scales) && couplings(q) &&
-           verify_counts(q, context_);
+           patterns(q) && verify_counts(q, context_);
   }
 
   bool stencils(std::uint32_t q) {
@@ -61,6 +61,10 @@ class SectionWalk {
       if (!next(SectionKind::couplings, q, layer, verify_couplings)) return false;
     }
     return true;
+  }
+
+  bool patterns(std::uint32_t q) {
+    return q < context_.view.info->coarsest_constraint_level || next(SectionKind::patterns, q, 0, verify_patterns);
   }
 
   SectionTable& table_;

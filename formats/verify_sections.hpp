@@ -26,6 +26,7 @@ bool verify_stencils(const Section& section, VerifyContext& context);
 bool verify_representatives(const Section& section, VerifyContext& context);
 bool verify_scales(const Section& section, VerifyContext& context);
 bool verify_couplings(const Section& section, VerifyContext& context);
+bool verify_patterns(const Section& section, VerifyContext& context);
 
 /// Domain nodes of K(q), the level's own included; Level(q) must have been seen.
 [[nodiscard]] std::uint32_t domain_of_mesh(const ModelView& view, std::uint32_t q);

@@ -28,6 +28,7 @@ struct LevelView {
   const layout::StencilRecord* stencils = nullptr;       ///< [domain nodes]; null without Butterfly wavelets
   const layout::Scale* scales = nullptr;                 ///< [domain nodes]
   CouplingsView couplings[layout::layers];
+  std::span<const layout::PatternRecord> patterns;  ///< empty: not measured, or no constraint level
 };
 
 /// A verified model file, in place: pointers into the caller's bytes, which must outlive it and stay unchanged.

@@ -137,6 +137,7 @@ class SectionList {
     add(SectionKind::scales, q, 0, bytes_of(level.scales));
     kept_blocks_ += level.scales.size();
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) add_couplings(q, layer);
+    add_patterns(q);
     sections_[place] = section(SectionKind::level, q, 0, bytes_of_one(completed_counts(q)));  // now they are known
   }
 
@@ -156,6 +157,12 @@ class SectionList {
     require_size(fmt::format("levels[{}].representatives[{}]", c, q), constraint.representatives[q].size(),
                  model_.levels[q].nodes.size());
     add(SectionKind::representatives, c, q, bytes_of(constraint.representatives[q]));
+  }
+
+  void add_patterns(std::uint32_t q) {
+    const auto& patterns = model_.levels[q].patterns;
+    if (q >= model_.info.coarsest_constraint_level) return add(SectionKind::patterns, q, 0, bytes_of(patterns));
+    require_size(fmt::format("levels[{}].patterns", q), patterns.size(), 0);
   }
 
   void add_couplings(std::uint32_t q, std::uint32_t layer) {

@@ -29,6 +29,7 @@ struct LevelData {
   std::vector<std::vector<std::uint32_t>> representatives;
   std::vector<layout::Scale> scales;  ///< [domain nodes]
   std::array<CouplingsData, layout::layers> couplings;
+  std::vector<layout::PatternRecord> patterns;  ///< by kind, then contacts; empty below the coarsest constraint level
 };
 
 /// A whole model before encoding. Offline only.

@@ -33,6 +33,9 @@ struct SyntheticOptions {
 /// and fuzzing.
 [[nodiscard]] ModelData synthetic_model(const SyntheticOptions& options);
 
+/// Some valid records of patterns, by kind and contacts, all numbers different.
+[[nodiscard]] std::vector<layout::PatternRecord> synthetic_patterns();
+
 /// Makes room for any field columns: for models whose numbers were changed.
 void allow_all_field_blocks(ModelData& model);
 

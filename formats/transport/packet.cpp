@@ -120,6 +120,8 @@ void PacketModel::code_section(BitCoder& coder, std::uint32_t q, PacketSection& 
     mesh_.code_representatives(coder, a, b, bytes);
   } else if (kind == SectionKind::scales && a == q && holds(sizeof(layout::Scale))) {
     mesh_.code_scales(coder, q, bytes);
+  } else if (kind == SectionKind::patterns && holds(sizeof(layout::PatternRecord))) {
+    mesh_.code_words(coder, sizeof(layout::PatternRecord) / sizeof(std::uint32_t), bytes);
   } else if (kind == SectionKind::base_triangles && holds(3 * sizeof(std::uint32_t))) {
     mesh_.code_words(coder, 3, bytes);
   } else {

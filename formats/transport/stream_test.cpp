@@ -64,6 +64,14 @@ TEST_CASE("transport: the smallest model and synthetic ones come back, and all t
   }
 }
 
+TEST_CASE("transport: patterns come back, some levels measured and others not") {
+  ModelData model = synthetic_model({.levels = 3, .coarsest_constraint_level = 1});
+  model.levels[1].patterns = synthetic_patterns();
+  check_round_trip(encode(model));
+  model.levels[2].patterns = {model.levels[1].patterns.front()};
+  check_round_trip(encode(model));
+}
+
 // every number that may be anything is random
 ModelData random_model(std::uint64_t seed) {
   std::mt19937_64 random(seed);

@@ -15,6 +15,7 @@
 #include "formats/describe.hpp"
 #include "formats/model_file.hpp"
 #include "formats/stored_blocks.hpp"
+#include "offline/cli/inspect_patterns.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -123,6 +124,7 @@ Json inspection_of(const ModelFile& model) {
         {"rate", "Hz"},
         {"step_work", "multiply-adds"}}},
       {"constraint_levels", levels_of(view)},
+      {"patterns", patterns_of(view)},
       {"provenance", provenance_of(view)},
       {"sections", sections_of(model)},
   };
@@ -169,6 +171,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                level["kept_blocks"].dump(), level["dense_blocks"].dump(), percent(level["rms_error"]),
                percent(level["worst_column_error"]), percent(level["worst_patch_force_error"]));
   }
+  print_patterns(found["patterns"], out);
   fmt::print(out, "\n  provenance: {}\n", found["provenance"].dump(2));
 }
 

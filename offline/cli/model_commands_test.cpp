@@ -99,10 +99,43 @@ TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   CHECK(finest["dense_blocks"] == found["dense_blocks"]);
   CHECK(finest["worst_patch_force_error"] == 0);
 
-  // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 + 4 Representatives, 3 Scales, 3 x 4 Couplings
-  REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 + 4 + 3 + 3 * 4);
-  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 1088}, {"bytes", 256}});
-  CHECK(found["sections"].back()["kind"] == "Couplings(2, 3)");
+  // Info, Provenance, 3 x (Level, Nodes, triangles or refinement), 2 + 4 Representatives, 3 Scales, 3 x 4 Couplings,
+  // 2 Patterns
+  REQUIRE(found["sections"].size() == 2 + 3 * 3 + 2 + 4 + 3 + 3 * 4 + 2);
+  CHECK(found["sections"][0] == Json{{"kind", "Info"}, {"a", 0}, {"b", 0}, {"offset", 1152}, {"bytes", 256}});
+  CHECK(found["sections"].back()["kind"] == "Patterns(2)");
+  CHECK(found["patterns"] == Json::array());
+}
+
+TEST_CASE("inspect: what people do, of every level that was measured; the worst of each kind in the table") {
+  const Folder folder("inspect_patterns");
+  ModelData data = synthetic_model({.levels = 3, .coarsest_constraint_level = 1});
+  data.levels[1].patterns = {synthetic_patterns().front()};
+  data.levels[2].patterns = synthetic_patterns();
+  write_file(folder / "sphere.gloop", encode(data));
+  const Json found = inspect_json(folder / "sphere.gloop")["patterns"];
+  REQUIRE(found.size() == 1 + synthetic_patterns().size());
+  const auto quantiles = [](const float(&error)[3]) {
+    return Json{{"median", error[0]}, {"p95", error[1]}, {"worst", error[2]}};
+  };
+  const layout::PatternRecord turned = synthetic_patterns()[3], pinch = synthetic_patterns()[4];
+  CHECK(found[0]["level"] == 1);
+  CHECK(found[4] == Json{{"kind", "turned"},
+                         {"contacts", 16},
+                         {"level", 2},
+                         {"samples", turned.samples},
+                         {"field_error", quantiles(turned.field_error)},
+                         {"field_peak", quantiles(turned.field_peak)},
+                         {"force_error", quantiles(turned.force_error)},
+                         {"total_force_error", nullptr}});
+  CHECK(found[5]["kind"] == "pinch");
+  CHECK(found[5]["total_force_error"] == quantiles(pinch.total_force_error));
+
+  std::ostringstream out;
+  CHECK(run_inspect({folder / "sphere.gloop", false}, out) == 0);
+  CHECK(out.str().find("what people do, resolved at level 2: the worst of each kind") != std::string::npos);
+  CHECK(out.str().find("  patch        4, 16 ") != std::string::npos);
+  CHECK(out.str().find(" -\n") != std::string::npos);
 }
 
 TEST_CASE("inspect --json: wavelet, bits, certificate and frontier are the file's own") {

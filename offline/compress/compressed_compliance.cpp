@@ -113,13 +113,24 @@ void CompressedCompliance::apply(std::size_t level, std::size_t columns, const d
 
 void CompressedCompliance::apply_to_coefficients(std::size_t level, std::size_t columns, const double* f,
                                                  double* y) const {
-  const std::size_t width = 3 * columns, count = rows(level);
-  std::vector<double> force(f, f + count * width);
+  couple(level, level, columns, f, y);
+}
+
+void CompressedCompliance::displace(std::size_t level, std::size_t columns, const double* f, double* x) const {
+  couple(level, finest(), columns, f, x);
+  for (std::size_t l = 1; l <= finest(); ++l) wavelet_.merge(l, 3 * columns, x);
+}
+
+// the coefficients of levels 0 .. to_level that forces on the averages of `level` move
+void CompressedCompliance::couple(std::size_t level, std::size_t to_level, std::size_t columns, const double* f,
+                                  double* y) const {
+  const std::size_t width = 3 * columns, forced = rows(level), moved = rows(to_level);
+  std::vector<double> force(f, f + forced * width);
   for (std::size_t l = level; l > 0; --l) wavelet_.split_forces(l, width, force.data());
 
-  std::vector<double> sum(force.size(), 0.0);
+  std::vector<double> sum(moved * width, 0.0);
   std::vector<double> scaled(width);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < forced; ++i) {
     const double* own = force.data() + i * width;
     if (!any(own, width)) continue;
     std::fill(scaled.begin(), scaled.end(), 0.0);
@@ -127,14 +138,14 @@ void CompressedCompliance::apply_to_coefficients(std::size_t level, std::size_t 
     multiply(diagonal_.data() + 9 * i, false, columns, scaled.data(), sum.data() + i * width);
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
       const Link& link = links_[at];
-      if (link.other >= count) continue;
+      if (link.other >= moved) continue;
       multiply(block_.data() + std::size_t{9} * link.block, link.transposed, columns, scaled.data(),
                sum.data() + std::size_t{link.other} * width);
     }
   }
 
-  std::fill_n(y, count * width, 0.0);
-  for (std::size_t i = 0; i < count; ++i) {
+  std::fill_n(y, moved * width, 0.0);
+  for (std::size_t i = 0; i < moved; ++i) {
     multiply(root_.data() + 9 * i, false, columns, sum.data() + i * width, y + i * width);
   }
 }

@@ -30,6 +30,12 @@ class CompressedCompliance {
   /// The same in wavelet coefficients: (W U^ W^T)_level T^-T f, which T_1^-1 .. T_level^-1 turn into displacements.
   void apply_to_coefficients(std::size_t level, std::size_t columns, const double* f, double* y) const;
 
+  /// What forces on the averages of `level` move on the whole surface, with the details of all levels: x has
+  /// rows(finest())
+  /// * columns * 3 numbers, f as above. Its averages of `level` are U^_level f. Work: as apply, and an inverse
+  /// transform.
+  void displace(std::size_t level, std::size_t columns, const double* f, double* x) const;
+
   /// U^_level between some of its nodes: 3 nodes.size() squared, m/N. Work: 9 per coupling of the coefficients that
   /// they feel, and per node that feels one of them.
   [[nodiscard]] Eigen::MatrixXd between(std::size_t level, const std::vector<std::size_t>& nodes) const;
@@ -45,6 +51,7 @@ class CompressedCompliance {
   };
   using Ends = std::pair<std::uint32_t, std::uint32_t>;  // row, column
 
+  void couple(std::size_t level, std::size_t to_level, std::size_t columns, const double* f, double* y) const;
   [[nodiscard]] std::vector<Ends> load_couplings(const ModelView& view);
   void link(const std::vector<Ends>& ends);
 

@@ -4,38 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
+
+#include "offline/compress/point_choice.hpp"
 
 namespace greenloop::offline {
 namespace {
-
-std::vector<std::size_t> farthest_points(const std::vector<Eigen::Vector3d>& positions, std::size_t count) {
-  std::vector<double> distance(positions.size(), std::numeric_limits<double>::infinity());
-  std::vector<std::size_t> chosen;
-  std::size_t next = 0;
-  while (chosen.size() < std::min(count, positions.size())) {
-    chosen.push_back(next);
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      distance[i] = std::min(distance[i], (positions[i] - positions[next]).squaredNorm());
-    }
-    next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
-  }
-  return chosen;
-}
-
-std::vector<std::size_t> nearest(const std::vector<Eigen::Vector3d>& positions, std::size_t centre, std::size_t count) {
-  std::vector<std::size_t> rows(positions.size());
-  std::iota(rows.begin(), rows.end(), std::size_t{0});
-  const auto distance = [&](std::size_t i) { return (positions[i] - positions[centre]).squaredNorm(); };
-  const auto end = rows.begin() + static_cast<std::ptrdiff_t>(std::min(count, rows.size()));
-  std::partial_sort(rows.begin(), end, rows.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(distance(a), a) < std::pair(distance(b), b);
-  });
-  rows.erase(end, rows.end());
-  std::sort(rows.begin(), rows.end());
-  return rows;
-}
 
 // the nodal forces that hold every node at the unit displacements; empty if the compliance is not positive definite
 Eigen::MatrixXd holding_forces(const Eigen::MatrixXd& compliance) {
@@ -55,7 +29,8 @@ double holding_force_error(const Eigen::MatrixXd& exact, const Eigen::MatrixXd& 
 
 ContactPatches::ContactPatches(const std::vector<Eigen::Vector3d>& positions, std::size_t count) {
   for (const std::size_t centre : farthest_points(positions, count)) {
-    Patch patch{.rows = nearest(positions, centre, nodes_per_patch), .compliance = {}};
+    Patch patch{.rows = nearest_points(positions, positions[centre], nodes_per_patch), .compliance = {}};
+    std::sort(patch.rows.begin(), patch.rows.end());
     const auto size = static_cast<Eigen::Index>(3 * patch.rows.size());
     patch.compliance = Eigen::MatrixXd::Zero(size, size);
     patches_.push_back(std::move(patch));

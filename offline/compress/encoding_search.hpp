@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,9 +18,11 @@ namespace greenloop::offline {
 
 /// The errors a model may have against the exact compliance, all relative.
 struct Accuracy {
-  double rms = 0;           ///< of the field: FieldError::rms
-  double worst_column = 0;  ///< FieldError::worst_column
-  double patch_force = 0;   ///< ContactPatches::worst_force_error
+  double rms = 0;                                               ///< of the field: FieldError::rms
+  double worst_column = 0;                                      ///< FieldError::worst_column
+  double patch_force = 0;                                       ///< ContactPatches::worst_force_error
+  double field = std::numeric_limits<double>::infinity();       ///< of the worst pattern: AnswerError::field
+  double field_peak = std::numeric_limits<double>::infinity();  ///< AnswerError::peak
 };
 
 /// What an encoding comes to on one constraint level.

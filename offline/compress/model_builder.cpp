@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "formats/describe.hpp"
 #include "formats/verify.hpp"
 #include "offline/compress/certificate.hpp"
 #include "offline/compress/exact_sample.hpp"
@@ -14,6 +17,7 @@
 #include "offline/compress/frontier.hpp"
 #include "offline/compress/model_field.hpp"
 #include "offline/compress/model_tables.hpp"
+#include "offline/compress/pattern_search.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -28,17 +32,20 @@ constexpr double least_rms_of_one_half = 0.004, least_column_of_one_half = 0.01;
 constexpr int rounds = 6;                  // of search and measurement per transform
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
+constexpr std::size_t many_rows = 5000;    // where exact fields take room and fewer sites have to do
+constexpr std::size_t pattern_sites = 24, few_pattern_sites = 12;
 
 void require_fit(const CompressionInput& input, const SurfaceWavelet& wavelet) {
   if (input.mesh.vertex_end.size() > layout::max_levels) {
     throw std::invalid_argument("compression: the mesh has " + std::to_string(input.mesh.vertex_end.size()) +
                                 " levels; a model holds at most " + std::to_string(layout::max_levels));
   }
-  const auto& [rms, column, force] = input.accuracy;
-  if (!(rms > 0) || !(column > 0) || !(force > 0)) {
+  const auto& [rms, column, force, field, peak] = input.accuracy;
+  if (!(rms > 0) || !(column > 0) || !(force > 0) || !(field > 0) || !(peak > 0)) {
     throw std::invalid_argument("compression: accuracy rms = " + std::to_string(rms) +
                                 ", worst_column = " + std::to_string(column) +
-                                ", patch_force = " + std::to_string(force) + "; all must be positive");
+                                ", patch_force = " + std::to_string(force) + ", field = " + std::to_string(field) +
+                                ", field_peak = " + std::to_string(peak) + "; all must be positive");
   }
   if (wavelet.rows() == 0) throw std::invalid_argument("compression: no node is free and needed");
   if (input.column_nodes != wavelet.nodes()) {
@@ -77,7 +84,8 @@ ConstraintLevelReport measure_coarse(const CompressionInput& input, const Surfac
           .field_rms_error = field_error.rms(),
           .field_column_error = field_error.worst_column(),
           .field_blocks = static_cast<std::size_t>(fields.counts().blocks),
-          .longest_field_column = fields.counts().longest};
+          .longest_field_column = fields.counts().longest,
+          .patterns = {}};
 }
 
 // calls visit(row, its exact column as blocks, the area of its node) for every column, in order
@@ -102,8 +110,20 @@ void add_patches(const std::vector<std::size_t>& more, std::vector<std::size_t>&
 
 float stored(double error) { return static_cast<float>(std::min(error, double{std::numeric_limits<float>::max()})); }
 
+// room in the file for what is measured last
+void reserve_patterns(const ExactContacts& contacts, ModelData& model) {
+  std::vector<AnswerError> none;
+  for (const auto& site : contacts.sites()) {
+    for (const auto kind : site.kinds) none.push_back({.kind = kind, .contacts = site.contacts});
+  }
+  for (std::size_t level = model.info.coarsest_constraint_level; level < model.levels.size(); ++level) {
+    model.levels[level].patterns = pattern_records(summarise(none));
+  }
+}
+
 void store_errors(const CompressionReport& report, ModelData& model) {
   for (const auto& level : report.levels) {
+    model.levels[level.level].patterns = pattern_records(level.patterns);
     auto& counts = model.levels[level.level].counts;
     counts.rms_error = stored(level.rms_error);
     counts.worst_column_error = stored(level.worst_column_error);
@@ -125,9 +145,18 @@ void store_errors(const CompressionReport& report, ModelData& model) {
       ": ask for larger errors");
 }
 
+[[noreturn]] void unreachable_field(const Accuracy& wanted, const PatternErrors& best) {
+  throw std::runtime_error("compression: field = " + std::to_string(wanted.field) + ", field_peak = " +
+                           std::to_string(wanted.field_peak) + " cannot be met; the best found for the pattern `" +
+                           std::string(pattern_name(static_cast<std::uint32_t>(best.kind))) + "` of " +
+                           std::to_string(best.contacts) + " contacts was " + std::to_string(best.field.worst) + ", " +
+                           std::to_string(best.peak.worst) + ": ask for larger errors");
+}
+
 // An encoding of the whole model, measured on everything.
 struct Measured {
   Trial trial;
+  std::vector<PatternErrors> patterns;  // at the finest level; only of a trial that meets the rest
   FieldError field;
   FieldColumnMaker::Counts field_counts;
   std::vector<std::size_t> worst_patches;
@@ -141,7 +170,11 @@ class Build {
       : input_(input),
         progress_(progress),
         wavelet_(input.mesh, input.flags, input.area, input.wavelet),
-        sample_(checked(input, wavelet_).mesh, wavelet_, input.area) {
+        sample_(checked(input, wavelet_).mesh, wavelet_, input.area),
+        contacts_(
+            contact_patterns(TouchedSurface(input.mesh, input.flags, input.area, wavelet_), input.facts.max_contacts,
+                             wavelet_.rows() > many_rows ? few_pattern_sites : pattern_sites),
+            row_positions(input.mesh, wavelet_, wavelet_.finest())) {
     model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
     model_.provenance = input.provenance;
     add_representatives(input.mesh, input.flags, model_);
@@ -156,7 +189,9 @@ class Build {
 
   [[nodiscard]] BuiltModel run() {
     for (double floor = first_floor; !meets_with(floor); floor /= 4) {
-      if (floor <= least_floor) unreachable_accuracy(input_.accuracy, closest_);
+      if (floor > least_floor) continue;
+      if (closest_pattern_) unreachable_field(input_.accuracy, *closest_pattern_);
+      unreachable_accuracy(input_.accuracy, closest_);
     }
     if (progress_) progress_(1.0, "done");
     return {std::move(model_), std::move(report_)};
@@ -181,9 +216,23 @@ class Build {
       Eigen::MatrixXd block = input_.columns(first, count);
       const bool fits = block.rows() == static_cast<Eigen::Index>(3 * wavelet_.rows());
       if (floor == first_floor && fits) sample_.add(block, first);
+      if (floor == first_floor && fits) contacts_.add(block, first);
       return block;
     };
-    return transform_compliance(wavelet_, columns, floor, part(0, 0.3));
+    WaveletCompliance compliance = transform_compliance(wavelet_, columns, floor, part(0, 0.25));
+    if (floor == first_floor) solve_contacts();
+    return compliance;
+  }
+
+  void solve_contacts() {
+    contacts_.solve();
+    reserve_patterns(contacts_, model_);
+    const Progress progress = part(0.25, 0.3);
+    for (std::size_t first = 0; first < wavelet_.rows(); first += stream_columns) {
+      const std::size_t count = std::min(stream_columns, wavelet_.rows() - first);
+      contacts_.add_fields(input_.columns(first, count), first);
+      progress(static_cast<double>(first + count) / static_cast<double>(wavelet_.rows()), "measure patterns");
+    }
   }
 
   // searches and measures until an encoding meets the accuracy on everything; false: none does with this floor
@@ -194,10 +243,11 @@ class Build {
     Accuracy aim = input_.accuracy;
     aim.patch_force *= safety;
     for (int round = 0; round < rounds; ++round) {
-      const Trial chosen =
-          search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.65));
+      Trial chosen =
+          search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.6));
       closest_ = chosen;
       if (!chosen.meets(aim)) return false;
+      if (!meet_patterns(bench, sample_.patches().choose(searched), floor, chosen)) return false;
       const Measured measured = measure(compliance, chosen);
       if (measured.trial.meets(input_.accuracy) && meets(measured.field) && measured.least_eigenvalue > 0) {
         describe(measured);
@@ -212,8 +262,22 @@ class Build {
     return false;
   }
 
+  // takes a smaller threshold where the fields of what people do ask for it; false: none down to the floor will do
+  [[nodiscard]] bool meet_patterns(const TrialBench& bench, const ContactPatches& patches, double floor,
+                                   Trial& chosen) {
+    const double threshold = search_threshold(bench, contacts_, chosen.encoding.threshold, floor);
+    if (threshold == chosen.encoding.threshold) return true;
+    if (threshold > 0) {
+      chosen = try_encoding(bench, patches, encoding_at(threshold));
+      return true;
+    }
+    const auto errors = summarise(answer_errors(bench, contacts_, encoding_at(floor)));
+    closest_pattern_ = worst_pattern(errors, input_.accuracy);
+    return false;
+  }
+
   [[nodiscard]] Measured measure(const WaveletCompliance& compliance, const Trial& chosen) {
-    Measured measured{.trial = chosen, .field = {}, .field_counts = {}, .worst_patches = {}};
+    Measured measured{.trial = chosen, .patterns = {}, .field = {}, .field_counts = {}, .worst_patches = {}};
     encode_couplings(compliance, chosen.encoding, model_);
     const EncodedModel encoded(model_);
     const CompressedCompliance all(encoded.view);
@@ -230,6 +294,7 @@ class Build {
     }
     if (measured.trial.meets(input_.accuracy)) {
       measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.75, 0.85));
+      measured.patterns = summarise(AnsweredContacts(encoded.view, all, contacts_).all_errors(all.finest()));
       choose_field(measured);
     }
     return measured;
@@ -283,11 +348,14 @@ class Build {
 
   void describe_levels(const WaveletCompliance& compliance, const Measured& finest) {
     const EncodedModel encoded(model_);
+    const CompressedCompliance complete(encoded.view);
+    const AnsweredContacts answered(encoded.view, complete, contacts_);
     for (std::uint32_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
       const AlignedBytes bytes(truncate_to_level({encoded.bytes.span().begin(), encoded.bytes.span().end()}, level));
       ModelView cut;
       if (!verify(bytes.span(), cut).ok()) throw std::logic_error("compression: a cut model does not verify");
       report_.levels.push_back(measure_coarse(input_, wavelet_, compliance, cut, level));
+      report_.levels.back().patterns = summarise(answered.all_errors(level));
     }
     report_.levels.push_back({.level = static_cast<std::uint32_t>(wavelet_.finest()),
                               .nodes = wavelet_.rows(),
@@ -297,7 +365,8 @@ class Build {
                               .field_rms_error = finest.field.rms(),
                               .field_column_error = finest.field.worst_column(),
                               .field_blocks = static_cast<std::size_t>(finest.field_counts.blocks),
-                              .longest_field_column = finest.field_counts.longest});
+                              .longest_field_column = finest.field_counts.longest,
+                              .patterns = finest.patterns});
     for (auto& level : report_.levels) {
       level.kept_blocks = encoded.view.level[level.level].counts->kept_blocks;
       level.dense_blocks = encoded.view.level[level.level].counts->dense_blocks;
@@ -330,9 +399,11 @@ class Build {
   SurfaceWavelet wavelet_;
   std::vector<std::uint8_t> read_;  // by rows
   ExactSample sample_;
+  ExactContacts contacts_;
   ModelData model_;
   CompressionReport report_;
-  Trial closest_;  // the last that failed
+  Trial closest_;                                 // the last that failed
+  std::optional<PatternErrors> closest_pattern_;  // if it failed by its fields
   double done_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include "formats/layout.hpp"
 #include "formats/writer.hpp"
 #include "offline/compress/encoding_search.hpp"
+#include "offline/compress/pattern_errors.hpp"
 
 namespace greenloop::offline {
 
@@ -35,6 +36,7 @@ struct ConstraintLevelReport {
   double field_rms_error = 0, field_column_error = 0;  ///< of fields, over the columns that touchable nodes use
   std::size_t field_blocks = 0;                        ///< in the field columns of a body
   std::uint32_t longest_field_column = 0;              ///< blocks
+  std::vector<PatternErrors> patterns;                 ///< of the complete model's answers at the level
 };
 
 /// What a wavelet made of a body or a sample of it.
@@ -62,10 +64,11 @@ struct BuiltModel {
 };
 
 /// Compresses the exact compliance into a model that meets `accuracy`, with every constraint level from
-/// facts.coarsest_constraint_level on. Streams the exact columns twice: once to transform them, once to measure all of
-/// them. Memory: a quarter of the dense matrix in single precision besides the result. Deterministic. Throws
-/// std::invalid_argument if the input does not fit together, std::runtime_error if the accuracy cannot be met or the
-/// result is not positive definite. Offline only.
+/// facts.coarsest_constraint_level on, and measures its answers to contact_patterns on each. Streams the exact columns
+/// three times: to transform them, to gather the patterns' fields, to measure all of them. Memory: a quarter of the
+/// dense matrix in single precision besides the result. Deterministic. Throws std::invalid_argument if the input does
+/// not fit together, std::runtime_error if the accuracy cannot be met or the result is not positive definite. Offline
+/// only.
 [[nodiscard]] BuiltModel build_model(const CompressionInput& input, const Progress& progress);
 
 }  // namespace greenloop::offline

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -15,6 +16,7 @@
 #include "offline/compress/exact_sample.hpp"
 #include "offline/compress/model_field.hpp"
 #include "offline/compress/node_order.hpp"
+#include "offline/compress/pattern_search.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -242,6 +244,50 @@ TEST_CASE("the same input gives the same bytes; progress runs forward to 1") {
   CHECK(encode(a.model) == encode(build_model(input_of(small_body(), accuracy), {}).model));
 }
 
+TEST_CASE("every constraint level says how right its answers to patterns are, in the report and in the file") {
+  const auto& report = built().report;
+  for (const auto& level : report.levels) {
+    const auto stored = file().view.level[level.level].patterns;
+    const auto expected = pattern_records(level.patterns);
+    REQUIRE(stored.size() == expected.size());
+    CHECK(std::memcmp(stored.data(), expected.data(), stored.size_bytes()) == 0);
+    std::size_t kinds = 0;
+    for (std::size_t i = 0; i < stored.size(); ++i) kinds += i == 0 || stored[i].kind != stored[i - 1].kind ? 1 : 0;
+    CHECK(kinds == layout::pattern_kinds);
+  }
+  const auto worst = [&](std::size_t level) {
+    double errors = 0;
+    for (const auto& pattern : report.levels[level].patterns) errors = std::max(errors, pattern.force.worst);
+    return errors;
+  };
+  CHECK(worst(report.levels.size() - 1) < 0.5 * worst(report.levels.size() - 2));
+}
+
+TEST_CASE("fields are as accurate as asked for, and no more than need be") {
+  Accuracy wanted = accuracy;
+  wanted.field = 0.01;
+  wanted.field_peak = 0.02;
+  const auto fine = build_model(input_of(small_body(), wanted), {});
+  const auto loose = build_model(input_of(small_body(), accuracy), {});
+  const auto& patterns = fine.report.levels.back().patterns;
+  for (const auto& pattern : patterns) {
+    CHECK(pattern.field.worst <= wanted.field);
+    CHECK(pattern.peak.worst <= wanted.field_peak);
+  }
+  const auto& worst = worst_pattern(patterns, wanted);
+  CHECK(std::max(worst.field.worst / wanted.field, worst.peak.worst / wanted.field_peak) > 0.6);
+  CHECK(fine.report.encoding.threshold < loose.report.encoding.threshold);
+  CHECK(fine.report.trials.back().bytes == encode(fine.model).size());
+}
+
+TEST_CASE("fields that cannot be made as accurate as asked for are refused with the pattern that fails") {
+  Accuracy wanted = accuracy;
+  wanted.field = 1e-9;
+  const auto b = test::make_body(1);
+  CHECK_THROWS_WITH_AS((void)build_model(input_of(b, wanted), {}),
+                       doctest::Contains("cannot be met; the best found for the pattern `"), std::runtime_error);
+}
+
 TEST_CASE("constraint levels start where asked") {
   auto input = input_of(small_body(), accuracy);
   input.facts.coarsest_constraint_level = 1;
@@ -311,6 +357,8 @@ TEST_CASE("input that does not fit together is refused") {
   SUBCASE("flags of another mesh") { flags.pop_back(); }
   SUBCASE("rms of zero") { wanted.rms = 0; }
   SUBCASE("a negative patch force") { wanted.patch_force = -1; }
+  SUBCASE("a field error of zero") { wanted.field = 0; }
+  SUBCASE("a peak error that is no number") { wanted.field_peak = std::numeric_limits<double>::quiet_NaN(); }
   SUBCASE("a worst column that is no number") { wanted.worst_column = std::numeric_limits<double>::quiet_NaN(); }
   SUBCASE("a constraint level the mesh does not have") { info.coarsest_constraint_level = 2; }
   SUBCASE("columns of another size") {

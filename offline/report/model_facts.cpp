@@ -18,7 +18,7 @@ namespace {
 
 using layout::SectionKind;
 
-constexpr std::array<std::pair<SectionKind, const char*>, 8> kind_names{
+constexpr std::array<std::pair<SectionKind, const char*>, 9> kind_names{
     {{SectionKind::info, "info"},
      {SectionKind::provenance, "provenance"},
      {SectionKind::level, "levels"},
@@ -26,7 +26,8 @@ constexpr std::array<std::pair<SectionKind, const char*>, 8> kind_names{
      {SectionKind::base_triangles, "base triangles"},
      {SectionKind::refinement, "refinement"},
      {SectionKind::representatives, "representatives"},
-     {SectionKind::scales, "scales"}}};
+     {SectionKind::scales, "scales"},
+     {SectionKind::patterns, "patterns"}}};
 
 std::span<const layout::SectionEntry> section_entries(const ModelView& model) {
   return {reinterpret_cast<const layout::SectionEntry*>(model.header + 1), model.header->section_count};

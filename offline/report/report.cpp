@@ -14,6 +14,7 @@
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
 #include "offline/report/model_surface.hpp"
+#include "offline/report/pattern_figures.hpp"
 #include "offline/report/trace.hpp"
 
 namespace greenloop::offline {
@@ -115,6 +116,7 @@ void add_model(const Material& material, HtmlPage& page, std::vector<Figure>& fi
       "0 up to it; patch force: worst relative error of the nodal forces that hold a sampled 64-node patch.");
   const auto errors = level_errors(material.model);
   if (has_level_errors(errors)) add_figure(level_errors_figure(errors), page, figures);
+  if (has_patterns(material.model)) add_figure(patterns_figure(material.model), page, figures);
   add_figure(bytes_figure(bytes_by_kind(material.model)), page, figures);
 }
 

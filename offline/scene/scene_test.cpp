@@ -66,6 +66,8 @@ TEST_CASE("the smallest scene gets the documented defaults") {
   CHECK(scene.accuracy.rms == 0.02);
   CHECK(scene.accuracy.worst_column == 0.1);
   CHECK(scene.accuracy.patch_force == 0.05);
+  CHECK(scene.accuracy.field == 0.05);
+  CHECK(scene.accuracy.field_peak == 0.1);
   CHECK_FALSE(scene.wavelet);
   CHECK(scene.budget.rate == 1000);
   CHECK_FALSE(scene.budget.work);
@@ -101,6 +103,8 @@ TEST_CASE("every key is read") {
     rms = 0.01
     worst_column = 0.1
     patch_force = 0.2
+    field = 0.03
+    field_peak = 0.25
     [compression]
     wavelet = "linear"
     [budget]
@@ -130,6 +134,8 @@ TEST_CASE("every key is read") {
   CHECK(scene.accuracy.rms == 0.01);
   CHECK(scene.accuracy.worst_column == 0.1);
   CHECK(scene.accuracy.patch_force == 0.2);
+  CHECK(scene.accuracy.field == 0.03);
+  CHECK(scene.accuracy.field_peak == 0.25);
   CHECK(scene.wavelet == greenloop::layout::Wavelet::linear);
   CHECK(scene.budget.rate == 500);
   CHECK(scene.budget.work == 123456);
@@ -405,6 +411,16 @@ TEST_CASE("a patch force may be off by more than itself, but neither not at all 
   check_refused(smallest + "[accuracy]\npatch_force = 10\n", {"accuracy.patch_force: 10 is out of range"});
 }
 
+TEST_CASE("fields may be off by more than themselves, but neither not at all nor tenfold") {
+  for (const std::string key : {"field", "field_peak"}) {
+    CAPTURE(key);
+    CHECK_NOTHROW(static_cast<void>(parse_scene(smallest + "[accuracy]\n" + key + " = 1.5\n", "s.toml")));
+    check_refused(smallest + "[accuracy]\n" + key + " = 0\n", {"accuracy." + key + ": 0 is out of range"});
+    check_refused(smallest + "[accuracy]\n" + key + " = 10\n", {"accuracy." + key + ": 10 is out of range"});
+  }
+  check_refused(smallest + "[accuracy]\nfield_peek = 0.1\n", {"did you mean \"field_peak\"?"});
+}
+
 TEST_CASE("every wavelet can be asked for by name, or the best") {
   for (const auto& [name, wavelet] : {std::pair("lifted linear", greenloop::layout::Wavelet::lifted_linear),
                                       {"linear", greenloop::layout::Wavelet::linear},
@@ -421,9 +437,10 @@ TEST_CASE("refused: a wavelet that is none") {
   check_refused(smallest + "[compression]\nwavelt = \"linear\"\n", {"did you mean \"wavelet\"?"});
 }
 
-TEST_CASE("patch force and wavelet are part of the canonical text") {
-  for (const char* key : {"[accuracy]\npatch_force = 0.2\n", "[compression]\nwavelet = \"linear\"\n",
-                          "[compression]\nwavelet = \"lifted butterfly\"\n"}) {
+TEST_CASE("patch force, field and wavelet are part of the canonical text") {
+  for (const char* key :
+       {"[accuracy]\npatch_force = 0.2\n", "[accuracy]\nfield = 0.2\n", "[accuracy]\nfield_peak = 0.2\n",
+        "[compression]\nwavelet = \"linear\"\n", "[compression]\nwavelet = \"lifted butterfly\"\n"}) {
     CAPTURE(key);
     const auto canonical = canonical_text(parse_scene(smallest + key, "s.toml"));
     CHECK(canonical != canonical_text(parse_scene(smallest, "s.toml")));

@@ -78,9 +78,14 @@ std::string material_text(const Material& material) {
   return "\n[material]\nyoung = " + quantity(material.young, "Pa") + "\npoisson = " + number(material.poisson) + "\n";
 }
 
+// goals for fields that are not set, by zero, are left out
 std::string accuracy_text(const AccuracyGoal& accuracy) {
+  const auto goal = [](const std::string& key, double value) {
+    return value > 0 ? "\n" + key + " = " + number(value) : std::string();
+  };
   return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) +
-         "\npatch_force = " + number(accuracy.patch_force) + "\n";
+         "\npatch_force = " + number(accuracy.patch_force) + goal("field", accuracy.field) +
+         goal("field_peak", accuracy.field_peak) + "\n";
 }
 
 std::string compression_text(std::optional<layout::Wavelet> wavelet) {

@@ -69,13 +69,19 @@ class Mutator {
   std::mt19937_64 random_{seed};
 };
 
+std::vector<std::byte> measured_model() {
+  ModelData model = synthetic_model({.levels = 2});
+  for (LevelData& level : model.levels) level.patterns = synthetic_patterns();
+  return encode(model);
+}
+
 TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
   MESSAGE("seed ", seed, ", ", mutations, " mutations");
   Mutator mutator(
       {encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
        encode(synthetic_model({.levels = 3, .epsilon = 0.008})),
        encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .wavelet = layout::Wavelet::linear})),
-       encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly}))});
+       encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly})), measured_model()});
   int accepted = 0;
   std::array<int, 64> refused{};
   for (int i = 0; i < mutations; ++i) {
@@ -108,6 +114,17 @@ TEST_CASE("walk_view sees stencils that verify must prevent") {
   stencils[0].wing[1] = layout::none;
   CHECK_FALSE(walk_view(mutant.bytes(), mutant.view()));
   stencils[0].wing[1] = wing;
+  CHECK(walk_view(mutant.bytes(), mutant.view()));
+}
+
+TEST_CASE("walk_view sees patterns that verify must prevent") {
+  ModelMutant mutant(measured_model());
+  REQUIRE(mutant.verdict().ok());
+  CHECK(walk_view(mutant.bytes(), mutant.view()));
+  auto* patterns = mutant.records<layout::PatternRecord>(layout::SectionKind::patterns, 1);
+  const std::uint32_t kind = std::exchange(patterns[1].kind, layout::pattern_kinds + 1);
+  CHECK_FALSE(walk_view(mutant.bytes(), mutant.view()));
+  patterns[1].kind = kind;
   CHECK(walk_view(mutant.bytes(), mutant.view()));
 }
 

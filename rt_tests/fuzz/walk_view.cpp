@@ -72,7 +72,16 @@ class Walk {
     const std::uint32_t stencils = level.stencils == nullptr ? 0 : level.counts->domain_count;
     if (!array(level.stencils, stencils) || !all(level.stencils, stencils, known)) return false;
     return all(level.nodes, count(q), [](const auto& node) { return std::isfinite(node.position[2] + node.area); }) &&
-           (q == 0 || all(level.refinement, count(q), coarser)) && scales(q) && all_couplings(q);
+           (q == 0 || all(level.refinement, count(q), coarser)) && scales(q) && all_couplings(q) && patterns(q);
+  }
+
+  bool patterns(std::uint32_t q) const {
+    const auto& patterns = view_.level[q].patterns;
+    const auto right = [](const layout::PatternRecord& record) {
+      return record.kind >= 1 && record.kind <= layout::pattern_kinds && record.samples > 0 &&
+             std::isfinite(record.field_error[2] + record.field_peak[0] + record.total_force_error[1]);
+    };
+    return array(patterns.data(), patterns.size()) && all(patterns.data(), patterns.size(), right);
   }
 
   bool scales(std::uint32_t q) const {
