@@ -43,7 +43,7 @@ namespace greenloop::layout {
 
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
-inline constexpr std::uint16_t version_major = 3;
+inline constexpr std::uint16_t version_major = 4;
 inline constexpr std::uint16_t version_minor = 0;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
@@ -124,36 +124,32 @@ struct Info {
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
   float quantum[layers];                  ///< of the scaled values of each layer of couplings, in [0, 1]
-  float field_threshold;                  ///< what is left out of field columns, see below
-  float field_peak_threshold;
-  std::uint32_t field_halves;  ///< 1 or 2: a block of a field column is the sum of as many of 8 significant bits
-  std::uint8_t reserved[124];
+  std::uint8_t reserved[136];
 };
 static_assert(sizeof(Info) == 256);
 
-// Fields are sums of *field columns*: what a unit force on a touchable node of constraint level c moves, in
-// coefficients, W U W^T T^-T. They are not stored but made of the couplings when a body is created. Of the block b_i of
-// a coefficient of level l that the displacement of a node with node_read depends on a column keeps, rounded to 8 or,
-// as two blocks, 16 significant bits,
-//   |b_i| >= field_threshold 2^l (sum_k 4^-l(k) |b_k|^2)^1/2   or   |b_i| >= field_peak_threshold |U_jj|
-// with the Frobenius norm, the sum over such coefficients, and the compliance U_jj of the node itself.
+// Forces and fields are of one compliance, that of all couplings: u = W^-1 (W U W^T) T^-T f for forces f on constraint
+// level c.
 
 /// The model cut off after this level: the compliance between the averages of level q, which are the forces and the
 /// displacements of constraint level q. Errors against the exact one, all relative.
 struct Level {
-  std::uint32_t node_count;            ///< |M(q)|
-  std::uint32_t domain_count;          ///< domain nodes of M(q): the first ones
-  std::uint32_t base_triangle_count;   ///< q = 0 only, else 0
-  std::uint32_t longest_field_column;  ///< blocks; no field column has more
-  std::uint64_t kept_blocks;           ///< 3x3 blocks stored in levels 0..q: scales and couplings
-  std::uint64_t dense_blocks;          ///< domain nodes of K(q), squared
-  std::uint64_t field_blocks;          ///< in the field columns of all constraint levels, halves counted singly
-  float rms_error;                     ///< ||U^ - U||_F / ||U||_F, all couplings
-  float worst_column_error;            ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius, all couplings
-  float patch_force_error;   ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
-  float field_rms_error;     ///< rms_error of fields, at nodes with node_read
-  float field_column_error;  ///< worst_column_error of fields, errors at nodes with node_read
+  std::uint32_t node_count;           ///< |M(q)|
+  std::uint32_t domain_count;         ///< domain nodes of M(q): the first ones
+  std::uint32_t base_triangle_count;  ///< q = 0 only, else 0
   std::uint32_t reserved;
+  std::uint64_t kept_blocks;   ///< 3x3 blocks stored in levels 0..q: scales and couplings
+  std::uint64_t dense_blocks;  ///< domain nodes of K(q), squared
+  float rms_error;             ///< ||U^ - U||_F / ||U||_F
+  float worst_column_error;    ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius
+  float patch_force_error;     ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
+  float field_rms_error;       ///< rms_error at nodes with node_read
+  float field_column_error;    ///< worst_column_error, errors at nodes with node_read
+  // of contacts resolved at this level, against the exact solution at the finest level: the worst of the patterns of
+  // at most 64 contacts that are not is_rough; 0 if none was measured
+  float field_error;  ///< ||u^ - u|| / ||u||
+  float field_peak;   ///< largest error of a node over the largest displacement
+  float force_error;  ///< ||f^ - f|| / ||f||
 };
 static_assert(sizeof(Level) == 64);
 
@@ -201,6 +197,10 @@ enum class PatternKind : std::uint32_t {
 };
 inline constexpr std::uint32_t pattern_kinds = 9;
 inline constexpr std::uint32_t most_pattern_contacts = 256;
+
+/// Whether neighbours are displaced differently, as no tool does: their forces nearly cancel, and so does the field
+/// beyond them, which the errors are relative to.
+constexpr bool is_rough(PatternKind kind) { return kind == PatternKind::alternating || kind == PatternKind::random; }
 
 /// Whether groups of contacts are pushed as a whole, so that their total forces say something.
 constexpr bool has_total_force(PatternKind kind) {

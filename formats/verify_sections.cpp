@@ -57,16 +57,14 @@ const NodeRecord& node_at(const ModelView& view, std::uint32_t index) {
   return view.level[q].nodes[index - view.level[q].node_begin];
 }
 
-bool verify_thresholds(SectionCheck& check, const layout::Info& info) {
+bool verify_quanta(SectionCheck& check, const layout::Info& info) {
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     if (!require_at_least(check, "quantum", layer, info.quantum[layer], 0) ||
         !require_at_most(check, "quantum", layer, info.quantum[layer], 1)) {
       return false;
     }
   }
-  return require_at_least(check, "field_threshold", 0, info.field_threshold, 0) &&
-         require_at_least(check, "field_peak_threshold", 0, info.field_peak_threshold, 0) &&
-         require_enum(check, "field_halves", info.field_halves, 2);
+  return true;
 }
 
 bool verify_box(SectionCheck& check, const layout::Info& info) {
@@ -101,7 +99,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
          require_at_least(check, "max_contacts", 0, info.max_contacts, 1) &&
          require_at_most(check, "coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          require_equal(check, "finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
-         verify_thresholds(check, info) &&
+         verify_quanta(check, info) &&
          check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
                        VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
 }
@@ -154,9 +152,7 @@ bool verify_level_counts(SectionCheck& check, const layout::Level& counts, const
          check.require((counts.base_triangle_count > 0) == (section.a == 0), VerifyRule::inconsistent,
                        "base_triangle_count", 0, counts.base_triangle_count, section.a == 0 ? 1 : 0) &&
          check.require(counts.dense_blocks == domain * domain, VerifyRule::inconsistent, "dense_blocks", 0,
-                       static_cast<double>(counts.dense_blocks), static_cast<double>(domain * domain)) &&
-         require_at_most(check, "longest_field_column", 0, counts.longest_field_column,
-                         static_cast<double>(view.info->field_halves * domain));
+                       static_cast<double>(counts.dense_blocks), static_cast<double>(domain * domain));
 }
 
 bool verify_level_errors(SectionCheck& check, const layout::Level& counts) {
@@ -164,7 +160,10 @@ bool verify_level_errors(SectionCheck& check, const layout::Level& counts) {
          require_at_least(check, "worst_column_error", 0, counts.worst_column_error, 0) &&
          require_at_least(check, "patch_force_error", 0, counts.patch_force_error, 0) &&
          require_at_least(check, "field_rms_error", 0, counts.field_rms_error, 0) &&
-         require_at_least(check, "field_column_error", 0, counts.field_column_error, 0);
+         require_at_least(check, "field_column_error", 0, counts.field_column_error, 0) &&
+         require_at_least(check, "field_error", 0, counts.field_error, 0) &&
+         require_at_least(check, "field_peak", 0, counts.field_peak, 0) &&
+         require_at_least(check, "force_error", 0, counts.force_error, 0);
 }
 
 }  // namespace

@@ -168,16 +168,8 @@ TEST_CASE("verify refuses: a quantum of any layer that is negative, above one or
   }
 }
 
-TEST_CASE("verify refuses: thresholds of fields that are none, and columns longer than the domain") {
-  check_info(VerifyRule::bad_enum, "field_halves", 0, [](Info& info) { info.field_halves = 3; });
-  check_info(VerifyRule::out_of_range, "field_threshold", 0, [](Info& info) { info.field_threshold = -1; });
-  check_info(VerifyRule::not_finite, "field_peak_threshold", 0, [](Info& info) { info.field_peak_threshold = NAN; });
-  check_level(1, VerifyRule::out_of_range, "longest_field_column",
-              [](Level& level) { level.longest_field_column = 1000; });
-}
-
 TEST_CASE("verify refuses: reserved bytes of Info and Level in use") {
-  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[123] = 1; });
+  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[135] = 1; });
   check_level(1, VerifyRule::reserved_not_zero, "reserved", [](Level& level) { level.reserved = 1; });
 }
 

@@ -56,7 +56,6 @@ TEST_CASE("verify accepts: one triangle with one free node") {
   LevelData& level = data.levels[0];
   level.nodes[1].flags = layout::node_fixed;
   level.scales.pop_back();
-  level.counts.field_blocks = level.counts.longest_field_column = 1;
   for (CouplingsData& couplings : level.couplings) couplings = {.begin = {0, 0}, .index = {}, .value = {}};
   ModelMutant mutant(encode(data));
   check_accepted(mutant);

@@ -88,8 +88,10 @@ struct Tables {
   RefinementTables refinement;
   ColumnCost* cost[layout::max_levels] = {};
   ParentOffsets* parent_offsets = nullptr;
-  FieldColumnMaker field_columns;
-  ColumnBlock* field_block = nullptr;
+  BaseColumnsMaker base;
+  MirroredCouplingsMaker mirrored;
+  std::uint8_t* read = nullptr;
+  std::uint32_t* field_blocks = nullptr;
 };
 
 void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
@@ -101,8 +103,10 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
     return;
   }
   tables.parent_offsets = arena.take<ParentOffsets>(view.domain_count);
-  tables.field_columns.carve(arena, view);
-  tables.field_block = arena.take<ColumnBlock>(view.level[view.levels - 1].counts->field_blocks);
+  tables.base.carve(arena, view);
+  tables.mirrored.carve(arena, view, tables.base.columns());
+  tables.read = arena.take<std::uint8_t>(view.domain_count);
+  tables.field_blocks = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels);
 }
 
 void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, ContactSet& set) {
@@ -136,7 +140,10 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
   if (!sizes.counts.forces_only) {
-    body.field_touched = arena.take_zeroed<std::uint8_t>(view.domain_count);
+    const std::uint32_t tiles = tables.base.columns().tiles;
+    const std::uint64_t places = std::uint64_t{BaseColumns::width} * tiles_of(view.domain_count);
+    body.field_sums.of_blocks = arena.take_zeroed<Float4>(places);
+    body.field_sums.of_tiles = tiles > 0 ? arena.take_zeroed<TileSums>(tiles) : nullptr;
   }
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
@@ -187,15 +194,15 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
   }
 }
 
-// false if the columns are not within what the model says
-bool prepare_fields(const ModelView& view, Tables& tables, Body& body) {
+void prepare_fields(const ModelView& view, Tables& tables, Body& body) {
   list_parent_offsets(view, tables.parent_offsets);
-  const layout::Level& counts = *view.level[view.levels - 1].counts;
-  const FieldColumnMaker::Room room{tables.field_block, counts.field_blocks, counts.longest_field_column};
-  const auto made = tables.field_columns.make(body.refinement, body.touched, body.force, room);
-  body.columns = tables.field_columns.columns();
-  body.columns.add = fastest_add_blocks();
-  return made.within(room);
+  mark_read(body.refinement, body.touched, tables.read);
+  body.base = tables.base.make(view);
+  body.mirrored = tables.mirrored.make(view, body.base, tables.read);
+  count_field_blocks(view, body.mirrored, body.base, tables.field_blocks);
+  body.field_blocks = {view.levels, tables.field_blocks};
+  body.block_sums = fastest_block_sums();
+  body.add_tiles = fastest_add_tiles();
 }
 
 }  // namespace
@@ -218,8 +225,8 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   body.refinement = tables.refinement.refinement(view, body.lifting);
   body.parents = tables.parent_offsets;
   fill_tables(view, tables, body);
-  if (!body.counts.forces_only && !prepare_fields(view, tables, body)) {
-    return nullptr;
+  if (!body.counts.forces_only) {
+    prepare_fields(view, tables, body);
   }
   body.force_limit = largest_force_sum(view, body.lifting);
   body.last_red_zone = arena.last_red_zone();

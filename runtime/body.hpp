@@ -5,12 +5,14 @@
 
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
+#include "runtime/base_columns.hpp"
 #include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/factor_cache.hpp"
 #include "runtime/factor_update.hpp"
-#include "runtime/field_columns.hpp"
+#include "runtime/field.hpp"
 #include "runtime/glide.hpp"
+#include "runtime/mirrored_couplings.hpp"
 #include "runtime/mixture.hpp"
 #include "runtime/pending_factor.hpp"
 #include "runtime/plan.hpp"
@@ -28,8 +30,12 @@ struct Body {
   float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
   Lifting lifting;
   Refinement refinement;
-  FieldColumns columns;
-  std::uint8_t* field_touched = nullptr;   ///< [domain] zero between steps
+  MirroredCouplings mirrored;
+  BlockSums block_sums = portable_block_sums();
+  FieldBlocks field_blocks;
+  BaseColumns base;
+  AddTiles add_tiles = greenloop::add_tiles;
+  CoefficientSums field_sums{};            ///< zero between steps
   const ParentOffsets* parents = nullptr;  ///< [domain]
   std::uint32_t* stored = nullptr;         ///< [domain] blocks of all layers in a coefficient's column
   ColumnCosts cost;
@@ -48,13 +54,12 @@ struct Body {
   Mixture mixture;
   const std::byte* last_red_zone = nullptr;
 
-  /// Where fields are summed; forces are not in `force` meanwhile.
-  [[nodiscard]] SparseCoefficients field_scratch() const { return {force, field_touched}; }
+  [[nodiscard]] FieldModel field_model() const { return {refinement, mirrored, base, parents, block_sums, add_tiles}; }
+  [[nodiscard]] FieldScratch field_scratch() const { return {force, field_sums}; }
 };
 
-/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts, and if the model's
-/// field columns are not within what its Level says. `view` must outlive the body. Start-up; linear in the model's
-/// nodes and, for every level, its blocks, and FieldColumnMaker::make.
+/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. `view` must outlive
+/// the body. Start-up; linear in the model's nodes and, for every level, its blocks.
 Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept;
 
 }  // namespace greenloop

@@ -48,8 +48,7 @@ static_assert(same(GREENLOOP_CREATE_OK, CreateError::none) &&
               same(GREENLOOP_CREATE_ARENA_TOO_SMALL, CreateError::arena_too_small) &&
               same(GREENLOOP_CREATE_ARENA_MISALIGNED, CreateError::arena_misaligned) &&
               same(GREENLOOP_CREATE_BAD_LIMITS, CreateError::bad_limits) &&
-              same(GREENLOOP_CREATE_UNSUPPORTED_MODEL, CreateError::unsupported_model) &&
-              same(GREENLOOP_CREATE_INCONSISTENT_MODEL, CreateError::inconsistent_model));
+              same(GREENLOOP_CREATE_UNSUPPORTED_MODEL, CreateError::unsupported_model));
 static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::coarser) &&
               same(GREENLOOP_HELD_NOT_FINITE, Status::held_not_finite) &&
               same(GREENLOOP_HELD_OUT_OF_RANGE, Status::held_out_of_range) &&
@@ -84,7 +83,6 @@ constexpr const char* create_error_texts[] = {
     "the arena is not 64-byte aligned",
     "the limits are out of range: 1..4096 contacts, 1..1024 cached factors, at most 256 cycles of a glide",
     "the model is not one of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks",
-    "the model's field columns hold more blocks than it says, or numbers that are not finite: build it again",
 };
 
 constexpr const char* status_texts[] = {

@@ -83,9 +83,9 @@ std::uint32_t assign_answers(const PartialCapacitance& partial, std::uint32_t fi
 std::uint32_t write_functional(const Refinement& refinement, std::uint32_t column, std::uint32_t begin,
                                CapacitanceScratch& scratch, Float4* force) {
   Touched& touched = scratch.touched;
+  constexpr float unit[3] = {1, 1, 1};
   touch(refinement, &column, 1, touched);
-  force[column_place(column)] = splat3(1.0F);
-  transform_forces(refinement, touched, force);
+  transform_forces(refinement, {1, &column, unit}, touched, force);
   std::uint32_t end = begin;
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {

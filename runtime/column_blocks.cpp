@@ -1,151 +1,200 @@
 #include "runtime/column_blocks.hpp"
 
-#include <bit>
 #include <cstddef>
 #include <cstring>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
 
+#include "runtime/processor.hpp"
+
 namespace greenloop {
 namespace {
 
 #if defined(__SSE2__) || defined(__ARM_NEON)
-// blocks times one force; fourth lanes: any of a block's values times 0
+// stored blocks of `bits` a value times one force
+template <unsigned bits>
 class Product {
  public:
   explicit Product(Float4 force) : force_{splat3(force[0]), splat3(force[1]), splat3(force[2])} {}
 
-  void add(const ColumnBlock& block, Float4& sum) const {
-    const Block values{{detail::load_upper_halves(block.value), detail::load_upper_halves(block.value + 3),
-                        detail::load_upper_halves(block.value + 6)}};
-    sum += product(values, force_);
-  }
+  void add(const std::byte* value, Float4& sum) const { sum += product(StoredBlock<bits>::load(value), force_); }
 
  private:
   Float4 force_[3];
 };
 #else
-// the same on a processor without vectors: three lanes, two values a load
-class Product {
+// the elements of a stored block, in quanta
+template <unsigned bits>
+class Elements {
  public:
-  explicit Product(Float4 force) : force_{force[0], force[1], force[2]} {}
-
-  void add(const ColumnBlock& block, Float4& sum) const {
-    const std::uint32_t v01 = pair(block, 0);
-    const std::uint32_t v23 = pair(block, 2);
-    const std::uint32_t v45 = pair(block, 4);
-    const std::uint32_t v67 = pair(block, 6);
-    auto* const x = reinterpret_cast<float*>(&sum);
-    x[0] += (first(v01) * force_[0] + second(v23) * force_[1]) + first(v67) * force_[2];
-    x[1] += (second(v01) * force_[0] + first(v45) * force_[1]) + second(v67) * force_[2];
-    x[2] += (first(v23) * force_[0] + second(v45) * force_[1]) + first(pair(block, 8)) * force_[2];
+  explicit Elements(const std::byte* value) {
+    if constexpr (bits == 4) {
+      std::memcpy(&word_, value, sizeof word_);
+      last_ = std::to_integer<std::uint32_t>(value[4]);
+    } else {
+      value_ = value;
+    }
+  }
+  float operator[](std::uint32_t k) const {
+    if constexpr (bits == 4) {  // one instruction takes bits out with their sign
+      const std::uint32_t on_top = k < 8 ? word_ << (28 - 4 * k) : last_ << 28;
+      return static_cast<float>(static_cast<std::int32_t>(on_top) >> 28);
+    } else if constexpr (bits == 8) {
+      return static_cast<float>(static_cast<std::int8_t>(value_[k]));
+    } else {
+      std::int16_t two;
+      std::memcpy(&two, value_ + std::size_t{2} * k, sizeof two);
+      return static_cast<float>(two);
+    }
   }
 
  private:
-  static std::uint32_t pair(const ColumnBlock& block, std::size_t at) {
-    std::uint32_t two;
-    std::memcpy(&two, reinterpret_cast<const std::byte*>(&block) + offsetof(ColumnBlock, value) + 2 * at, sizeof two);
-    return two;
-  }
-  static float first(std::uint32_t two) { return std::bit_cast<float>(two << 16); }
-  static float second(std::uint32_t two) { return std::bit_cast<float>(two & 0xffff0000); }
+  std::uint32_t word_ = 0;
+  std::uint32_t last_ = 0;
+  const std::byte* value_ = nullptr;
+};
 
+// the same on a processor without vectors: three lanes; the powers of two of the stored values are in the force
+template <unsigned bits>
+class Product {
+ public:
+  explicit Product(Float4 force)
+      : force_{force[0] / StoredBlock<bits>::widening, force[1] / StoredBlock<bits>::widening,
+               force[2] / StoredBlock<bits>::widening} {}
+
+  void add(const std::byte* value, Float4& sum) const {
+    const Elements<bits> at(value);
+    auto* const x = reinterpret_cast<float*>(&sum);
+    x[0] += (at[0] * force_[0] + at[3] * force_[1]) + at[6] * force_[2];
+    x[1] += (at[1] * force_[0] + at[4] * force_[1]) + at[7] * force_[2];
+    x[2] += (at[2] * force_[0] + at[5] * force_[1]) + at[8] * force_[2];
+  }
+
+ private:
   float force_[3];
 };
 #endif
 
+template <unsigned bits, class Index>
+void add_each(const CouplingsView& couplings, std::uint32_t begin, std::uint32_t end, Float4 force, Float4* sums) {
+  const Product<bits> product_with_force(force);
+  const auto* const row = static_cast<const Index*>(couplings.index);
+  const std::byte* value = couplings.value + StoredBlock<bits>::bytes * std::size_t{begin};
+  for (std::uint32_t at = begin; at < end; ++at, value += StoredBlock<bits>::bytes) {
+    product_with_force.add(value, sums[row[at]]);
+  }
+}
+
+template <unsigned bits>
+void add_blocks(const BlockRange& range, Float4 force, Float4* sums) noexcept {
+  if (range.couplings->index_bytes == 2) {
+    add_each<bits, std::uint16_t>(*range.couplings, range.begin, range.end, force, sums);
+  } else {
+    add_each<bits, std::uint32_t>(*range.couplings, range.begin, range.end, force, sums);
+  }
+}
+
 #if defined(__x86_64__)
-// whether the processor has the instructions and the operating system keeps their registers
-bool has_avx2() {
-  std::uint32_t a = 1;
-  std::uint32_t b = 0;
-  std::uint32_t c = 0;
-  std::uint32_t d = 0;
-  asm("cpuid" : "+a"(a), "=b"(b), "+c"(c), "=d"(d));
-  constexpr std::uint32_t avx_and_xgetbv = 3U << 27;
-  if ((c & avx_and_xgetbv) != avx_and_xgetbv) {
-    return false;
-  }
-  asm("xgetbv" : "=a"(a), "=d"(d) : "c"(0));
-  if ((a & 6) != 6) {
-    return false;
-  }
-  a = 7;
-  c = 0;
-  asm("cpuid" : "+a"(a), "=b"(b), "+c"(c), "=d"(d));
-  return (b & 1U << 5) != 0;
-}
+// where the values of a block stand: by column and lane, the byte that goes on top and how far it moves up
+template <unsigned bits>
+struct Spread {
+  std::int8_t byte[3][16] = {};
+  std::int32_t shift[3][4] = {};
 
-// where the values of a block's columns stand, as upper halves of three floats, in 16 of its bytes
-constexpr std::int8_t of_first[16] = {-1, -1, 4, 5, -1, -1, 6, 7, -1, -1, 8, 9, -1, -1, -1, -1};
-constexpr std::int8_t of_second[16] = {-1, -1, 10, 11, -1, -1, 12, 13, -1, -1, 14, 15, -1, -1, -1, -1};
-constexpr std::int8_t of_third[16] = {-1, -1, 8, 9, -1, -1, 10, 11, -1, -1, 12, 13, -1, -1, -1, -1};  // from byte 8 on
-
-[[gnu::target("avx2")]] inline __m256i twice(const std::int8_t (&bytes)[16]) {
-  const auto* at = reinterpret_cast<const __m128i*>(bytes);
-  return _mm256_loadu2_m128i(at, at);
-}
-
-// two blocks in one operation, each lane as add_blocks has it
-[[gnu::target("avx2")]] void add_blocks_avx2(const ColumnBlock* first, const ColumnBlock* last, Float4 force,
-                                             const SparseCoefficients& sums) noexcept {
-  constexpr std::ptrdiff_t at_once = 4;
-  const __m256 lanes = _mm256_castsi256_ps(_mm256_setr_epi32(-1, -1, -1, 0, -1, -1, -1, 0));
-  const __m256 f0 = _mm256_and_ps(_mm256_set1_ps(force[0]), lanes);
-  const __m256 f1 = _mm256_and_ps(_mm256_set1_ps(force[1]), lanes);
-  const __m256 f2 = _mm256_and_ps(_mm256_set1_ps(force[2]), lanes);
-  const __m256i first_column = twice(of_first);
-  const __m256i second_column = twice(of_second);
-  const __m256i third_column = twice(of_third);
-  auto* const value = reinterpret_cast<std::byte*>(sums.value);
-  std::uint8_t* const touched = sums.touched;
-  const ColumnBlock* at = first;
-  for (; last - at >= at_once; at += at_once) {
-    for (std::ptrdiff_t k = 0; k < at_once; k += 2) {
-      const auto* low = reinterpret_cast<const std::byte*>(at + k);
-      const auto* high = reinterpret_cast<const std::byte*>(at + k + 1);
-      const __m256i begin =
-          _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(high), reinterpret_cast<const __m128i*>(low));
-      const __m256i end =
-          _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(high + 8), reinterpret_cast<const __m128i*>(low + 8));
-      const __m256 v0 = _mm256_castsi256_ps(_mm256_shuffle_epi8(begin, first_column));
-      const __m256 v1 = _mm256_castsi256_ps(_mm256_shuffle_epi8(begin, second_column));
-      const __m256 v2 = _mm256_castsi256_ps(_mm256_shuffle_epi8(end, third_column));
-      const __m256 moved =
-          _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(v0, f0), _mm256_mul_ps(v1, f1)), _mm256_mul_ps(v2, f2));
-      auto* const of_low = reinterpret_cast<float*>(value + at[k].byte_offset);
-      _mm_store_ps(of_low, _mm_add_ps(_mm_load_ps(of_low), _mm256_castps256_ps128(moved)));
-      auto* const of_high = reinterpret_cast<float*>(value + at[k + 1].byte_offset);
-      _mm_store_ps(of_high, _mm_add_ps(_mm_load_ps(of_high), _mm256_extractf128_ps(moved, 1)));
-      touched[moved_place(at[k])] = 1;
-      touched[moved_place(at[k + 1])] = 1;
+  constexpr Spread() {
+    for (int column = 0; column < 3; ++column) {
+      for (int at = 0; at < 16; ++at) {
+        const int row = at / 4;
+        const int k = 3 * column + row;
+        byte[column][at] = static_cast<std::int8_t>(at % 4 != 3 || row == 3 ? -1 : bits == 4 ? k / 2 : k);
+      }
+      for (int row = 0; row < 3; ++row) {
+        shift[column][row] = bits == 4 && (3 * column + row) % 2 == 0 ? 4 : 0;
+      }
     }
   }
-  add_blocks(at, last, force, sums);
+};
+
+// a column of each of two blocks of 4 or 8 bits a value, as StoredBlock has it; fourth lanes 0
+template <unsigned bits>
+class TwoColumns {
+ public:
+  [[gnu::target("avx2")]] TwoColumns(const Spread<bits>& spread, int column)
+      : byte_(_mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(spread.byte[column])))),
+        shift_(_mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(spread.shift[column])))) {}
+
+  [[gnu::target("avx2")]] __m256 of(__m256i two) const {
+    __m256i value = _mm256_shuffle_epi8(two, byte_);
+    if constexpr (bits == 4) {
+      value = _mm256_and_si256(_mm256_sllv_epi32(value, shift_), _mm256_set1_epi32(static_cast<int>(0xf0000000)));
+    }
+    return _mm256_cvtepi32_ps(value);
+  }
+
+ private:
+  __m256i byte_;
+  __m256i shift_;
+};
+
+[[gnu::target("avx2")]] inline void add_to(Float4& sum, __m128 moved) {
+  auto* const at = reinterpret_cast<float*>(&sum);
+  _mm_store_ps(at, _mm_add_ps(_mm_load_ps(at), moved));
+}
+
+// two blocks in one operation, each lane as add_each has it
+template <unsigned bits, class Index>
+[[gnu::target("avx2")]] void add_pairs(const CouplingsView& couplings, std::uint32_t begin, std::uint32_t end,
+                                       Float4 force, Float4* sums) {
+  constexpr std::size_t bytes = StoredBlock<bits>::bytes;
+  static constexpr Spread<bits> spread;
+  const TwoColumns<bits> first(spread, 0);
+  const TwoColumns<bits> second(spread, 1);
+  const TwoColumns<bits> third(spread, 2);
+  const __m256 f0 = _mm256_set1_ps(force[0]);
+  const __m256 f1 = _mm256_set1_ps(force[1]);
+  const __m256 f2 = _mm256_set1_ps(force[2]);
+  const auto* const row = static_cast<const Index*>(couplings.index);
+  const std::byte* value = couplings.value + bytes * std::size_t{begin};
+  std::uint32_t at = begin;
+  for (; end - at >= 2; at += 2, value += 2 * bytes) {
+    const __m256i two =
+        _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(value + bytes), reinterpret_cast<const __m128i*>(value));
+    const __m256 moved =
+        _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(first.of(two), f0), _mm256_mul_ps(second.of(two), f1)),
+                      _mm256_mul_ps(third.of(two), f2));
+    add_to(sums[row[at]], _mm256_castps256_ps128(moved));
+    add_to(sums[row[at + 1]], _mm256_extractf128_ps(moved, 1));
+  }
+  _mm256_zeroupper();  // gcc 12 leaves it out before a call in the end, and all that follows would be slow
+  add_each<bits, Index>(couplings, at, end, force, sums);
+}
+
+template <unsigned bits>
+[[gnu::target("avx2")]] void add_blocks_avx2(const BlockRange& range, Float4 force, Float4* sums) noexcept {
+  if (range.couplings->index_bytes == 2) {
+    add_pairs<bits, std::uint16_t>(*range.couplings, range.begin, range.end, force, sums);
+  } else {
+    add_pairs<bits, std::uint32_t>(*range.couplings, range.begin, range.end, force, sums);
+  }
 }
 #endif
 
 }  // namespace
 
-void add_blocks(const ColumnBlock* first, const ColumnBlock* last, Float4 force,
-                const SparseCoefficients& sums) noexcept {
-  const Product product_with_force(force);
-  auto* const value = reinterpret_cast<std::byte*>(sums.value);
-  std::uint8_t* const touched = sums.touched;
-  for (const ColumnBlock* at = first; at != last; ++at) {
-    product_with_force.add(*at, *reinterpret_cast<Float4*>(value + at->byte_offset));
-    touched[moved_place(*at)] = 1;
-  }
+BlockSums portable_block_sums() noexcept {
+  static_assert(layout::layers == 4 && layout::value_bits[0] == 16 && layout::value_bits[1] == 16 &&
+                layout::value_bits[2] == 8 && layout::value_bits[3] == 4);
+  return {{add_blocks<16>, add_blocks<16>, add_blocks<8>, add_blocks<4>}};
 }
 
-AddBlocks fastest_add_blocks() noexcept {
+BlockSums fastest_block_sums() noexcept {
 #if defined(__x86_64__)
   if (has_avx2()) {
-    return add_blocks_avx2;
+    return {{add_blocks<16>, add_blocks<16>, add_blocks_avx2<8>, add_blocks_avx2<4>}};
   }
 #endif
-  return add_blocks;
+  return portable_block_sums();
 }
 
 }  // namespace greenloop

@@ -2,33 +2,34 @@
 
 #include <cstdint>
 
+#include "formats/view.hpp"
 #include "runtime/float4.hpp"
-#include "runtime/wavelet.hpp"
 
 namespace greenloop {
 
-/// A block of a field column, m/N.
-struct alignas(8) ColumnBlock {
-  std::uint32_t byte_offset;  ///< of the moved coefficient in an array of Float4 per domain node
-  std::uint16_t value[9];     ///< by columns, upper halves of floats
-  std::uint16_t zero;
+/// Consecutive blocks of a couplings section, in place.
+struct BlockRange {
+  const CouplingsView* couplings = nullptr;
+  std::uint32_t begin = 0;
+  std::uint32_t end = 0;
 };
 
-/// Place in the domain of the coefficient that a block moves.
-inline std::uint32_t moved_place(const ColumnBlock& block) {
-  return block.byte_offset / static_cast<std::uint32_t>(sizeof(Float4));
-}
+/// sums[row] += block * force for the blocks of a range, one after the other. force: block_factor included; its fourth
+/// lane is 0. For the loop; work: block_work units per block.
+using AddBlocks = void (*)(const BlockRange& range, Float4 force, Float4* sums) noexcept;
 
-/// sums += the blocks first..last times a force, whose fourth lane is not looked at, one after the other; they are
-/// touched. Every one of these functions gives the same bits. For the loop; work: 10 units per block.
-using AddBlocks = void (*)(const ColumnBlock* first, const ColumnBlock* last, Float4 force,
-                           const SparseCoefficients& sums) noexcept;
+/// Work units of a block in a sum.
+inline constexpr std::uint64_t block_work = 12;
+
+/// One for each layer of couplings. All of these give the same bits.
+struct BlockSums {
+  AddBlocks add[layout::layers];
+};
 
 /// On every processor.
-void add_blocks(const ColumnBlock* first, const ColumnBlock* last, Float4 force,
-                const SparseCoefficients& sums) noexcept;
+[[nodiscard]] BlockSums portable_block_sums() noexcept;
 
 /// The fastest on this processor. Start-up.
-[[nodiscard]] AddBlocks fastest_add_blocks() noexcept;
+[[nodiscard]] BlockSums fastest_block_sums() noexcept;
 
 }  // namespace greenloop

@@ -98,11 +98,9 @@ bool is_finest(const Body& body, std::size_t contact) {
 
 void answer_field(Body& body, std::span<const Contact> contacts, const FieldLevels& levels,
                   std::span<float> displacement) {
-  const ModelView& view = *body.view;
-  const FieldModel model{view, body.columns, body.parents};
   const ColumnForces forces{body.set.columns, body.set.column, reinterpret_cast<const float*>(body.column_force)};
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(model, forces, levels, body.field_scratch(), x);
+  compute_field(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].displacement;
@@ -215,7 +213,7 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
     report.finer_contacts += column_level(body.set.column[k]) == report.finer_level ? body.set.members[k] : 0;
   }
   report.field_level = plan.field_levels.details;
-  report.error = view.level[report.constraint_level].counts->worst_column_error;
+  report.error = view.level[report.constraint_level].counts->field_error;
   report.work = work;
   glide_forces(body, contacts, budget, response.force.data(), report);
   body.cache.use(*factor);
@@ -270,10 +268,6 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Limits& lim
   }
   Arena arena(memory.data());
   created.body.body_ = place_body(arena, view, sizes);
-  if (created.body.body_ == nullptr) {
-    created.error = CreateError::inconsistent_model;
-    return created;
-  }
   created.body.body_->least_work = requirement.least_work;
   return created;
 }

@@ -58,7 +58,7 @@ struct StepReport {
   std::uint32_t finer_level = 0;       ///< of a mixed set the finer one, else the same
   std::uint32_t finer_contacts = 0;    ///< contacts that were resolved at finer_level
   std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
-  float error = 0;                     ///< Level::worst_column_error of that constraint level, as measured offline
+  float error = 0;                     ///< Level::field_error of that constraint level, as measured offline
   std::uint64_t work = 0;              ///< units spent, never more than the budget
   bool cached_factor = false;          ///< the capacitance factor came from the cache, unchanged
   std::uint32_t changed_nodes = 0;     ///< nodes put into a cached factor and taken out of it, to make this one
@@ -82,7 +82,6 @@ enum class CreateError : std::uint8_t {
   arena_misaligned,
   bad_limits,
   unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks
-  inconsistent_model,  ///< its field columns hold more blocks than it says, or numbers that are not finite
 };
 
 /// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions
@@ -96,8 +95,7 @@ class Elastostatic {
   [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
 
   /// Carves `memory` with the routine that `required` counts with. `model` and `memory` must outlive the body.
-  /// Start-up; makes the columns that fields are sums of: for each touchable node of each level, about 30 units for
-  /// every block that couples one of the coefficients that a force on it reaches.
+  /// Start-up; linear in the model's bytes.
   [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
 
   /// One cycle of the loop: finds the forces that hold `contacts` where they are and the displacement of every node,

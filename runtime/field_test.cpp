@@ -29,6 +29,7 @@ struct Forces {
     }
     std::shuffle(place.begin(), place.end(), random);
     place.resize(std::min<std::size_t>(place.size(), 5));
+    std::sort(place.begin(), place.end());
     for (const std::uint32_t at : place) {
       for (int r = 0; r < 3; ++r) {
         force.push_back(static_cast<float>(random() >> 40) * 0x1p-24F);
@@ -81,8 +82,7 @@ float interpolated(const LevelView& level, std::uint32_t i, const std::vector<Fl
 
 TEST_CASE("a field cut off at a level keeps its averages there, interpolates beyond, and leaves the scratch zero") {
   const ModelData models[] = {synthetic_model({.levels = 5, .touchable_above = 0.5}),
-                              synthetic_model({.levels = 5, .field_threshold = 0.01, .touchable_above = 0.5}),
-                              synthetic_model({.levels = 4, .field_threshold = 0, .epsilon = 0, .quantum = 0}),
+                              synthetic_model({.levels = 4, .epsilon = 0, .quantum = 0}),
                               synthetic_model({.levels = 4, .wavelet = layout::Wavelet::linear}),
                               synthetic_model({.levels = 5, .wavelet = layout::Wavelet::lifted_butterfly}),
                               synthetic_model({.levels = 4, .wavelet = layout::Wavelet::butterfly, .epsilon = 0})};
@@ -99,9 +99,14 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
         CAPTURE(field_level);
         const Forces forces(view, c, random);
         std::vector<Float4> x(view.node_count, splat(1e30F));
-        compute_field({view, body.columns, body.parents}, forces.on(c), {view.levels - 1, field_level},
-                      body.field_scratch(), x.data());
-        CHECK(std::count(body.field_touched, body.field_touched + view.domain_count, 0) == view.domain_count);
+        const ColumnForces columns = forces.on(c);
+        clear(body.touched);
+        touch(body.refinement, columns.column, columns.count, body.touched);
+        compute_field(body.field_model(), columns, body.touched, {view.levels - 1, field_level}, body.field_scratch(),
+                      x.data());
+        CHECK(all_zero(body.field_sums.of_blocks, BaseColumns::width * tiles_of(view.domain_count)));
+        CHECK(all_zero(body.field_sums.of_tiles == nullptr ? nullptr : body.field_sums.of_tiles[0].of[0],
+                       6 * body.base.tiles));
         CHECK(all_zero(body.force, view.domain_count));
         for (std::uint32_t q = 0; q < view.levels; ++q) {
           const LevelView& level = view.level[q];
@@ -112,8 +117,8 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
           }
         }
         std::vector<Float4> coarse(nodes_up_to(view, field_level), splat(1e30F));
-        compute_field({view, body.columns, body.parents}, forces.on(c), {field_level, field_level},
-                      body.field_scratch(), coarse.data());
+        compute_field(body.field_model(), columns, body.touched, {field_level, field_level}, body.field_scratch(),
+                      coarse.data());
         CHECK(std::memcmp(coarse.data(), x.data(), sizeof(Float4) * coarse.size()) == 0);
         const Eigen::VectorXd whole = reference.field(c) * forces.dense;
         const Eigen::VectorXd averages = reference.averages(field_level, whole);
@@ -123,36 +128,54 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
   }
 }
 
-TEST_CASE("columns hold the blocks that the thresholds keep, rounded to 8 significant bits, and no others") {
-  for (const ModelData& data :
-       {synthetic_model({.levels = 4}),
-        synthetic_model({.levels = 3, .wavelet = layout::Wavelet::linear, .field_threshold = 0.01}),
-        synthetic_model({.levels = 4, .coarsest_constraint_level = 1, .field_threshold = 0}),
-        synthetic_model({.levels = 4, .field_halves = 2}), synthetic_model({.levels = 4, .read_above = 0.6}),
-        synthetic_model({.levels = 4, .wavelet = layout::Wavelet::butterfly, .read_above = 0.6})}) {
+TEST_CASE("what is read of a body has the whole field where only a part is read") {
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const ModelData data = synthetic_model({.levels = 4, .wavelet = kind, .read_above = 0.6});
     const TestModel model(encode(data));
     const ModelView& view = model.view();
+    const DenseReference reference(data);
     const PlacedBody placed(view, 5);
-    for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
-      const Eigen::MatrixXd expected = field_columns(data, c);
-      const Eigen::MatrixXd found = dense_field_columns(*placed.body, c);
-      for (std::uint32_t place = 0; place < domain_up_to(view, c); ++place) {
-        const std::uint32_t q = placed.body->refinement.level[place];
-        const std::uint32_t flags = view.level[q].nodes[place - view.level[q].domain_begin].flags;
-        const bool wanted = (flags & layout::node_touchable) != 0;
-        for (Eigen::Index i = 0; i < found.rows(); i += 3) {
-          const Eigen::Matrix3d block = expected.block<3, 3>(i, Eigen::Index{3} * place);
-          const Eigen::Matrix3d stored = found.block<3, 3>(i, Eigen::Index{3} * place);
-          CHECK(stored.isZero(0) == (block.isZero(0) || !wanted));
-          // single precision may round to the other neighbour
-          CHECK(
-              (!wanted || (stored - block).norm() <= (data.info.field_halves == 1 ? 0x1p-7 : 0x1p-14) * block.norm()));
-        }
+    const TestModel read_everywhere({.levels = 4, .wavelet = kind});
+    const PlacedBody whole(read_everywhere.view(), 5);
+    Body& body = *placed.body;
+    std::mt19937_64 random(9);
+    const Forces forces(view, view.levels - 1, random);
+    const ColumnForces columns = forces.on(view.levels - 1);
+    touch(body.refinement, columns.column, columns.count, body.touched);
+    std::vector<Float4> x(view.node_count);
+    compute_field(body.field_model(), columns, body.touched, {view.levels - 1, view.levels - 1}, body.field_scratch(),
+                  x.data());
+    const Eigen::VectorXd expected = reference.field(view.levels - 1) * forces.dense;
+    for (std::uint32_t place = 0; place < view.domain_count; ++place) {
+      const LevelView& level = view.level[body.refinement.level[place]];
+      const std::uint32_t i = place - level.domain_begin;
+      for (int r = 0; (level.nodes[i].flags & layout::node_read) != 0 && r < 3; ++r) {
+        CHECK(std::abs(double{x[level.node_begin + i][r]} - expected(Eigen::Index{3} * place + r)) <=
+              1e-5 * expected.cwiseAbs().maxCoeff());
       }
     }
-    CHECK(placed.body->columns.begin[view.levels - 1][view.domain_count * view.levels] ==
-          view.level[view.levels - 1].counts->field_blocks);
+    CHECK(body.mirrored.layer[3].begin[view.domain_count] < whole.body->mirrored.layer[3].begin[view.domain_count]);
   }
+}
+
+TEST_CASE("forces on columns of several levels move what each of them moves") {
+  const ModelData data = synthetic_model({.levels = 5, .wavelet = layout::Wavelet::lifted_linear});
+  const TestModel model(encode(data));
+  const ModelView& view = model.view();
+  const DenseReference reference(data);
+  const PlacedBody placed(view, 5);
+  Body& body = *placed.body;
+  const std::uint32_t column[] = {make_column(1, 2), make_column(1, 9), make_column(4, 1), make_column(4, 150)};
+  const float force[] = {1, -2, 3, 0.5F, 4, -1, 2, 2, -3, 1, 0.25F, -2};
+  Eigen::VectorXd expected = Eigen::VectorXd::Zero(Eigen::Index{3} * view.domain_count);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector3d f(double{force[3 * k]}, double{force[3 * k + 1]}, double{force[3 * k + 2]});
+    expected += reference.field(column_level(column[k])).middleCols<3>(Eigen::Index{3} * column_place(column[k])) * f;
+  }
+  touch(body.refinement, column, 4, body.touched);
+  std::vector<Float4> x(view.node_count);
+  compute_field(body.field_model(), {4, column, force}, body.touched, {4, 4}, body.field_scratch(), x.data());
+  CHECK(averages_error(body, expected, x) <= 1e-5 * expected.cwiseAbs().maxCoeff());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,6 +15,15 @@ inline Float4 splat(float value) { return Float4{value, value, value, value}; }
 
 /// x, y and z; the fourth lane stays 0.
 inline Float4 splat3(float value) { return Float4{value, value, value, 0.0F}; }
+
+/// a + b, whose fourth lanes are 0.
+inline Float4 sum3(Float4 a, Float4 b) {
+#if defined(__SSE2__) || defined(__ARM_NEON)
+  return a + b;
+#else
+  return Float4{a[0] + b[0], a[1] + b[1], a[2] + b[2], 0.0F};
+#endif
+}
 
 namespace detail {
 using Byte16 = std::int8_t __attribute__((vector_size(16)));
@@ -59,9 +69,17 @@ inline Float4 load_upper_halves(const std::uint16_t* value) {
 
 /// Lane by lane 0 where the magnitude is below 2^-90: keeps denormal numbers out of the sums.
 inline Float4 without_denormals(Float4 value) {
+#if !defined(__SSE2__) && !defined(__ARM_NEON)
+  const auto kept = [](float lane) {
+    const auto bits = std::bit_cast<std::uint32_t>(lane);
+    return (bits & 0x7fffffff) < std::bit_cast<std::uint32_t>(0x1p-90F) ? 0.0F : lane;
+  };
+  return Float4{kept(value[0]), kept(value[1]), kept(value[2]), kept(value[3])};
+#else
   const Float4 least = splat(0x1p-90F);
   const detail::Int4 tiny = (value < least) & (value > -least);
   return reinterpret_cast<Float4>(reinterpret_cast<detail::Int4>(value) & ~tiny);
+#endif
 }
 
 /// The same with a fourth lane of 0.
@@ -100,6 +118,24 @@ inline Block symmetric_block(const float (&matrix)[6]) {
 inline Float4 product(const Block& m, Float4 x) {
   const Float4 splats[3] = {splat(x[0]), splat(x[1]), splat(x[2])};
   return product(m, splats);
+}
+
+/// A symmetric matrix xx, xy, xz, yy, yz, zz times a vector; the fourth lane is 0.
+inline Float4 symmetric_product(const float (&matrix)[6], Float4 x) {
+#if defined(__SSE2__) || defined(__ARM_NEON)
+  Float4 low;
+  Float4 high;
+  std::memcpy(&low, matrix, sizeof low);
+  std::memcpy(&high, matrix + 2, sizeof high);
+  const Float4 second = __builtin_shufflevector(low, high, 1, 3, 6, 6);
+  const Float4 third = __builtin_shufflevector(high, high, 0, 2, 3, 3);
+  return xyz((low * splat(x[0]) + second * splat(x[1])) + third * splat(x[2]));
+#else
+  const auto row = [&](std::size_t a, std::size_t b, std::size_t c) {
+    return (matrix[a] * x[0] + matrix[b] * x[1]) + matrix[c] * x[2];
+  };
+  return Float4{row(0, 1, 2), row(1, 3, 4), row(2, 4, 5), 0.0F};
+#endif
 }
 
 /// Product of two blocks: fourth lanes are 0 if those of `a` are.

@@ -54,8 +54,7 @@ typedef enum greenloop_create_error {
   GREENLOOP_CREATE_ARENA_TOO_SMALL,
   GREENLOOP_CREATE_ARENA_MISALIGNED,
   GREENLOOP_CREATE_BAD_LIMITS,
-  GREENLOOP_CREATE_UNSUPPORTED_MODEL,
-  GREENLOOP_CREATE_INCONSISTENT_MODEL
+  GREENLOOP_CREATE_UNSUPPORTED_MODEL
 } greenloop_create_error;
 
 /* What came of a step. On GREENLOOP_OK and GREENLOOP_COARSER the buffers hold the answer; on any other nothing was
@@ -130,7 +129,7 @@ typedef struct greenloop_report {
   uint32_t finer_level;      /* of a mixed set the finer one, else the same */
   uint32_t finer_contacts;   /* contacts that were resolved at finer_level */
   uint32_t field_level;      /* finest level whose details are in the field */
-  float error;               /* worst column error of that constraint level, measured offline */
+  float error;               /* worst field error of that constraint level, measured offline */
   uint64_t work;             /* units spent, never more than the budget */
   int cached_factor;         /* 1: the capacitance factor came from the cache, unchanged */
   uint32_t changed_nodes;    /* nodes put into a cached factor and taken out of it, to make this one */

@@ -271,7 +271,7 @@ Slide slide(const TestModel& model, std::uint64_t budget, std::uint64_t refining
 TEST_CASE("contacts that change in every step are refined in part, within the budget") {
   const TestModel model({.levels = 5, .touchable_above = 0.3});
   const std::uint64_t whole = TestBody(model, {.max_contacts = 32}).step(patch(model, 0, 32), any_budget).work;
-  for (const std::uint64_t percent : {60U, 50U, 40U}) {
+  for (const std::uint64_t percent : {60U, 50U, 45U}) {
     const std::uint64_t budget = whole * percent / 100;
     const Slide mixed = slide(model, budget, ~std::uint64_t{0}, 40);
     const Slide coarse = slide(model, budget, 1, 40);

@@ -230,7 +230,7 @@ TEST_CASE("held contacts reach the finest level on a budget that is too small fo
     CAPTURE(factors);
     const Limits limits{.max_contacts = 32, .cached_factors = factors};
     TestBody finest(model, limits);
-    const StepReport whole = finest.step(contacts, any_budget);
+    const StepReport whole = finest.step(contacts, any_budget, false);
     REQUIRE(whole.status == Status::ok);
     for (const std::uint64_t part : {2U, 4U, 8U, 16U}) {
       const std::uint64_t budget = whole.work / part;
@@ -239,7 +239,7 @@ TEST_CASE("held contacts reach the finest level on a budget that is too small fo
       std::uint64_t pending = 0;
       StepReport report;
       do {
-        report = body.step(contacts, budget);
+        report = body.step(contacts, budget, false);
         ++steps;
         REQUIRE(report.status == Status::coarser);
         REQUIRE(steps <= 40);
@@ -251,7 +251,7 @@ TEST_CASE("held contacts reach the finest level on a budget that is too small fo
       CHECK(pending == 0);
       CHECK(report.cached_factor);
       for (std::uint32_t step = 1; step < limits.glide_cycles; ++step) {
-        report = body.step(contacts, budget);
+        report = body.step(contacts, budget, false);
         CHECK(report.constraint_level == 4);
       }
       CHECK(report.status == Status::ok);

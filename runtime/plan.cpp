@@ -23,11 +23,13 @@ std::uint64_t most_blocks(const LevelPair& pair, std::uint64_t coefficients) {
 }  // namespace
 
 std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return resolve_contacts_work(set.contacts) + 4 * set.columns + count_field_work(set) +
+  return resolve_contacts_work(set.contacts) + 4 * set.columns +
          FactorCache::find_work(model.cached_factors, set.columns);
 }
 
-std::uint64_t touch_work(const SetCounts& set) noexcept { return 2 * set.visits + 8 * set.coefficients; }
+std::uint64_t touch_work(const SetCounts& set) noexcept {
+  return 2 * set.visits + 8 * set.coefficients + count_field_work(set);
+}
 
 CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
   return {.columns = set.columns,
@@ -61,13 +63,16 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
   return solve_work(set.contacts, set.columns) + Glide::blend_work(set.contacts);
 }
 
-std::uint64_t count_field_work(const SetCounts& set) noexcept { return 2 * set.columns; }
+std::uint64_t count_field_work(const SetCounts& set) noexcept { return set.coefficients; }
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
-  const std::uint64_t touched = smaller(model.rows[levels.details], blocks);
-  return 4 * set.columns + 10 * blocks +
-         inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], touched,
+  constexpr std::uint64_t coefficient_work = 60;  // its scale, and where its blocks stand
+  constexpr std::uint64_t scale_work = 14;
+  const std::uint64_t details = model.rows[levels.details];
+  return 4 * set.columns + 3 * set.visits + coefficient_work * set.coefficients + block_work * blocks +
+         scale_work * details +
+         inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details,
                                 model.butterfly) +
          4 * set.contacts;
 }
@@ -75,8 +80,8 @@ std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const F
 void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
                   SetCounts& counts) noexcept {
   counts.coefficients = touched.coefficients();
-  counts.slots = count_slots({set.columns, set.column}, touched);
   counts.visits = touched.visits;
+  counts.slots = count_slots({set.columns, set.column}, touched);
   for (std::uint32_t k = 0; k < set.columns; ++k) {
     counts.column.add(cost.of(set.column[k]));
   }
@@ -87,18 +92,21 @@ void count_factor(const ContactSet& set, const Touched& touched, const ColumnCos
   }
 }
 
-std::uint64_t count_field_blocks(const FieldColumns& columns, const ContactSet& set,
+std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touched,
                                  std::uint32_t field_level) noexcept {
-  std::uint64_t blocks = 0;
-  for (std::uint32_t k = 0; k < set.columns; ++k) {
-    blocks += column_blocks(columns, set.column[k], field_level);
+  std::uint64_t sum = 0;
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      sum += blocks.count(touched.list[q][k], field_level);
+    }
   }
-  return blocks;
+  return sum;
 }
 
-SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
-                      std::uint32_t max_contacts, const ReachBound& reach) noexcept {
-  SetCounts counts;
+MostCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
+                       std::uint32_t max_contacts, const ReachBound& reach, const BaseColumns& base) noexcept {
+  MostCounts most;
+  SetCounts& counts = most.set;
   counts.bounds = true;
   counts.contacts = max_contacts;
   counts.columns = smaller(domain_up_to(view, c), max_contacts);
@@ -113,14 +121,15 @@ SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, st
       counts.stored += other <= q ? most_blocks(couplings.stored[q][other], of_set) : 0;
       counts.column.blocks += counts.columns * most_blocks(couplings.stored[q][other], of_column);
     }
+    std::uint64_t blocks = of_set;  // on the diagonal
+    for (std::uint32_t other = 0; other < view.levels; ++other) {
+      const std::uint64_t tiles = q == 0 && base.columns > 0 ? tiles_of(domain_up_to(view, other)) : 0;
+      blocks += most_blocks(couplings.stored[q][other], of_set);
+      most.field_blocks[other] += blocks + of_set * tiles * FieldBlocks::of_tile;
+    }
   }
   counts.slots = counts.coefficients;
-  return counts;
-}
-
-std::uint64_t most_field_blocks(const ModelView& view, std::uint64_t columns, std::uint32_t field_level) noexcept {
-  const std::uint64_t longest = view.level[view.levels - 1].counts->longest_field_column;
-  return columns * smaller(longest, std::uint64_t{view.info->field_halves} * domain_up_to(view, field_level));
+  return most;
 }
 
 }  // namespace greenloop

@@ -6,7 +6,7 @@
 #include "runtime/capacitance.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/couplings.hpp"
-#include "runtime/field_columns.hpp"
+#include "runtime/field.hpp"
 #include "runtime/sparse_forces.hpp"
 #include "runtime/support.hpp"
 
@@ -30,13 +30,14 @@ struct ModelCounts {
 struct SetCounts {
   std::uint64_t contacts = 0;
   std::uint64_t columns = 0;
-  // what follows only if a factor is to be made
+  // what follows only if a field is wanted or a factor is to be made
   std::uint64_t coefficients = 0;  ///< that the columns touch, none counted twice
-  std::uint64_t slots = 0;         ///< of the capacitance matrix
   std::uint64_t visits = 0;        ///< of touching them
-  std::uint64_t stored = 0;        ///< blocks of all layers in those columns
-  ColumnSums column;               ///< over all columns
-  bool bounds = false;             ///< of any set that holds no more, not of one
+  // and this only for a factor
+  std::uint64_t slots = 0;   ///< of the capacitance matrix
+  std::uint64_t stored = 0;  ///< blocks of all layers in those columns
+  ColumnSums column;         ///< over all columns
+  bool bounds = false;       ///< of any set that holds no more, not of one
 };
 
 /// Work units of resolving contacts at a level, counting the blocks of their field and asking the cache.
@@ -63,7 +64,7 @@ struct SetCounts {
 /// Work units of counting the blocks of a field.
 [[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
 
-/// Work units of a field whose columns have `blocks` blocks.
+/// Work units of a field that sums `blocks` blocks.
 [[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                                        std::uint64_t blocks) noexcept;
 
@@ -72,16 +73,20 @@ struct SetCounts {
 void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
                   SetCounts& counts) noexcept;
 
-/// Blocks of a resolved set's columns with details up to `field_level`.
-[[nodiscard]] std::uint64_t count_field_blocks(const FieldColumns& columns, const ContactSet& set,
+/// Blocks that the field of forces on touched coefficients sums with details up to `field_level`. For the loop; work:
+/// one unit per coefficient.
+[[nodiscard]] std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touched,
                                                std::uint32_t field_level) noexcept;
 
-/// Bounds of the counts of any set of at most `max_contacts` contacts at constraint level c. Start-up.
-[[nodiscard]] SetCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
-                                    std::uint32_t max_contacts, const ReachBound& reach) noexcept;
+/// Bounds of the counts of any set of contacts at a constraint level.
+struct MostCounts {
+  SetCounts set;
+  std::uint64_t field_blocks[layout::max_levels] = {};  ///< by field level, of count_field_blocks
+};
 
-/// Bound of count_field_blocks for sets of that many columns.
-[[nodiscard]] std::uint64_t most_field_blocks(const ModelView& view, std::uint64_t columns,
-                                              std::uint32_t field_level) noexcept;
+/// Of at most `max_contacts` contacts at constraint level c. Start-up.
+[[nodiscard]] MostCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
+                                     std::uint32_t max_contacts, const ReachBound& reach,
+                                     const BaseColumns& base) noexcept;
 
 }  // namespace greenloop

@@ -13,10 +13,20 @@ struct Task {
 // as much of the field as a plan asks for
 std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
   return field_work(body.counts, plan.counts, plan.field_levels,
-                    count_field_blocks(body.columns, body.set, plan.field_levels.details));
+                    count_field_blocks(body.field_blocks, body.touched, plan.field_levels.details));
 }
 
-// resolves the contacts and looks for the factor
+// touches the coefficients of the set
+void touch_set(Body& body, Plan& plan) {
+  clear(body.touched);
+  touch(body.refinement, body.set.column, body.set.columns, body.touched);
+  plan.counts.coefficients = body.touched.coefficients();
+  plan.counts.visits = body.touched.visits;
+  plan.work += touch_work(plan.counts);
+}
+
+// resolves the contacts, looks for the factor, and touches the coefficients unless only forces by a cached one are
+// wanted
 void plan_set(Body& body, const Task& task, const Resolution& resolution, Plan& plan) {
   resolve_contacts(task.contacts, *body.view, body.facts, resolution, body.set);
   plan.resolution = resolution;
@@ -27,6 +37,9 @@ void plan_set(Body& body, const Task& task, const Resolution& resolution, Plan& 
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;
   plan.update = false;
+  if (task.wants_field || plan.cached == nullptr) {
+    touch_set(body, plan);
+  }
   plan.field = task.wants_field ? planned_field_work(body, plan) : 0;
   plan.fits = false;
 }
@@ -36,13 +49,11 @@ bool holds_answer(const Task& task, const Plan& plan) {
   return plan.work + force_work(plan.counts) + plan.field <= task.budget;
 }
 
-// touches the coefficients of the set and chooses how to make its factor
+// chooses how to make the factor of the set
 void choose_factor(Body& body, Plan& plan) {
-  clear(body.touched);
-  touch(body.refinement, body.set.column, body.set.columns, body.touched);
   count_factor(body.set, body.touched, body.cost, body.stored, plan.counts);
   find_changes(body.cache, body.set, body.changes);
-  plan.work += touch_work(plan.counts) + find_changes_work(body.counts.cached_factors, plan.counts.columns);
+  plan.work += find_changes_work(body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
   if (body.changes.base != nullptr) {
     const std::uint64_t update = update_factor_work(body.counts, plan.counts, count_changes(body.changes, body.cost));
@@ -63,7 +74,7 @@ void plan_factor(Body& body, const Task& task, Plan& plan) {
   }
   plan.fits = planned_work(plan) <= task.budget;
   if (!plan.fits && holds && !plan.wanted.exists) {
-    plan.wanted = {true, plan.resolution.level, plan.counts};
+    plan.wanted = {true, plan.resolution.level, plan.counts, plan.field};
   }
 }
 
@@ -71,6 +82,7 @@ void plan_factor(Body& body, const Task& task, Plan& plan) {
 struct Room {
   std::uint64_t budget = 0;    // for all of it
   std::uint64_t planning = 0;  // for nothing but planning: the rest is the coarser answer's
+  std::uint64_t field = 0;     // at most: a mixture touches what the coarser set or the finest touches
   std::uint32_t entering = 0;  // contacts that enter a factor
   bool grows = false;          // whether groups may be added to those of the last choice
 };
@@ -101,6 +113,7 @@ Room room_for_mixture(const Body& body, const Task& task, const Plan& plan, bool
   Room room;
   room.budget = task.budget < refining ? task.budget : refining;
   room.planning = coarser < task.budget ? task.budget - coarser : 0;
+  room.field = plan.field + plan.wanted.field;
   room.entering = contacts_stay ? 0 : most_entering(body.counts, plan, room.budget);
   room.grows = !contacts_stay && !body.glide.under_way();
   return room;
@@ -109,41 +122,36 @@ Room room_for_mixture(const Body& body, const Task& task, const Plan& plan, bool
 // a mixed set in the making: `set` has sums over its columns, which bound its coefficients and visits
 struct Choice {
   SetCounts set;
-  std::uint64_t field_blocks = 0;
   std::uint32_t entering = 0;
 
-  void add(const Body& body, const Task& task, const FieldLevels& levels, std::uint32_t column) {
+  void add(const Body& body, std::uint32_t column) {
     const ColumnCost& cost = body.cost.of(column);
     set.columns += 1;
     set.visits += cost.visits;
     set.coefficients += cost.coefficients;
-    field_blocks += task.wants_field ? column_blocks(body.columns, column, levels.details) : 0;
   }
   void remove(const Choice& other) {
     set.columns -= other.set.columns;
     set.visits -= other.set.visits;
     set.coefficients -= other.set.coefficients;
-    field_blocks -= other.field_blocks;
   }
 };
 
 // whether the room holds a choice, given its factor
-bool holds(const Body& body, const Task& task, const Plan& plan, const Room& room, const Choice& choice) {
+bool holds(const Body& body, const Plan& plan, const Room& room, const Choice& choice) {
   const std::uint64_t planning = mixture_work(body.counts, choice.set);
-  const std::uint64_t field =
-      task.wants_field ? field_work(body.counts, choice.set, plan.field_levels, choice.field_blocks) : 0;
   return choice.entering <= room.entering && planning <= room.planning &&
-         plan.work + planning + force_work(choice.set) + field <= room.budget;
+         plan.work + planning + force_work(choice.set) + room.field <= room.budget;
 }
 
 // a choice with one more group
-Choice with_group(const Body& body, const Task& task, const Plan& plan, std::uint32_t g, Choice choice) {
+Choice with_group(const Body& body, const Task& task, std::uint32_t g, Choice choice) {
   Choice coarse;
-  coarse.add(body, task, plan.field_levels, body.mixture.column(g));
+  coarse.add(body, body.mixture.column(g));
   choice.remove(coarse);
   for (const std::uint32_t i : body.mixture.contacts_of(g)) {
     const std::uint32_t node = task.contacts[i].node;
-    choice.add(body, task, plan.field_levels, column_of(*body.view, body.facts, node, body.counts.levels - 1));
+    choice.add(body, column_of(*body.view, body.facts, node, body.counts.levels - 1));
     choice.entering += body.facts[node].fine ? 0 : 1;
   }
   return choice;
@@ -154,17 +162,17 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   Choice choice;
   choice.set.contacts = task.contacts.size();
   for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-    choice.add(body, task, plan.field_levels, body.set.column[k]);
+    choice.add(body, body.set.column[k]);
   }
-  if ((!room.grows && !body.mixture.has_last()) || !holds(body, task, plan, room, choice)) {
+  if ((!room.grows && !body.mixture.has_last()) || !holds(body, plan, room, choice)) {
     return false;
   }
   plan.work += Mixture::choose_work(task.contacts.size());
   body.mixture.rank(task.contacts, body.set, body.facts, body.glide);
   bool chosen = false;
   for (std::uint32_t g = 0; g < body.mixture.groups(); ++g) {
-    const Choice finer = with_group(body, task, plan, g, choice);
-    if ((room.grows || body.mixture.was_chosen(g)) && holds(body, task, plan, room, finer)) {
+    const Choice finer = with_group(body, task, g, choice);
+    if ((room.grows || body.mixture.was_chosen(g)) && holds(body, plan, room, finer)) {
       body.mixture.choose(g);
       choice = finer;
       chosen = true;

@@ -10,7 +10,7 @@
 namespace greenloop {
 
 /// How a step will be answered. Its contacts are resolved in body.set, whose coefficients are touched unless its factor
-/// is cached.
+/// is cached and no field is wanted.
 struct Plan {
   Resolution resolution;
   SetCounts counts;
@@ -27,6 +27,7 @@ struct Plan {
     bool exists = false;
     std::uint32_t level = 0;
     SetCounts counts;
+    std::uint64_t field = 0;  ///< work of its field
   } wanted;
 };
 

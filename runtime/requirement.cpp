@@ -12,7 +12,6 @@ namespace {
 
 // byte offsets of nodes are kept in 32 bits
 constexpr std::uint32_t most_nodes = 0xffffffff / sizeof(Float4);
-constexpr std::uint64_t most_field_blocks_of_a_model = std::uint64_t{1} << 30;
 
 void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) {
   ModelCounts& counts = sizes.counts;
@@ -75,40 +74,40 @@ std::uint64_t fresh_forces_work(const ModelCounts& model, const SetCounts& most,
   return other.dropped + factor_work(model, most) + force_work(most);
 }
 
-void bound_work(const ModelView& view, const Limits& limits, const SetCounts* most_of, const SetCounts* mixed_of,
+void bound_work(const ModelView& view, const Limits& limits, const MostCounts* most_of, const MostCounts* mixed_of,
                 const BodySizes& sizes, Requirement& requirement) {
   const ModelCounts& counts = sizes.counts;
   const std::uint32_t finest = view.levels - 1;
-  const auto field = [&](const SetCounts& set, std::uint32_t field_level) {
-    const std::uint64_t blocks = most_field_blocks(view, set.columns, field_level);
-    return limits.forces_only ? 0 : field_work(counts, set, {finest, field_level}, blocks);
+  const auto field = [&](const MostCounts& most, std::uint32_t field_level) {
+    const std::uint64_t blocks = most.field_blocks[field_level];
+    return limits.forces_only ? 0 : field_work(counts, most.set, {finest, field_level}, blocks);
   };
   // a mixed set may be planned after all levels were, whatever its own
   std::uint64_t all_plans = check_contacts_work(limits.max_contacts);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
-    all_plans += plan_set_work(counts, most_of[c]);
+    all_plans += plan_set_work(counts, most_of[c].set);
   }
   OtherWork other;
   other.plans = check_contacts_work(limits.max_contacts);
   other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
-    const SetCounts& most = most_of[c];
+    const SetCounts& most = most_of[c].set;
     add_set(counts, most, other);
     // at the coarsest level the field is cut as well
     const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
     const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
-    std::uint64_t answer = forces + field(most, finest);
+    std::uint64_t answer = forces + field(most_of[c], finest);
     std::uint64_t mixed_factor = 0;
     if (c < finest) {
-      const SetCounts& mixed = mixed_of[c];
+      const SetCounts& mixed = mixed_of[c].set;
       other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
-      const std::uint64_t mixed_answer = all_plans + force_work(mixed) + field(mixed, finest);
+      const std::uint64_t mixed_answer = all_plans + force_work(mixed) + field(mixed_of[c], finest);
       mixed_factor = mixed_answer + other.dropped + most_change_work(counts, mixed);
       answer = larger(answer, mixed_answer);
     }
     const std::uint64_t refined = larger(with_slices(answer, other.slices, limits.refining_work), mixed_factor);
     requirement.worst_work[c] = refined + other.mixture + other.older;
-    requirement.least_work = forces + field(most, 0);
+    requirement.least_work = forces + field(most_of[c], 0);
     add_slices(counts, most, other);
   }
 }
@@ -121,8 +120,7 @@ bool in_range(const Limits& limits) noexcept {
 }
 
 void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes, Requirement& requirement) noexcept {
-  const std::uint64_t field_blocks = view.level[view.levels - 1].counts->field_blocks;
-  if (!in_range(limits) || view.node_count > most_nodes || field_blocks > most_field_blocks_of_a_model) {
+  if (!in_range(limits) || view.node_count > most_nodes) {
     return;
   }
   const CouplingCounts couplings = count_couplings(view);
@@ -132,8 +130,11 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
   count_model(view, limits, sizes);
   sizes.longest_column = couplings.longest_column;
   sizes.set_columns = view.domain_count < limits.max_contacts ? view.domain_count : limits.max_contacts;
-  SetCounts most_of[layout::max_levels];
-  SetCounts mixed_of[layout::max_levels];
+  Arena counting;
+  BaseColumnsMaker base;
+  base.carve(counting, view);
+  MostCounts most_of[layout::max_levels];
+  MostCounts mixed_of[layout::max_levels];
   const std::uint32_t finest = view.levels - 1;
   ReachBound finest_reach;
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
@@ -142,10 +143,12 @@ void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes,
       return;
     }
     finest_reach = c == finest ? reach : finest_reach;
-    most_of[c] = most_counts(view, couplings, c, limits.max_contacts, reach);
-    mixed_of[c] = most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach));
-    mixed_of[c].slots += mixed_of[c].columns;
-    const std::uint64_t functional = most_of[c].columns > 0 ? most_of[c].column.coefficients / most_of[c].columns : 0;
+    most_of[c] = most_counts(view, couplings, c, limits.max_contacts, reach, base.columns());
+    mixed_of[c] =
+        most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach), base.columns());
+    mixed_of[c].set.slots += mixed_of[c].set.columns;
+    const SetCounts& most = most_of[c].set;
+    const std::uint64_t functional = most.columns > 0 ? most.column.coefficients / most.columns : 0;
     sizes.functional = larger(sizes.functional, functional);
   }
   const std::uint64_t entries = sizes.set_columns * sizes.functional;

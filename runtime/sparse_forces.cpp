@@ -1,5 +1,7 @@
 #include "runtime/sparse_forces.hpp"
 
+#include <cstddef>
+
 #include "runtime/column.hpp"
 #include "runtime/domain.hpp"
 
@@ -170,8 +172,17 @@ void clear(Touched& touched) noexcept {
   touched.visits = 0;
 }
 
-void transform_forces(const Refinement& refinement, const Touched& touched, Float4* force) noexcept {
+void transform_forces(const Refinement& refinement, const ColumnForces& columns, const Touched& touched,
+                      Float4* force) noexcept {
+  std::uint32_t left = columns.count;
+  const auto add_columns = [&](std::uint32_t level) {
+    for (; left > 0 && column_level(columns.column[left - 1]) == level; --left) {
+      const float* at = columns.force + std::size_t{3} * (left - 1);
+      force[column_place(columns.column[left - 1])] += without_denormals(Float4{at[0], at[1], at[2], 0.0F});
+    }
+  };
   for (std::uint32_t level = touched.finest; level > 0; --level) {
+    add_columns(level);
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
       const std::uint32_t odd = touched.list[level][k];
       visit_prediction(refinement, odd,
@@ -186,6 +197,7 @@ void transform_forces(const Refinement& refinement, const Touched& touched, Floa
       }
     }
   }
+  add_columns(0);
 }
 
 void SparseInverse::carve(Arena& arena, std::uint64_t slots, bool butterfly) noexcept {

@@ -86,9 +86,17 @@ void touch(const Refinement& refinement, const std::uint32_t* column, std::uint3
 /// Forgets them. For the loop; work: one unit per coefficient.
 void clear(Touched& touched) noexcept;
 
-/// Transforms forces on columns of one constraint level in place. force: [domain], nodal forces on their places, 0
-/// elsewhere. For the loop; work: 3 units per visit.
-void transform_forces(const Refinement& refinement, const Touched& touched, Float4* force) noexcept;
+/// Forces on columns.
+struct ColumnForces {
+  std::uint32_t count;
+  const std::uint32_t* column;  ///< [count] of distinct places, coarser ones first
+  const float* force;           ///< [3 * count] N; denormal numbers count as 0
+};
+
+/// The force coefficients T^-T f of forces on columns, each of which enters on its own level. touched: by the same
+/// columns; force: [domain], 0 before. For the loop; work: 3 units per visit.
+void transform_forces(const Refinement& refinement, const ColumnForces& columns, const Touched& touched,
+                      Float4* force) noexcept;
 
 /// The inverse transform of coefficients that forces reach, which is the adjoint of transform_forces, as steps in
 /// order: x[target] += the sum of weight x[source] over its terms. Targets and sources are slots of coefficients.

@@ -57,6 +57,7 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
         places.resize(std::min<std::size_t>(places.size(), trial < 15 ? 1 : 16));
         Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * domain_up_to(view, c));
         std::vector<std::uint32_t> columns;
+        std::vector<float> forces;
         for (const std::uint32_t place : places) {
           columns.push_back(make_column(c, place));
         }
@@ -64,9 +65,10 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
         for (const std::uint32_t place : places) {
           const float value = static_cast<float>(random() >> 40) * 0x1p-24F;
           f(Eigen::Index{3} * place) = value;
-          body.force[place] = splat3(value);
+          forces.insert(forces.end(), {value, value, value});
         }
-        transform_forces(body.refinement, body.touched, body.force);
+        transform_forces(body.refinement, {static_cast<std::uint32_t>(columns.size()), columns.data(), forces.data()},
+                         body.touched, body.force);
         const auto dense = dense_coefficients(view, inverse, c, f);
         std::vector<int> times(dense.size());
         for (std::uint32_t q = 0; q < view.levels; ++q) {

@@ -11,40 +11,14 @@ Float4& at_offset(Float4* x, std::uint32_t byte_offset) {
   return *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + byte_offset);
 }
 
-// calls visit(i) for every i < count whose byte is not 0, in order; visit may clear it
-template <class Visit>
-void visit_touched(const std::uint8_t* touched, std::uint32_t count, Visit visit) {
-  constexpr std::uint32_t words = 4;  // looked at together: most are 0
-  std::uint32_t i = 0;
-  for (; i + 8 * words <= count; i += 8 * words) {
-    std::uint64_t bytes[words];
-    std::memcpy(bytes, touched + i, sizeof bytes);
-    if ((bytes[0] | bytes[1] | bytes[2] | bytes[3]) == 0) {
-      continue;
-    }
-    for (std::uint32_t k = 0; k < words; ++k) {
-      for (std::uint64_t eight = bytes[k]; eight != 0; eight &= eight - 1) {
-        visit(i + 8 * k + static_cast<std::uint32_t>(std::countr_zero(eight)) / 8);
-      }
-    }
-  }
-  for (; i < count; ++i) {
-    if (touched[i] != 0) {
-      visit(i);
-    }
-  }
-}
-
-void undo_lifting(const LevelView& level, const ParentOffsets* parents, const SparseCoefficients& coefficients,
-                  Float4* x) {
+void undo_lifting(const LevelView& level, const ParentOffsets* parents, const Float4* coefficients, Float4* x) {
   const ParentOffsets* of_level = parents + level.domain_begin;
-  const Float4* value = coefficients.value + level.domain_begin;
-  visit_touched(coefficients.touched + level.domain_begin, level.counts->domain_count, [&](std::uint32_t i) {
-    const Float4 detail = value[i];
+  const Float4* detail = coefficients + level.domain_begin;
+  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     const float* lift = level.refinement[i].lift;
-    at_offset(x, of_level[i].byte_offset[0]) -= splat(lift[0]) * detail;
-    at_offset(x, of_level[i].byte_offset[1]) -= splat(lift[1]) * detail;
-  });
+    at_offset(x, of_level[i].byte_offset[0]) -= splat(lift[0]) * detail[i];
+    at_offset(x, of_level[i].byte_offset[1]) -= splat(lift[1]) * detail[i];
+  }
 }
 
 // halfway between the parents; 0 outside the domain
@@ -54,8 +28,8 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   const std::uint32_t count = level.counts->domain_count;
   const auto halfway = [&](std::uint32_t i) {
     const auto both = std::bit_cast<std::uint64_t>(of_level[i]);  // one load; their order does not matter
-    odd[i] = splat(0.5F) *
-             (at_offset(x, static_cast<std::uint32_t>(both)) + at_offset(x, static_cast<std::uint32_t>(both >> 32)));
+    odd[i] = splat3(0.5F) *
+             sum3(at_offset(x, static_cast<std::uint32_t>(both)), at_offset(x, static_cast<std::uint32_t>(both >> 32)));
   };
   std::uint32_t i = 0;
   for (; i + 4 <= count; i += 4) {
@@ -71,15 +45,13 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
 }
 
 // moves a level's details to its nodes
-void add_details(const LevelView& level, const SparseCoefficients& coefficients, Float4* x) {
+void add_details(const LevelView& level, Float4* coefficients, Float4* x) {
   Float4* node = x + level.node_begin;
-  Float4* value = coefficients.value + level.domain_begin;
-  std::uint8_t* touched = coefficients.touched + level.domain_begin;
-  visit_touched(touched, level.counts->domain_count, [&](std::uint32_t i) {
-    node[i] += value[i];
-    value[i] = Float4{};
-    touched[i] = 0;
-  });
+  Float4* detail = coefficients + level.domain_begin;
+  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+    node[i] = sum3(node[i], detail[i]);
+    detail[i] = Float4{};
+  }
 }
 
 void add_stencils(const LevelView& level, Float4* x) {
@@ -172,7 +144,7 @@ void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept
 }
 
 void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
-                       const SparseCoefficients& coefficients, Float4* x) noexcept {
+                       Float4* coefficients, Float4* x) noexcept {
   const bool lifted = layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet));
   std::memset(x, 0, sizeof(Float4) * view.level[0].counts->node_count);
   add_details(view.level[0], coefficients, x);

@@ -62,22 +62,17 @@ struct FieldLevels {
   std::uint32_t details = 0;  ///< finest level whose details are summed, at most `nodes`
 };
 
-/// A field in the making: wavelet coefficients, few of which are not zero.
-struct SparseCoefficients {
-  Float4* value = nullptr;          ///< [domain] 0 where not touched, and everywhere between uses
-  std::uint8_t* touched = nullptr;  ///< [domain] 1 where the value may not be 0, else 0
-};
-
 /// The inverse transform: displacements x of the nodes of K(levels.nodes), all of which are written. Levels above
-/// levels.details, where nothing may be touched, are interpolated. parents: [domain]. Only details that were touched
-/// are read; they are zero and untouched again afterwards. For the loop; work: inverse_transform_work.
+/// levels.details are interpolated; their coefficients are not looked at. parents: [domain]; coefficients: [domain],
+/// those of levels 0..levels.details are zero afterwards. For the loop; work: inverse_transform_work.
 void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
-                       const SparseCoefficients& coefficients, Float4* x) noexcept;
+                       Float4* coefficients, Float4* x) noexcept;
 
-/// Work units of inverse_transform. odd_nodes: of the domain above level 0; touched: coefficients, at most.
-constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t touched,
+/// Work units of inverse_transform. odd_nodes: of the domain above level 0; details: coefficients of levels up to
+/// levels.details.
+constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t details,
                                                bool butterfly) {
-  return nodes + (butterfly ? 24 : 6) * odd_nodes + 12 * touched;
+  return nodes + (butterfly ? 24 : 6) * odd_nodes + 8 * details;
 }
 
 }  // namespace greenloop

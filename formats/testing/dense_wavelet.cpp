@@ -41,54 +41,6 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet) {
   return form;
 }
 
-// to 8 significant bits a half, of two the even one
-double rounded(double value, std::uint32_t halves) {
-  const int bits = static_cast<int>(8 * halves);
-  int exponent = 0;
-  const double mantissa = std::frexp(value, &exponent);
-  return std::ldexp(std::nearbyint(std::ldexp(mantissa, bits)), exponent - bits);
-}
-
-// by domain index: the displacement of a node that is read depends on the coefficient
-std::vector<bool> read_coefficients(const ModelData& model, const DenseWavelet& wavelet) {
-  const Index count = wavelet.end(wavelet.levels() - 1);
-  std::vector<bool> read_node;
-  for (const LevelData& level : model.levels) {
-    for (const layout::NodeRecord& node : level.nodes) {
-      if ((node.flags & layout::node_domain) != 0) read_node.push_back((node.flags & layout::node_read) != 0);
-    }
-  }
-  if (std::find(read_node.begin(), read_node.end(), false) == read_node.end()) return read_node;
-  MatrixXd moved = MatrixXd::Zero(3 * count, count);
-  for (Index i = 0; i < count; ++i) moved(3 * i, i) = 1;
-  for (std::uint32_t q = 1; q < wavelet.levels(); ++q) wavelet.inverse(q, moved.topRows(3 * wavelet.end(q)));
-  std::vector<bool> read(read_node.size());
-  for (Index i = 0; i < count; ++i) {
-    for (Index node = 0; node < count; ++node) {
-      if (read_node[std::size_t(node)] && moved(3 * node, i) != 0) read[std::size_t(i)] = true;
-    }
-  }
-  return read;
-}
-
-// drops what is not read and what the thresholds let go of one column; own: norm of the node's compliance
-void threshold(const layout::Info& info, const DenseWavelet& wavelet, const std::vector<bool>& read, double own,
-               Eigen::Ref<MatrixXd> column) {
-  std::vector<double> spread;  // 4^-level of every coefficient
-  for (std::uint32_t q = 0; q < wavelet.levels(); ++q) spread.resize(wavelet.end(q), std::ldexp(1.0, -2 * int(q)));
-  double energy = 0;
-  for (std::size_t i = 0; i < spread.size(); ++i) {
-    if (read[i]) energy += spread[i] * column.middleRows<3>(3 * Index(i)).squaredNorm();
-  }
-  for (std::size_t i = 0; i < spread.size(); ++i) {
-    auto block = column.middleRows<3>(3 * Index(i));
-    const bool large = std::sqrt(spread[i]) * block.norm() >= double{info.field_threshold} * std::sqrt(energy) ||
-                       block.norm() >= double{info.field_peak_threshold} * own;
-    block = large && read[i] ? MatrixXd(block.unaryExpr([&](double x) { return rounded(x, info.field_halves); }))
-                             : MatrixXd::Zero(3, 3);
-  }
-}
-
 }  // namespace
 
 Matrix3d symmetric_matrix(const float (&six)[6]) {
@@ -191,21 +143,10 @@ MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c) {
   return form;
 }
 
-MatrixXd field_columns(const ModelData& model, std::uint32_t c) {
-  const DenseWavelet wavelet(model);
-  MatrixXd columns = stored_form(model, wavelet).leftCols(3 * wavelet.end(c));
-  for (std::uint32_t q = 1; q <= c; ++q) wavelet.inverse_columns(q, columns.leftCols(3 * wavelet.end(q)));
-  const MatrixXd own = decoded_compliance(model, c);
-  const std::vector<bool> read = read_coefficients(model, wavelet);
-  for (Index j = 0; j < wavelet.end(c); ++j) {
-    threshold(model.info, wavelet, read, own.block<3, 3>(3 * j, 3 * j).norm(), columns.middleCols<3>(3 * j));
-  }
-  return columns;
-}
-
 MatrixXd field_displacements(const ModelData& model, std::uint32_t c) {
   const DenseWavelet wavelet(model);
-  MatrixXd x = field_columns(model, c);
+  MatrixXd x = stored_form(model, wavelet).leftCols(3 * wavelet.end(c));
+  for (std::uint32_t q = 1; q <= c; ++q) wavelet.inverse_columns(q, x.leftCols(3 * wavelet.end(q)));
   for (std::uint32_t q = 1; q < wavelet.levels(); ++q) wavelet.inverse(q, x.topRows(3 * wavelet.end(q)));
   return x;
 }

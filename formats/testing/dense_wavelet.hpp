@@ -64,11 +64,8 @@ void from_wavelet_form(const DenseWavelet& wavelet, std::uint32_t c, Eigen::Ref<
 /// K(c). Work: as above.
 [[nodiscard]] Eigen::MatrixXd decoded_compliance(const ModelData& model, std::uint32_t c);
 
-/// What a unit force on each domain node of K(c) moves, in coefficients of the whole domain, by a model's field
-/// columns: thresholded and rounded as layout.hpp says. [3 domain x 3 end(c)] m/N. Work: as above.
-[[nodiscard]] Eigen::MatrixXd field_columns(const ModelData& model, std::uint32_t c);
-
-/// The displacement of the domain by those: the inverse transform of each column.
+/// The displacement of the domain per force on each domain node of K(c) that a model stands for: 3 domain x 3 end(c),
+/// m/N. Work: as above.
 [[nodiscard]] Eigen::MatrixXd field_displacements(const ModelData& model, std::uint32_t c);
 
 }  // namespace greenloop

@@ -16,7 +16,6 @@ ModelData smallest_model() {
   model.info.max_contacts = 1;
   model.info.step_work = 1000;
   model.info.quantum[0] = quantum;
-  model.info.field_halves = 1;
   model.provenance = "{}";
   model.base_triangles = {0, 1, 2};
 
@@ -25,7 +24,6 @@ ModelData smallest_model() {
                  {{1, 0, 0}, third_of_triangle, layout::node_domain | layout::node_read},
                  {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
   level.representatives = {{0, layout::none, layout::none}};
-  level.counts.field_blocks = level.counts.longest_field_column = 2;
   level.scales.assign(2, {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
                           .diagonal = {1, 0, 0, 1, 0, 1}});
   for (CouplingsData& layer : level.couplings) layer.begin = {0, 0, 0};

@@ -170,7 +170,6 @@ class Compression {
       }
       counts.field_rms_error = static_cast<float>((field - exact).norm() / read.norm());
       counts.field_column_error = static_cast<float>(worst_column(field, exact));
-      count_field_columns(cut, counts);
     }
   }
 
@@ -180,27 +179,6 @@ class Compression {
     while (place >= wavelet_.end(q)) ++q;
     const auto i = static_cast<std::size_t>(place - wavelet_.begin(q));  // the domain comes first
     return (cut.levels[q].nodes[i].flags & layout::node_read) != 0;
-  }
-
-  // blocks that are not zero in the columns of touchable nodes; a node of K(c) stands for itself
-  void count_field_columns(const ModelData& cut, layout::Level& counts) const {
-    std::vector<std::uint32_t> flags;
-    for (const LevelData& level : cut.levels) {
-      for (const layout::NodeRecord& node : level.nodes) {
-        if ((node.flags & layout::node_domain) != 0) flags.push_back(node.flags);
-      }
-    }
-    for (std::uint32_t c = options_.coarsest_constraint_level; c < cut.levels.size(); ++c) {
-      const MatrixXd columns = field_columns(cut, c);
-      for (Index j = 0; j < wavelet_.end(c); ++j) {
-        if ((flags[static_cast<std::size_t>(j)] & layout::node_touchable) == 0) continue;
-        std::uint32_t blocks = 0;
-        for (Index i = 0; i < columns.rows(); i += 3)
-          blocks += columns.block<3, 3>(i, 3 * j).isZero(0) ? 0 : options_.field_halves;
-        counts.field_blocks += blocks;
-        counts.longest_field_column = std::max(counts.longest_field_column, blocks);
-      }
-    }
   }
 
   ModelData& model_;
@@ -270,9 +248,6 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   model.info.young = 1e5;
   model.info.poisson = 0.4;
   model.info.threshold = options.epsilon;
-  model.info.field_threshold = static_cast<float>(options.field_threshold);
-  model.info.field_halves = options.field_halves;
-  model.info.field_peak_threshold = static_cast<float>(options.field_peak_threshold);
   model.info.rate = 1000;
   model.info.max_contacts = 16;
   model.info.step_work = 1'000'000;
@@ -286,16 +261,6 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   Compression compression(model, options);
   compression.run(exact_compliance(sphere));
   return model;
-}
-
-void allow_all_field_blocks(ModelData& model) {
-  std::uint64_t rows = 0, columns = 0;
-  for (LevelData& level : model.levels) {
-    rows += level.scales.size();
-    columns += rows;
-    level.counts.field_blocks = model.info.field_halves * rows * columns;
-    level.counts.longest_field_column = static_cast<std::uint32_t>(model.info.field_halves * rows);
-  }
 }
 
 }  // namespace greenloop

@@ -12,13 +12,10 @@ struct SyntheticOptions {
   std::uint32_t levels = 3;                     ///< 1..6 mesh levels: 6, 18, 66, 258, 1026, 4098 nodes
   std::uint32_t coarsest_constraint_level = 0;  ///< < levels
   layout::Wavelet wavelet = layout::Wavelet::lifted_linear;
-  double field_threshold = 0.002;      ///< Info::field_threshold
-  double field_peak_threshold = 0.05;  ///< Info::field_peak_threshold
-  std::uint32_t field_halves = 1;      ///< Info::field_halves
-  double epsilon = 0.005;              ///< scaled blocks of smaller norm over root 3 are dropped; 0 keeps all
-  double quantum = 0.002;              ///< of the 8-bit layer; that of 4 bits differs
-  double touchable_above = 0;          ///< nodes with z >= this times the radius may be contacts; at most 1
-  double read_above = -1;              ///< domain nodes with z >= this times the radius are read
+  double epsilon = 0.005;      ///< scaled blocks of smaller norm over root 3 are dropped; 0 keeps all
+  double quantum = 0.002;      ///< of the 8-bit layer; that of 4 bits differs
+  double touchable_above = 0;  ///< nodes with z >= this times the radius may be contacts; at most 1
+  double read_above = -1;      ///< domain nodes with z >= this times the radius are read
 };
 
 /// The exact compliance of that body between points x and y (m): 1e-3 m/N exp(-|x - y| / 0.05 m) Q(x) C Q(y)^T with a
@@ -35,8 +32,5 @@ struct SyntheticOptions {
 
 /// Some valid records of patterns, by kind and contacts, all numbers different.
 [[nodiscard]] std::vector<layout::PatternRecord> synthetic_patterns();
-
-/// Makes room for any field columns: for models whose numbers were changed.
-void allow_all_field_blocks(ModelData& model);
 
 }  // namespace greenloop

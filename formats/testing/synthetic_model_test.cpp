@@ -137,16 +137,6 @@ TEST_CASE("synthetic model: positive definite on every level, and as wrong as it
   }
 }
 
-TEST_CASE("synthetic model: fields lack small blocks, and their errors say so") {
-  const ModelData model = synthetic_model({.levels = 4});
-  const MatrixXd exact = exact_compliance(model);
-  const double error = (field_displacements(model, 3) - exact).norm() / exact.norm();
-  const layout::Level& counts = model.levels[3].counts;
-  CHECK(counts.field_rms_error == doctest::Approx(error).epsilon(1e-5));
-  CHECK(counts.field_rms_error > 1.2F * counts.rms_error);
-  CHECK(counts.field_column_error > counts.worst_column_error);
-}
-
 TEST_CASE("synthetic model: every layer holds couplings, each of another quantum, and uses its bits") {
   for (const layout::Wavelet kind : layout::wavelets) {
     const ModelData model = synthetic_model({.levels = 4, .wavelet = kind});

@@ -16,6 +16,7 @@
 #include "formats/model_file.hpp"
 #include "formats/stored_blocks.hpp"
 #include "offline/cli/inspect_patterns.hpp"
+#include "offline/compress/field_size.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -53,7 +54,7 @@ Json levels_of(const ModelView& view) {
                       {"worst_patch_force_error", level.patch_force_error},
                       {"field_rms_error", level.field_rms_error},
                       {"field_column_error", level.field_column_error},
-                      {"field_blocks", level.field_blocks}});
+                      {"field_blocks", 2 * level.kept_blocks - columns}});
   }
   return levels;
 }
@@ -86,6 +87,7 @@ Json inspection_of(const ModelFile& model) {
   const ModelView& view = model.view;
   const layout::Info& info = *view.info;
   const layout::Level& finest = *view.level[view.levels - 1].counts;
+  const FieldSize field = field_size(view);
   return {
       {"version", fmt::format("{}.{}", view.header->major, view.header->minor)},
       {"nodes", view.node_count},
@@ -99,8 +101,8 @@ Json inspection_of(const ModelFile& model) {
       {"rms_error", finest.rms_error},
       {"worst_column_error", finest.worst_column_error},
       {"worst_patch_force_error", finest.patch_force_error},
-      {"field_blocks", finest.field_blocks},
-      {"longest_field_column", finest.longest_field_column},
+      {"field_blocks", field.blocks},
+      {"longest_field_column", field.longest},
       {"field_rms_error", finest.field_rms_error},
       {"field_column_error", finest.field_column_error},
       {"lambda_min", info.lambda_min},
@@ -153,7 +155,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                            ratio(found["dense_bytes"], found["bytes"]), bytes_text(found["dense_bytes"])));
   row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
-  row("field", fmt::format("{} RMS, {} in the worst column; {} blocks in a body's columns, at most {} in one",
+  row("field", fmt::format("{} RMS, {} in the worst column; summed of {} blocks, at most {} by a force on one node",
                            percent(found["field_rms_error"]), percent(found["field_column_error"]),
                            found["field_blocks"].dump(), found["longest_field_column"].dump()));
   row("certificate", found["certificate"].get<bool>()

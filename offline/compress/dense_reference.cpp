@@ -178,7 +178,6 @@ layout::Info facts() {
   info.rate = 1000;
   info.max_contacts = 64;
   info.step_work = 1'000'000;
-  info.field_halves = 1;
   return info;
 }
 

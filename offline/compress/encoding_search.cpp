@@ -15,7 +15,6 @@ namespace {
 // rounding then weighs less than what the threshold drops
 constexpr double quantum_per_threshold = 0.5;
 constexpr int bisections = 9;
-constexpr double field_safety = 0.95;  // of the field's RMS error, chosen on a sample
 
 FieldError column_error(const TrialBench& bench, const CompressedCompliance& compressed) {
   FieldError error;
@@ -44,23 +43,15 @@ EncodedModel::EncodedModel(const ModelData& model) : bytes(encode(model)) {
 }
 
 Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
-  ModelData data = encoded_model(bench, encoding);
-  const EncodedModel model(data);
+  const EncodedModel model(encoded_model(bench, encoding));
   const CompressedCompliance compressed(model.view);
-  Trial trial{.encoding = encoding, .field = {}, .bytes = model.bytes.size()};
+  Trial trial{.encoding = encoding, .bytes = model.bytes.size()};
   trial.blocks = model.view.level[model.view.levels - 1].counts->kept_blocks;
   trial.patch_force = patches.worst_force_error(compressed, compressed.finest());
   const FieldError error = column_error(bench, compressed);
   trial.rms = error.rms();
   trial.worst_column = error.worst_column();
-  if (trial.meets(bench.accuracy)) {
-    const FieldSample field(compressed, read_rows(model.view), bench.columns);
-    trial.field = field.choose(field_safety * bench.accuracy.rms, bench.accuracy.worst_column);
-    data.levels.back().counts.longest_field_column = data.info.field_halves * field.measure(trial.field).longest;
-  } else {
-    data.levels.back().counts.longest_field_column = static_cast<std::uint32_t>(compressed.rows(compressed.finest()));
-  }
-  if (bench.step_work) trial.step_work = bench.step_work(EncodedModel(data).bytes.span()).back();
+  if (bench.step_work) trial.step_work = bench.step_work(model.bytes.span()).back();
   return trial;
 }
 

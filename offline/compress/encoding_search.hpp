@@ -12,17 +12,24 @@
 #include "offline/compress/column_source.hpp"
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/coupling_coder.hpp"
-#include "offline/compress/field_thresholds.hpp"
 
 namespace greenloop::offline {
 
+/// An exact column to compare with.
+struct SampleColumn {
+  std::size_t row = 0;
+  double area = 0;            ///< m^2
+  std::vector<double> exact;  ///< rows blocks of 9
+};
+
 /// The errors a model may have against the exact compliance, all relative.
 struct Accuracy {
-  double rms = 0;                                               ///< of the field: FieldError::rms
-  double worst_column = 0;                                      ///< FieldError::worst_column
-  double patch_force = 0;                                       ///< ContactPatches::worst_force_error
-  double field = std::numeric_limits<double>::infinity();       ///< of the worst pattern: AnswerError::field
-  double field_peak = std::numeric_limits<double>::infinity();  ///< AnswerError::peak
+  double rms = 0;                                                ///< of the field: FieldError::rms
+  double worst_column = 0;                                       ///< FieldError::worst_column
+  double patch_force = 0;                                        ///< ContactPatches::worst_force_error
+  double field = std::numeric_limits<double>::infinity();        ///< of the worst pattern: AnswerError::field
+  double field_peak = std::numeric_limits<double>::infinity();   ///< AnswerError::peak
+  double field_rough = std::numeric_limits<double>::infinity();  ///< AnswerError::field of patterns that are is_rough
 };
 
 /// What an encoding comes to on one constraint level.
@@ -36,7 +43,6 @@ struct LevelTrial {
 /// One way to encode a model, and what came of it on a sample of patches and columns.
 struct Trial {
   Encoding encoding;
-  FieldThresholds field;
   std::size_t bytes = 0, blocks = 0;
   double rms = 0, worst_column = 0, patch_force = 0;
   std::uint64_t step_work = 0;       ///< units
@@ -55,7 +61,7 @@ struct TrialBench {
   const WaveletCompliance& compliance;
   const ModelData& tables;  ///< the model without scales and couplings
   const std::vector<SampleColumn>& columns;
-  Accuracy accuracy;    ///< asked for: fields are made as coarse as it lets them
+  Accuracy accuracy;    ///< asked for
   LevelWork step_work;  ///< may be empty
 };
 
@@ -65,8 +71,7 @@ struct TrialBench {
 /// The bench's model with its couplings.
 [[nodiscard]] ModelData encoded_model(const TrialBench& bench, const Encoding& encoding);
 
-/// Encodes and measures one trial, and chooses its fields' thresholds. Work: two encodings, 64 columns a patch, the
-/// sample's columns and some inverse transforms of them.
+/// Encodes and measures one trial. Work: an encoding, 64 columns a patch and the sample's columns.
 [[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
 
 /// A model's bytes and what they stand for. Not copied or moved: the view points into the bytes.

@@ -7,7 +7,6 @@
 
 #include "offline/compress/exact_sample.hpp"
 #include "offline/compress/field_error.hpp"
-#include "offline/compress/model_field.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -97,24 +96,13 @@ void leave_out_near(double chosen, std::vector<Trial>& trials) {
   trials = std::move(apart);
 }
 
-void set_field(const FieldThresholds& field, ModelData& model) {
-  model.info.field_threshold = static_cast<float>(field.spread);
-  model.info.field_peak_threshold = static_cast<float>(field.peak);
-  const EncodedModel encoded(model);
-  const FieldColumnMaker::Counts counts = count_field_columns(encoded.view);
-  model.levels.back().counts.field_blocks = counts.blocks;
-  model.levels.back().counts.longest_field_column = counts.longest;
-}
-
 std::vector<Trial> measure_frontier(const TrialBench& bench, const std::vector<LevelSample>& samples,
-                                    const FieldThresholds& field, const std::vector<Trial>& trials) {
+                                    const std::vector<Trial>& trials) {
   std::map<double, Trial, std::greater<>> latest;
   for (const auto& trial : trials) latest[trial.encoding.threshold] = trial;
   std::vector<Trial> points;
   for (auto& [threshold, trial] : latest) {
-    ModelData data = encoded_model(bench, trial.encoding);
-    if (bench.step_work) set_field(field, data);
-    const EncodedModel model(data);
+    const EncodedModel model(encoded_model(bench, trial.encoding));
     const CompressedCompliance compressed(model.view);
     trial.levels = level_costs(model, bench.step_work);
     for (std::size_t i = 0; i < samples.size(); ++i) measure_level(samples[i], compressed, trial.levels[i]);
@@ -122,7 +110,6 @@ std::vector<Trial> measure_frontier(const TrialBench& bench, const std::vector<L
     finest.rms = trial.rms;
     finest.worst_column = trial.worst_column;
     finest.patch_force = trial.patch_force;
-    trial.field = field;
     points.push_back(std::move(trial));
   }
   return points;

@@ -42,14 +42,8 @@ void fill_gaps(const TrialBench& bench, const ContactPatches& patches, double ch
 void leave_out_near(double chosen, std::vector<Trial>& trials);
 
 /// What was tried, by decreasing threshold, one trial each (the latest), on every constraint level: errors of coarse
-/// levels on the samples, those of the finest as tried. Fields leave out the same everywhere, so that work compares; it
-/// is counted only if the bench has a step_work. Work: an encoding, the samples' columns and the field columns per
-/// threshold.
+/// levels on the samples, those of the finest as tried. Work: an encoding and the samples' columns per threshold.
 [[nodiscard]] std::vector<Trial> measure_frontier(const TrialBench& bench, const std::vector<LevelSample>& samples,
-                                                  const FieldThresholds& field, const std::vector<Trial>& trials);
-
-/// Says in `model` what its fields leave out, and how many blocks its field columns then have. Work: that of
-/// count_field_columns.
-void set_field(const FieldThresholds& field, ModelData& model);
+                                                  const std::vector<Trial>& trials);
 
 }  // namespace greenloop::offline

@@ -74,13 +74,12 @@ TEST_CASE("every threshold once, the latest trial of it, cheaper and less exact 
   trials.back().patch_force = 0.5;
   auto with_work = bench().get();
   with_work.step_work = bytes_as_work;
-  const auto points = measure_frontier(with_work, samples, {.spread = 0.05, .peak = 0.1}, trials);
+  const auto points = measure_frontier(with_work, samples, trials);
   REQUIRE(points.size() == 3);
   CHECK(points[0].encoding.threshold == 0.03);
   CHECK(points[1].patch_force == 0.5);
   for (const Trial& point : points) {
     REQUIRE(point.levels.size() == 2);
-    CHECK(point.field.spread == 0.05);
     CHECK(point.encoding.quantum == 0.5 * point.encoding.threshold);
     CHECK(point.levels[0].bytes < point.levels[1].bytes);
     CHECK(point.levels[1].bytes == point.bytes);
@@ -106,25 +105,9 @@ TEST_CASE("gaps between the tried thresholds are filled, but not below the floor
   CHECK(thresholds == std::vector<double>{0.01, 0.045, 0.16, 0.08, 0.02});
 }
 
-TEST_CASE("fields that leave out more have fewer blocks, counted in the model") {
-  const ModelData data = encoded_model(bench().get(), encoding_at(0.005));
-  std::vector<std::uint64_t> blocks;
-  for (const double spread : {0.001, 0.01, 0.1}) {
-    ModelData model = data;
-    set_field({.spread = spread, .peak = 1}, model);
-    const EncodedModel encoded(model);
-    CHECK(encoded.view.info->field_threshold == static_cast<float>(spread));
-    blocks.push_back(encoded.view.level[finest].counts->field_blocks);
-    CHECK(encoded.view.level[finest].counts->longest_field_column <= bench().wavelet.rows());
-  }
-  CHECK(blocks[0] > blocks[1]);
-  CHECK(blocks[1] > blocks[2]);
-  CHECK(blocks[2] > 0);
-}
-
 TEST_CASE("a level's errors are those of the model cut off after it") {
   const auto samples = sample_levels(bench().body.mesh, bench().wavelet, bench().compliance, coarsest);
-  const auto point = measure_frontier(bench().get(), samples, {}, tried({0.01})).front();
+  const auto point = measure_frontier(bench().get(), samples, tried({0.01})).front();
   const EncodedModel whole(encoded_model(bench().get(), point.encoding));
   const auto bytes = whole.bytes.span();
   const AlignedBytes cut(truncate_to_level({bytes.begin(), bytes.end()}, coarsest));

@@ -12,7 +12,6 @@
 #include "offline/compress/compressed_compliance.hpp"
 #include "offline/compress/dense_reference.hpp"
 #include "offline/compress/measured_model.hpp"
-#include "offline/compress/model_field.hpp"
 #include "offline/compress/solved_body.hpp"
 #include "runtime/testing/test_body.hpp"
 
@@ -168,7 +167,6 @@ Rounding rounding(const Case& one, const std::vector<Contact>& contacts) {
   TestBody body(one.model, {.max_contacts = static_cast<std::uint32_t>(contacts.size()), .cached_factors = 1});
   REQUIRE(body.step(contacts, any_budget).status == Status::ok);
   const CompressedCompliance all(one.model.view());
-  const ModelField fields(one.model.view());
   const auto at = unknowns(one.body, contacts);
   const auto size = static_cast<Index>(at.size()), rows = static_cast<Index>(3 * all.rows(all.finest()));
   MatrixXd capacitance(size, size);
@@ -182,8 +180,7 @@ Rounding rounding(const Case& one, const std::vector<Contact>& contacts) {
   const VectorXd exact = capacitance.llt().solve(displacement(contacts));
   VectorXd displaced = VectorXd::Zero(rows);
   for (Index j = 0; j < size; j += 3) {
-    const auto column =
-        fields.column(all.wavelet(), all.finest(), static_cast<std::size_t>(at[static_cast<std::size_t>(j)] / 3));
+    const auto column = all.column(all.finest(), static_cast<std::size_t>(at[static_cast<std::size_t>(j)] / 3));
     for (Index i = 0; i < rows; i += 3) {
       displaced.segment<3>(i) += Eigen::Map<const Eigen::Matrix3d>(column.data() + 3 * i) * exact.segment<3>(j);
     }

@@ -14,8 +14,8 @@
 #include "offline/compress/certificate.hpp"
 #include "offline/compress/exact_sample.hpp"
 #include "offline/compress/field_error.hpp"
+#include "offline/compress/field_size.hpp"
 #include "offline/compress/frontier.hpp"
-#include "offline/compress/model_field.hpp"
 #include "offline/compress/model_tables.hpp"
 #include "offline/compress/pattern_search.hpp"
 
@@ -26,9 +26,6 @@ constexpr std::size_t search_patches = 16;  // the worst ones, which encodings a
 constexpr double ranking_threshold = 0.005;
 constexpr std::size_t stream_columns = 64;  // read at a time
 constexpr double first_floor = 0.0005, least_floor = 1e-5;
-constexpr int field_rounds = 12;  // of choosing what fields leave out
-// rounding to 8 significant bits alone errs by a thousandth of a column, and up to four of a block
-constexpr double least_rms_of_one_half = 0.004, least_column_of_one_half = 0.01;
 constexpr int rounds = 6;                  // of search and measurement per transform
 constexpr double safety = 0.97;            // of the patches' error, which the search sees only a part of
 constexpr double certificate_share = 0.5;  // of the least eigenvalue's estimate
@@ -40,12 +37,12 @@ void require_fit(const CompressionInput& input, const SurfaceWavelet& wavelet) {
     throw std::invalid_argument("compression: the mesh has " + std::to_string(input.mesh.vertex_end.size()) +
                                 " levels; a model holds at most " + std::to_string(layout::max_levels));
   }
-  const auto& [rms, column, force, field, peak] = input.accuracy;
-  if (!(rms > 0) || !(column > 0) || !(force > 0) || !(field > 0) || !(peak > 0)) {
-    throw std::invalid_argument("compression: accuracy rms = " + std::to_string(rms) +
-                                ", worst_column = " + std::to_string(column) +
-                                ", patch_force = " + std::to_string(force) + ", field = " + std::to_string(field) +
-                                ", field_peak = " + std::to_string(peak) + "; all must be positive");
+  const auto& [rms, column, force, field, peak, rough] = input.accuracy;
+  if (!(rms > 0) || !(column > 0) || !(force > 0) || !(field > 0) || !(peak > 0) || !(rough > 0)) {
+    throw std::invalid_argument("compression: accuracy rms = " + std::to_string(rms) + ", worst_column = " +
+                                std::to_string(column) + ", patch_force = " + std::to_string(force) +
+                                ", field = " + std::to_string(field) + ", field_peak = " + std::to_string(peak) +
+                                ", field_rough = " + std::to_string(rough) + "; all must be positive");
   }
   if (wavelet.rows() == 0) throw std::invalid_argument("compression: no node is free and needed");
   if (input.column_nodes != wavelet.nodes()) {
@@ -54,14 +51,25 @@ void require_fit(const CompressionInput& input, const SurfaceWavelet& wavelet) {
   }
 }
 
+// 1 for each domain row with layout::node_read, else 0
+std::vector<std::uint8_t> read_rows(const ModelView& view) {
+  std::vector<std::uint8_t> read;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      read.push_back((level.nodes[i].flags & layout::node_read) != 0 ? 1 : 0);
+    }
+  }
+  return read;
+}
+
 // errors of one level, cut off after it, against its exact compliance
 ConstraintLevelReport measure_coarse(const CompressionInput& input, const SurfaceWavelet& wavelet,
                                      const WaveletCompliance& exact, const ModelView& cut, std::size_t level) {
   const CompressedCompliance compressed(cut);
-  const ModelField fields(cut);
   ContactPatches patches(row_positions(input.mesh, wavelet, level), ExactSample::most_patches);
-  const FieldRows read = read_rows(cut);
-  FieldError error, field_error(read.nodes);
+  const auto read = read_rows(cut);
+  FieldError error, field_error(read);
   const std::size_t rows = wavelet.row_end(level);
   Eigen::MatrixXd blocks(3 * rows, 3);
   for (std::size_t j = 0; j < rows; ++j) {
@@ -71,10 +79,9 @@ ConstraintLevelReport measure_coarse(const CompressionInput& input, const Surfac
     }
     patches.add(blocks, j);
     const double area = wavelet.integrals(level)[j];
-    error.add(compressed.column(level, j), column.data(), area);
-    if (fields.has_column(level, j)) {
-      field_error.add(fields.column(compressed.wavelet(), level, j), column.data(), area);
-    }
+    const auto found = compressed.column(level, j);
+    error.add(found, column.data(), area);
+    field_error.add(found, column.data(), area);
   }
   return {.level = static_cast<std::uint32_t>(level),
           .nodes = rows,
@@ -83,8 +90,7 @@ ConstraintLevelReport measure_coarse(const CompressionInput& input, const Surfac
           .patch_force_error = patches.worst_force_error(compressed, level),
           .field_rms_error = field_error.rms(),
           .field_column_error = field_error.worst_column(),
-          .field_blocks = static_cast<std::size_t>(fields.counts().blocks),
-          .longest_field_column = fields.counts().longest,
+          .field = field_size(cut),
           .patterns = {}};
 }
 
@@ -130,8 +136,12 @@ void store_errors(const CompressionReport& report, ModelData& model) {
     counts.patch_force_error = stored(level.patch_force_error);
     counts.field_rms_error = stored(level.field_rms_error);
     counts.field_column_error = stored(level.field_column_error);
-    counts.field_blocks = level.field_blocks;
-    counts.longest_field_column = level.longest_field_column;
+    for (const PatternErrors& pattern : level.patterns) {
+      if (pattern.contacts > most_accurate_contacts || layout::is_rough(pattern.kind)) continue;
+      counts.field_error = std::max(counts.field_error, stored(pattern.field.worst));
+      counts.field_peak = std::max(counts.field_peak, stored(pattern.peak.worst));
+      counts.force_error = std::max(counts.force_error, stored(pattern.force.worst));
+    }
   }
   model.info.threshold = report.encoding.threshold;
   model.info.lambda_min = report.lambda_min;
@@ -146,11 +156,12 @@ void store_errors(const CompressionReport& report, ModelData& model) {
 }
 
 [[noreturn]] void unreachable_field(const Accuracy& wanted, const PatternErrors& best) {
-  throw std::runtime_error("compression: field = " + std::to_string(wanted.field) + ", field_peak = " +
-                           std::to_string(wanted.field_peak) + " cannot be met; the best found for the pattern `" +
-                           std::string(pattern_name(static_cast<std::uint32_t>(best.kind))) + "` of " +
-                           std::to_string(best.contacts) + " contacts was " + std::to_string(best.field.worst) + ", " +
-                           std::to_string(best.peak.worst) + ": ask for larger errors");
+  throw std::runtime_error(
+      "compression: field = " + std::to_string(wanted.field) + ", field_peak = " + std::to_string(wanted.field_peak) +
+      ", field_rough = " + std::to_string(wanted.field_rough) + " cannot be met; the best found for the pattern `" +
+      std::string(pattern_name(static_cast<std::uint32_t>(best.kind))) + "` of " + std::to_string(best.contacts) +
+      " contacts was " + std::to_string(best.field.worst) + ", " + std::to_string(best.peak.worst) +
+      ": ask for larger errors");
 }
 
 // An encoding of the whole model, measured on everything.
@@ -158,7 +169,6 @@ struct Measured {
   Trial trial;
   std::vector<PatternErrors> patterns;  // at the finest level; only of a trial that meets the rest
   FieldError field;
-  FieldColumnMaker::Counts field_counts;
   std::vector<std::size_t> worst_patches;
   double least_eigenvalue = 0;  // m/N, estimated; only of a trial that meets the accuracy
 };
@@ -178,9 +188,6 @@ class Build {
     model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
     model_.provenance = input.provenance;
     add_representatives(input.mesh, input.flags, model_);
-    const bool fine =
-        input.accuracy.rms < least_rms_of_one_half || input.accuracy.worst_column < least_column_of_one_half;
-    model_.info.field_halves = fine ? 2 : 1;
     for (const std::size_t node : wavelet_.nodes()) {
       read_.push_back((input.flags[node] & layout::node_read) != 0 ? 1 : 0);
     }
@@ -249,7 +256,7 @@ class Build {
       if (!chosen.meets(aim)) return false;
       if (!meet_patterns(bench, sample_.patches().choose(searched), floor, chosen)) return false;
       const Measured measured = measure(compliance, chosen);
-      if (measured.trial.meets(input_.accuracy) && meets(measured.field) && measured.least_eigenvalue > 0) {
+      if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
         describe(measured);
         describe_levels(compliance, measured);
         describe_frontier(bench, sample_.patches().choose(searched), floor);
@@ -277,13 +284,15 @@ class Build {
   }
 
   [[nodiscard]] Measured measure(const WaveletCompliance& compliance, const Trial& chosen) {
-    Measured measured{.trial = chosen, .patterns = {}, .field = {}, .field_counts = {}, .worst_patches = {}};
+    Measured measured{.trial = chosen, .patterns = {}, .field = FieldError(read_), .worst_patches = {}};
     encode_couplings(compliance, chosen.encoding, model_);
     const EncodedModel encoded(model_);
     const CompressedCompliance all(encoded.view);
     FieldError error;
     visit_exact_columns(input_, part(0.65, 0.75), [&](std::size_t row, const auto& exact, double area) {
-      error.add(all.column(all.finest(), row), exact.data(), area);
+      const auto found = all.column(all.finest(), row);
+      error.add(found, exact.data(), area);
+      measured.field.add(found, exact.data(), area);
     });
     measured.trial.rms = error.rms();
     measured.trial.worst_column = error.worst_column();
@@ -295,42 +304,15 @@ class Build {
     if (measured.trial.meets(input_.accuracy)) {
       measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.75, 0.85));
       measured.patterns = summarise(AnsweredContacts(encoded.view, all, contacts_).all_errors(all.finest()));
-      choose_field(measured);
     }
     return measured;
-  }
-
-  [[nodiscard]] bool meets(const FieldError& error) const {
-    return error.rms() <= input_.accuracy.rms && error.worst_column() <= input_.accuracy.worst_column;
-  }
-
-  // Where the sample promised too much of the fields they leave out less. The file does not change by that.
-  void choose_field(Measured& measured) {
-    FieldThresholds& thresholds = measured.trial.field;
-    for (int round = 0; round < field_rounds; ++round) {
-      model_.info.field_threshold = static_cast<float>(thresholds.spread);
-      model_.info.field_peak_threshold = static_cast<float>(thresholds.peak);
-      const EncodedModel encoded(model_);
-      const ModelField fields(encoded.view);
-      measured.field = FieldError(read_);
-      measured.field_counts = fields.counts();
-      visit_exact_columns(input_, part(0.85, 0.9), [&](std::size_t row, const auto& exact, double area) {
-        if (!fields.has_column(wavelet_.finest(), row)) return;
-        measured.field.add(fields.column(wavelet_, wavelet_.finest(), row), exact.data(), area);
-      });
-      if (meets(measured.field)) return;
-      const double excess = std::max(measured.field.rms() / input_.accuracy.rms,
-                                     measured.field.worst_column() / input_.accuracy.worst_column);
-      thresholds.spread *= std::min(0.9, 1 / excess);
-      thresholds.peak *= std::min(0.9, 1 / excess);
-    }
   }
 
   // asks the next search for as much less as this one's choice fell short by; patches it has learned of itself
   void tighten(Accuracy& aim, const Measured& measured) const {
     const Trial& trial = measured.trial;
     const Accuracy& wanted = input_.accuracy;
-    if (trial.meets(wanted)) {  // but it is not positive definite, or its field falls short
+    if (trial.meets(wanted)) {  // but it is not positive definite
       aim.patch_force *= 0.5;
       return;
     }
@@ -340,7 +322,6 @@ class Build {
 
   void describe(const Measured& measured) {
     report_.encoding = measured.trial.encoding;
-    report_.field = measured.trial.field;
     report_.trials.push_back(measured.trial);
     report_.lambda_min = certificate_share * measured.least_eigenvalue;
     report_.patches = sample_.patches().size();
@@ -364,8 +345,7 @@ class Build {
                               .patch_force_error = finest.trial.patch_force,
                               .field_rms_error = finest.field.rms(),
                               .field_column_error = finest.field.worst_column(),
-                              .field_blocks = static_cast<std::size_t>(finest.field_counts.blocks),
-                              .longest_field_column = finest.field_counts.longest,
+                              .field = field_size(encoded.view),
                               .patterns = finest.patterns});
     for (auto& level : report_.levels) {
       level.kept_blocks = encoded.view.level[level.level].counts->kept_blocks;
@@ -382,7 +362,7 @@ class Build {
     std::vector<Trial> trials = report_.trials;
     fill_gaps(bench, patches, report_.encoding.threshold, floor, trials);
     leave_out_near(report_.encoding.threshold, trials);
-    report_.frontier = measure_frontier(bench, samples, report_.field, trials);
+    report_.frontier = measure_frontier(bench, samples, trials);
     for (Trial& point : report_.frontier) {
       if (point.encoding.threshold != report_.encoding.threshold) continue;
       point.levels = costs;

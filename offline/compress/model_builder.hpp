@@ -9,6 +9,7 @@
 #include "formats/layout.hpp"
 #include "formats/writer.hpp"
 #include "offline/compress/encoding_search.hpp"
+#include "offline/compress/field_size.hpp"
 #include "offline/compress/pattern_errors.hpp"
 
 namespace greenloop::offline {
@@ -33,10 +34,9 @@ struct ConstraintLevelReport {
   std::uint32_t level = 0;
   std::size_t nodes = 0, kept_blocks = 0, dense_blocks = 0;
   double rms_error = 0, worst_column_error = 0, patch_force_error = 0;
-  double field_rms_error = 0, field_column_error = 0;  ///< of fields, over the columns that touchable nodes use
-  std::size_t field_blocks = 0;                        ///< in the field columns of a body
-  std::uint32_t longest_field_column = 0;              ///< blocks
-  std::vector<PatternErrors> patterns;                 ///< of the complete model's answers at the level
+  double field_rms_error = 0, field_column_error = 0;  ///< the same at the rows that are read
+  FieldSize field;
+  std::vector<PatternErrors> patterns;  ///< of the complete model's answers at the level
 };
 
 /// What a wavelet made of a body or a sample of it.
@@ -48,7 +48,6 @@ struct WaveletTrial {
 
 struct CompressionReport {
   Encoding encoding;
-  FieldThresholds field;
   double lambda_min = 0;                      ///< m/N, certified
   std::size_t patches = 0;                    ///< patches that patch_force_error was measured on
   std::vector<ConstraintLevelReport> levels;  ///< coarse to fine

@@ -16,12 +16,15 @@ constexpr int steps = 8;                    // of the search between two checks
 constexpr double near = 1.06;               // thresholds that are not told apart
 constexpr double good = 0.95;               // an excess not worth improving
 
-double excess_of(double field, double peak, const Accuracy& accuracy) {
-  return std::max(field / accuracy.field, peak / accuracy.field_peak);
+double excess_of(layout::PatternKind kind, double field, double peak, const Accuracy& accuracy) {
+  return layout::is_rough(kind) ? field / accuracy.field_rough
+                                : std::max(field / accuracy.field, peak / accuracy.field_peak);
 }
 
 double excess_of(const PatternErrors& errors, const Accuracy& accuracy) {
-  return errors.contacts > most_accurate_contacts ? 0 : excess_of(errors.field.worst, errors.peak.worst, accuracy);
+  return errors.contacts > most_accurate_contacts
+             ? 0
+             : excess_of(errors.kind, errors.field.worst, errors.peak.worst, accuracy);
 }
 
 Sites all_sites(const ExactContacts& contacts) {
@@ -96,7 +99,7 @@ double pattern_excess(const std::vector<AnswerError>& errors, const Accuracy& ac
   double excess = 0;
   for (const auto& error : errors) {
     if (error.contacts > most_accurate_contacts) continue;
-    excess = std::max(excess, excess_of(error.field, error.peak, accuracy));
+    excess = std::max(excess, excess_of(error.kind, error.field, error.peak, accuracy));
   }
   return excess;
 }
@@ -113,7 +116,8 @@ std::vector<AnswerError> answer_errors(const TrialBench& bench, const ExactConta
 }
 
 double search_threshold(const TrialBench& bench, const ExactContacts& contacts, double threshold, double floor) {
-  if (!std::isfinite(bench.accuracy.field) && !std::isfinite(bench.accuracy.field_peak)) return threshold;
+  const auto& [rms, column, force, field, peak, rough] = bench.accuracy;
+  if (!std::isfinite(field) && !std::isfinite(peak) && !std::isfinite(rough)) return threshold;
   ThresholdSearch search(bench, contacts, floor);
   for (int round = 0; round < checks; ++round) {
     const double excess = search.check(threshold);

@@ -11,8 +11,9 @@ namespace greenloop::offline {
 /// Contacts that the scene's accuracy of fields speaks of, at most.
 inline constexpr std::uint32_t most_accurate_contacts = 64;
 
-/// How many times too large the worst errors are: the largest of field / accuracy.field and field_peak /
-/// accuracy.field_peak over patterns of at most most_accurate_contacts contacts; 0 if there are none.
+/// How many times too large the worst errors are: the largest of field / accuracy.field and peak / accuracy.field_peak,
+/// and of field / accuracy.field_rough where layout::is_rough, over patterns of at most most_accurate_contacts
+/// contacts; 0 if there are none.
 [[nodiscard]] double pattern_excess(const std::vector<AnswerError>& errors, const Accuracy& accuracy);
 
 /// The pattern whose worst errors are that much too large: by pattern_excess. `errors` is not empty.

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -37,15 +38,40 @@ std::vector<Contact> contacts_of(const test::Body& body, const ContactSite& site
 }
 
 // what a body that has answered nothing yet does within a budget
-StepReport step(const Model& model, const std::vector<Contact>& contacts, std::uint64_t work,
-                std::vector<float>& force) {
-  const Limits limits{
-      .max_contacts = most_contacts, .cached_factors = 1, .forces_only = true, .glide_cycles = 1, .refining_work = 0};
-  AlignedBytes memory(Elastostatic::required(model, limits).bytes);
-  auto created = Elastostatic::create(model, limits, {memory.data(), memory.size()});
-  REQUIRE(created);
-  force.resize(3 * contacts.size());
-  return created.body.step(contacts, {.work = work}, {force, {}});
+struct Answer {
+  Answer(const Model& model, const std::vector<Contact>& contacts, std::uint64_t work)
+      : force(3 * contacts.size()), field_memory(std::size_t{16} * model.node_count()) {
+    const Limits limits{.max_contacts = most_contacts, .cached_factors = 1, .glide_cycles = 1, .refining_work = 0};
+    AlignedBytes memory(Elastostatic::required(model, limits).bytes);
+    auto created = Elastostatic::create(model, limits, {memory.data(), memory.size()});
+    REQUIRE(created);
+    auto* const field = reinterpret_cast<float*>(field_memory.data());
+    report = created.body.step(contacts, {.work = work}, {force, {field, std::size_t{4} * model.node_count()}});
+  }
+  [[nodiscard]] Eigen::Vector3d displacement(std::size_t node) const {
+    const auto* at = reinterpret_cast<const float*>(field_memory.data()) + 4 * node;
+    return {double{at[0]}, double{at[1]}, double{at[2]}};
+  }
+  StepReport report;
+  std::vector<float> force;
+  AlignedBytes field_memory;
+};
+
+struct FieldErrors {
+  double field = 0, peak = 0;
+};
+FieldErrors field_errors(const test::Body& body, const Answer& answer, const Eigen::VectorXd& exact) {
+  double off = 0, norm = 0, largest_off = 0, largest = 0;
+  for (std::size_t row = 0; row < body.column_nodes.size(); ++row) {
+    const std::size_t node = body.column_nodes[row];
+    const Eigen::Vector3d u = exact.segment<3>(static_cast<Eigen::Index>(3 * row));
+    const double error = (answer.displacement(node) - u).squaredNorm();
+    off += body.area[node] * error;
+    norm += body.area[node] * u.squaredNorm();
+    largest_off = std::max(largest_off, error);
+    largest = std::max(largest, u.squaredNorm());
+  }
+  return {std::sqrt(off / norm), std::sqrt(largest_off / largest)};
 }
 
 TEST_CASE("the loop answers patterns with the errors that are measured for its constraint level") {
@@ -56,10 +82,9 @@ TEST_CASE("the loop answers patterns with the errors that are measured for its c
   const AnsweredContacts answered(file.view, compressed, exact);
   const auto opened = Model::open(file.bytes.span());
   REQUIRE(opened);
-  const auto need = Elastostatic::required(opened.model, {.max_contacts = most_contacts, .forces_only = true});
+  const auto need = Elastostatic::required(opened.model, {.max_contacts = most_contacts});
 
   std::set<std::uint32_t> levels;
-  std::vector<float> force;
   for (std::size_t s = 0; s < exact.sites().size(); ++s) {
     const ContactSite& site = exact.sites()[s];
     if (site.rows.size() > most_contacts) continue;
@@ -67,15 +92,20 @@ TEST_CASE("the loop answers patterns with the errors that are measured for its c
     const Eigen::VectorXd wanted = exact.force(s).col(0);
     for (double work = static_cast<double>(need.least_work);
          work < 2 * static_cast<double>(need.worst_work[file.view.levels - 1]); work *= 1.5) {
-      const StepReport report = step(opened.model, contacts, static_cast<std::uint64_t>(work), force);
+      const Answer answer(opened.model, contacts, static_cast<std::uint64_t>(work));
+      const StepReport& report = answer.report;
       REQUIRE(report.status <= Status::coarser);
-      if (report.finer_level != report.constraint_level) continue;  // a mixed set
+      if (report.finer_level != report.constraint_level || report.field_level + 1 < file.view.levels) continue;
       levels.insert(report.constraint_level);
-      const Eigen::VectorXd found = Eigen::Map<const Eigen::VectorXf>(force.data(), wanted.size()).cast<double>();
+      const Eigen::VectorXd found =
+          Eigen::Map<const Eigen::VectorXf>(answer.force.data(), wanted.size()).cast<double>();
       const AnswerError error = answered.site_errors(s, report.constraint_level).front();
       CAPTURE(s);
       CAPTURE(report.constraint_level);
       CHECK(std::abs((found - wanted).norm() / wanted.norm() - error.force) < 1e-4 * (1 + error.force));
+      const FieldErrors field = field_errors(body, answer, exact.field(s).col(0));
+      CHECK(std::abs(field.field - error.field) < 1e-4 * (1 + error.field));
+      CHECK(std::abs(field.peak - error.peak) < 1e-4 * (1 + error.peak));
     }
   }
   CHECK(levels.size() > 1);

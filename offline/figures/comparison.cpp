@@ -18,11 +18,9 @@ void try_quanta(const TwoSidedForm& form, const ComparisonPlan& plan, BodyCompar
   }
 }
 
-void time_spreads(const TwoSidedForm& form, const ComparisonPlan& plan, BodyComparison& result) {
-  constexpr double no_peak = 1;  // the spread decides
-  for (const double spread : plan.spreads) {
-    const ModelData model = form.model(plan.summation_threshold, {.spread = spread, .peak = no_peak});
-    result.summation.push_back(time_summation(model, plan.contacts, plan.rounds));
+void time_fields(const TwoSidedForm& form, const ComparisonPlan& plan, BodyComparison& result) {
+  for (const double threshold : plan.summation_thresholds) {
+    result.summation.push_back(time_summation(form.model(threshold), plan.contacts, plan.rounds));
   }
 }
 
@@ -45,7 +43,7 @@ std::optional<double> ratio_at(const std::vector<LevelRates>& levels, double rms
 
 BodyComparison compare_forms(const ExactBody& body, const ComparisonPlan& plan, const Progress& progress) {
   BodyComparison result{.name = body.name, .rows = 0, .forms = {}, .quanta = {}, .summation = {}};
-  double floor = plan.summation_threshold;
+  double floor = *std::min_element(plan.summation_thresholds.begin(), plan.summation_thresholds.end());
   for (const double threshold : plan.two_sided_thresholds) floor = std::min(floor, threshold);
   double done = 0;
   constexpr double share = 1.0 / std::size(wavelet_kinds);
@@ -61,7 +59,7 @@ BodyComparison compare_forms(const ExactBody& body, const ComparisonPlan& plan, 
     if (&kind != std::end(wavelet_kinds) - 1) continue;
     result.rows = form.rows();
     try_quanta(form, plan, result);
-    time_spreads(form, plan, result);
+    time_fields(form, plan, result);
   }
   return result;
 }

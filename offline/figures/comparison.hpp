@@ -16,9 +16,8 @@ struct ComparisonPlan {
   std::vector<double> column_thresholds = {0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5};         ///< epsilon
   std::vector<double> two_sided_thresholds = {0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};  ///< tau
   std::vector<double> quanta = {0.25, 0.35, 0.5, 0.7, 1};                                          ///< of tau
-  double summation_threshold = 0.01;                                                   ///< tau of the models timed
-  std::vector<double> spreads = {0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1};  ///< of their field columns
-  std::size_t contacts = 16, rounds = 30;                                              ///< of the summation
+  std::vector<double> summation_thresholds = {0.0025, 0.0035, 0.005, 0.007, 0.01};  ///< tau, of models timed
+  std::size_t contacts = 16, rounds = 30;                                           ///< of the summation
 };
 
 /// The two forms with one wavelet, on every constraint level, coarse to fine.

@@ -31,8 +31,7 @@ const ComparisonPlan& plan() {
   static const ComparisonPlan value{.column_thresholds = {0.005, 0.02, 0.1, 0.3},
                                     .two_sided_thresholds = {0.0025, 0.01, 0.04, 0.16},
                                     .quanta = {0.5},
-                                    .summation_threshold = 0.01,
-                                    .spreads = {0.0005, 0.001, 0.003, 0.01},
+                                    .summation_thresholds = {0.002, 0.004, 0.006, 0.01},
                                     .contacts = 12,
                                     .rounds = 3};
   return value;
@@ -120,10 +119,10 @@ TEST_CASE("at equal compression two-sided forces are closer than one-sided ones"
 }
 
 TEST_CASE("a step's work is linear in the blocks summed") {
-  REQUIRE(compared().summation.size() == plan().spreads.size());
+  REQUIRE(compared().summation.size() == plan().summation_thresholds.size());
   const SummationFit fit = fit_summation(compared().summation);
   CHECK(fit.work.r_squared > 0.999);
-  CHECK(fit.work.slope == doctest::Approx(10).epsilon(0.05));  // field_work: 10 units a block
+  CHECK(fit.work.slope == doctest::Approx(12).epsilon(0.05));  // block_work
   CHECK(fit.work.intercept > 0);
   for (const SummationPoint& point : compared().summation) CHECK(point.seconds > 0);
 }

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "offline/compress/encoding_search.hpp"
-#include "offline/compress/model_field.hpp"
+#include "offline/compress/field_size.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {
@@ -41,20 +41,22 @@ std::vector<TouchableNode> touchable_nodes(const ModelView& view) {
 // Sets that are pressed by a thousandth of the body's height.
 struct SpreadContacts {
   std::vector<std::vector<Contact>> sets;
-  double blocks = 0;  // of their field columns, mean
+  double blocks = 0;  // of their fields, mean
 };
 
 SpreadContacts spread_contacts(const ModelView& view, std::size_t contacts) {
   const auto nodes = touchable_nodes(view);
   if (nodes.size() < contacts * sets) throw std::runtime_error("summation: the body has too few touchable nodes");
   const float depth = 0.001F * (view.info->box_max[2] - view.info->box_min[2]);
-  const ModelField field(view);
+  FieldCounter field(view);
   SpreadContacts all{.sets = std::vector<std::vector<Contact>>(sets)};
+  std::vector<std::vector<std::uint32_t>> rows(sets);
   for (std::size_t i = 0; i < contacts * sets; ++i) {
     const auto [node, row] = nodes[i * nodes.size() / (contacts * sets)];
     all.sets[i % sets].push_back({.node = node, .displacement = {0, 0, -depth}});
-    all.blocks += static_cast<double>(field.length(view.levels - 1, row)) / sets;
+    rows[i % sets].push_back(row);
   }
+  for (const auto& set : rows) all.blocks += static_cast<double>(field.blocks_of(set)) / sets;
   return all;
 }
 

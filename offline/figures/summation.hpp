@@ -10,7 +10,7 @@ namespace greenloop::offline {
 
 /// A step's cost on one model.
 struct SummationPoint {
-  double blocks = 0;   ///< of the field columns a step sums, mean over the contact sets
+  double blocks = 0;   ///< that the field of a step sums, mean over the contact sets
   double work = 0;     ///< units, mean over the contact sets
   double seconds = 0;  ///< of the thread's processor time, median of the rounds
 };

@@ -15,7 +15,6 @@ ModelData tables_of(const ExactBody& body, const SurfaceWavelet& wavelet) {
   facts.max_contacts = 16;
   facts.step_work = 1;
   ModelData tables = describe_mesh(body.mesh, body.flags, body.area, wavelet, facts);
-  tables.info.field_halves = 1;
   tables.provenance = "{}";
   add_representatives(body.mesh, body.flags, tables);
   return tables;
@@ -61,7 +60,7 @@ std::vector<LevelRates> TwoSidedForm::rates(const std::vector<double>& threshold
   for (const double threshold : thresholds) {
     trials.push_back(try_encoding(bench(), patches_, {.threshold = threshold, .quantum = quantum * threshold}));
   }
-  auto points = measure_frontier(bench(), coarse_, {}, trials);
+  auto points = measure_frontier(bench(), coarse_, trials);
   std::reverse(points.begin(), points.end());
   std::vector<LevelRates> levels;
   for (const LevelTrial& first : points.front().levels) {
@@ -74,10 +73,6 @@ std::vector<LevelRates> TwoSidedForm::rates(const std::vector<double>& threshold
   return levels;
 }
 
-ModelData TwoSidedForm::model(double threshold, const FieldThresholds& field) const {
-  ModelData data = encoded_model(bench(), encoding_at(threshold));
-  set_field(field, data);
-  return data;
-}
+ModelData TwoSidedForm::model(double threshold) const { return encoded_model(bench(), encoding_at(threshold)); }
 
 }  // namespace greenloop::offline

@@ -25,8 +25,8 @@ class TwoSidedForm {
   /// Every constraint level's points, coarse to fine. `quantum`: of the values, relative to the threshold.
   [[nodiscard]] std::vector<LevelRates> rates(const std::vector<double>& thresholds, double quantum) const;
 
-  /// The model at a threshold whose fields leave out what `field` says.
-  [[nodiscard]] ModelData model(double threshold, const FieldThresholds& field) const;
+  /// The model at a threshold.
+  [[nodiscard]] ModelData model(double threshold) const;
 
   [[nodiscard]] std::size_t rows() const { return wavelet_.rows(); }  ///< domain nodes
 

@@ -149,13 +149,11 @@ json compression_record(const CompressionReport& report, std::uint32_t contacts)
                       {"worst_patch_force_error", std::min(level.patch_force_error, 1e9)},
                       {"field_rms_error", level.field_rms_error},
                       {"field_column_error", level.field_column_error},
-                      {"field_blocks", level.field_blocks},
-                      {"longest_field_column", level.longest_field_column}});
+                      {"field_blocks", level.field.blocks},
+                      {"longest_field_column", level.field.longest}});
   }
   return {{"threshold", report.encoding.threshold},
           {"quantum", report.encoding.quantum},
-          {"field_threshold", report.field.spread},
-          {"field_peak_threshold", report.field.peak},
           {"lambda_min", report.lambda_min},
           {"patches", report.patches},
           {"dense_bytes", report.dense_bytes},
@@ -206,7 +204,8 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, const json& sol
                                             .worst_column = scene.accuracy.worst_column,
                                             .patch_force = scene.accuracy.patch_force,
                                             .field = scene.accuracy.field,
-                                            .field_peak = scene.accuracy.field_peak},
+                                            .field_peak = scene.accuracy.field_peak,
+                                            .field_rough = scene.accuracy.field_rough},
                                .wavelet = scene.wavelet.value_or(layout::Wavelet::lifted_linear),
                                .facts = scene_facts(scene, solve),
                                .provenance = provenance,

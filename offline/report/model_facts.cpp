@@ -11,6 +11,7 @@
 
 #include "formats/describe.hpp"
 #include "formats/stored_blocks.hpp"
+#include "offline/compress/field_size.hpp"
 #include "offline/report/axis.hpp"
 
 namespace greenloop::offline {
@@ -105,6 +106,7 @@ FactGroup compression_facts(const ModelView& model) {
   const layout::Level& finest = finest_level(model);
   const auto dense = static_cast<double>(dense_bytes(model)), file = static_cast<double>(model.header->file_bytes);
   const double kept = static_cast<double>(std::max<std::uint64_t>(finest.kept_blocks, 1));
+  const FieldSize field = field_size(model);
   return {
       "Compression",
       {{"model file", readable_bytes(file)},
@@ -118,8 +120,8 @@ FactGroup compression_facts(const ModelView& model) {
        {"RMS error", readable_percent(finest.rms_error)},
        {"worst column's error", readable_percent(finest.worst_column_error)},
        {"worst patch force's error", readable_percent(finest.patch_force_error)},
-       {"blocks of a body's field columns", fmt::format("{}, at most {} in one", readable_count(finest.field_blocks),
-                                                        readable_count(finest.longest_field_column))},
+       {"blocks that a field is summed of", fmt::format("{}, at most {} by a force on one node",
+                                                        readable_count(field.blocks), readable_count(field.longest))},
        {"field's RMS error", readable_percent(finest.field_rms_error)},
        {"field's worst column", readable_percent(finest.field_column_error)},
        {"positive definite", certificate(model)},

@@ -11,6 +11,7 @@
 
 #include "formats/model_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "offline/compress/field_size.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
 #include "offline/report/level_frontiers.hpp"
@@ -256,9 +257,11 @@ TEST_CASE("facts say wavelet, bits, layers and certificate") {
       nibbles += layout::value_bits[layer] == 4 ? count : 0;
     }
   }
-  const layout::Level& finest = data.levels.back().counts;
-  CHECK(fact(data, "blocks of a body's field columns") ==
-        readable_count(finest.field_blocks) + ", at most " + readable_count(finest.longest_field_column) + " in one");
+  write_file(folder.path() / "size.gloop", encode(data));
+  const ModelFile file = open_model_file(folder.path() / "size.gloop");
+  const FieldSize field = field_size(file.view);
+  CHECK(fact(data, "blocks that a field is summed of") ==
+        readable_count(field.blocks) + ", at most " + readable_count(field.longest) + " by a force on one node");
   CHECK(has(fact(data, "couplings by bits per value"), "4: " + readable_count(nibbles)));
   CHECK(fact(data, "positive definite") == "none");
   data.info.lambda_min = 2.5e-5;

@@ -50,6 +50,7 @@ struct AccuracyGoal {
   double worst_column = 0.1;  ///< largest block-wise relative error of any column, 0..1
   double patch_force = 0.05;  ///< largest relative error of the nodal forces that hold a 64-node patch, 0..10
   double field = 0.05;        ///< largest relative error of the field of any contact pattern, 0..10
+  double field_rough = 0.2;   ///< `field` of alternating and random displacements, 0..10
   double field_peak = 0.1;    ///< largest error at a node over the largest displacement, of any pattern, 0..10
 };
 

@@ -85,7 +85,7 @@ std::string accuracy_text(const AccuracyGoal& accuracy) {
   };
   return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) +
          "\npatch_force = " + number(accuracy.patch_force) + goal("field", accuracy.field) +
-         goal("field_peak", accuracy.field_peak) + "\n";
+         goal("field_peak", accuracy.field_peak) + goal("field_rough", accuracy.field_rough) + "\n";
 }
 
 std::string compression_text(std::optional<layout::Wavelet> wavelet) {

@@ -78,8 +78,10 @@ class FieldSums {
     Body& body = *placed_.body;
     for (const Columns& set : sets_) {
       const auto count = static_cast<std::uint32_t>(set.column.size());
-      compute_field({*body.view, body.columns, body.parents}, {count, set.column.data(), set.force.data()},
-                    {level_, level_}, body.field_scratch(), x_.data());
+      clear(body.touched);
+      touch(body.refinement, set.column.data(), count, body.touched);
+      compute_field(body.field_model(), {count, set.column.data(), set.force.data()}, body.touched, {level_, level_},
+                    body.field_scratch(), x_.data());
     }
   }
 

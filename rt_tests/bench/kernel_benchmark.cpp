@@ -96,21 +96,22 @@ TransformFigures measure_transform(const Model& model, const GreenStore& store, 
   const ExactColumns columns(store, one);
   const float unit[3] = {1, 0.5F, -0.25F};
   Eigen::VectorXf field(3 * static_cast<Eigen::Index>(store.contents().row_node.size()));
-  std::vector<Float4> x(view.node_count), sums(view.domain_count), value(view.domain_count);
-  std::vector<std::uint8_t> touched(view.domain_count), ones(view.domain_count);
-  for (std::uint32_t k = 0; k < patch.body.set.columns; ++k) {
-    add_column(patch.body.columns, patch.body.set.column[k], patch.level, splat3(1e-3F), {sums.data(), ones.data()});
-  }
+  std::vector<Float4> x(view.node_count);
+  Body& body = patch.body;
+  const std::vector<float> forces(patch.order(), 1e-3F);
+  transform_forces(body.refinement, {body.set.columns, body.set.column, forces.data()}, body.touched, body.force);
+  sum_couplings(body.field_model(), body.touched, view.domain_count, body.force, body.field_sums);
+  scale_sums(view, view.domain_count, body.field_sums);
+  const std::vector<Float4> sums(body.field_sums.of_blocks, body.field_sums.of_blocks + view.domain_count);
+  std::vector<Float4> value(view.domain_count);
   std::vector<double> transform, dense, ratio;
   for (std::size_t round = 0; round < rounds; ++round) {
     dense.push_back(time_of(at_once, [&] { columns.sum(one.front(), unit, field); }));
     double sum = 0;
     for (std::size_t i = 0; i < at_once; ++i) {
       value = sums;
-      touched = ones;
       sum += time_of(1, [&] {
-        inverse_transform(view, patch.body.parents, {patch.level, patch.level}, {value.data(), touched.data()},
-                          x.data());
+        inverse_transform(view, body.parents, {patch.level, patch.level}, value.data(), x.data());
       });
     }
     transform.push_back(sum / static_cast<double>(at_once));

@@ -90,31 +90,24 @@ class RooflineRun {
 
   void measure_field(Patch& patch) {
     const Body& body = patch.body;
-    const ContactSet& set = body.set;
-    std::vector<Float4> x(view_->node_count), value(view_->domain_count);
-    std::vector<std::uint8_t> touched(view_->domain_count);
-    const SparseCoefficients sums{value.data(), touched.data()};
+    std::vector<Float4> x(view_->node_count);
     const auto sum = [&] {
-      for (std::uint32_t k = 0; k < set.columns; ++k) {
-        add_column(body.columns, set.column[k], patch.level, splat3(1e-6F), sums);
-      }
+      sum_couplings(body.field_model(), body.touched, view_->domain_count, body.force, body.field_sums);
     };
-    sum();
-    const auto moved = static_cast<double>(std::count(touched.begin(), touched.end(), 1));
-    const auto blocks = static_cast<double>(count_field_blocks(body.columns, set, patch.level));
-    RooflinePoint columns{.kernel = "field columns",
+    const auto moved = static_cast<double>(view_->domain_count);
+    RooflinePoint columns{.kernel = "field couplings",
                           .contacts = patch.set.size(),
-                          .bytes = blocks * sizeof(ColumnBlock) + moved * 2 * sizeof(Float4),
-                          .flops = blocks * 18};
+                          .bytes = field_bytes(body) + moved * 2 * sizeof(Float4),
+                          .flops = field_operations(body)};
     add(columns, [&] { return time_of(at_once, sum); });
-    columns.kernel = "field columns, cold";
+    columns.kernel = "field couplings, cold";
     add(columns, streams_.back(), [&] { return time_once(sum); });
 
     const bool lifted = layout::is_lifted(static_cast<layout::Wavelet>(view_->info->wavelet));
     const auto odd = static_cast<double>(view_->domain_count - view_->level[0].counts->domain_count);
     add({.kernel = "inverse transform",
          .contacts = patch.set.size(),
-         .bytes = view_->node_count * 2.0 * sizeof(Float4) + odd * sizeof(ParentOffsets) + view_->domain_count +
+         .bytes = view_->node_count * 2.0 * sizeof(Float4) + odd * sizeof(ParentOffsets) +
                   moved * (2 * sizeof(Float4) + (lifted ? sizeof(layout::RefinementRecord) : 0)),
          .flops = odd * (has_stencils(*view_) ? 33 : 6) + moved * (lifted ? 15 : 3)},
         [&] {
@@ -122,7 +115,7 @@ class RooflineRun {
           for (std::size_t i = 0; i < at_once; ++i) {
             sum();
             us += time_once([&] {
-              inverse_transform(*view_, body.parents, {patch.level, patch.level}, sums, x.data());
+              inverse_transform(*view_, body.parents, {patch.level, patch.level}, body.field_sums.of_blocks, x.data());
             });
           }
           return us / at_once;
@@ -163,6 +156,44 @@ class RooflineRun {
             cholesky_solve(patch.order(), patch.stride(), factor.data(), solution.data());
           });
         });
+  }
+
+  // of all couplings of touched coefficients, of tiles with what they lack
+  double field_operations(const Body& body) const {
+    std::size_t operations = 0;
+    for (std::uint32_t q = 0; q <= body.touched.finest; ++q) {
+      for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
+        const std::uint32_t coefficient = body.touched.list[q][k];
+        operations += coefficient < body.base.columns ? 18 * std::size_t{BaseColumns::width} * body.base.tiles : 0;
+        for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+          operations +=
+              18 * column_length(view_->level[q].couplings[layer], coefficient - view_->level[q].domain_begin);
+          operations += 18 * column_length(body.mirrored.layer[layer], coefficient);
+        }
+      }
+    }
+    return static_cast<double>(operations);
+  }
+
+  // of the same, with the indices of their rows, and of their scales
+  double field_bytes(const Body& body) const {
+    std::size_t bytes = 0;
+    const auto add_column = [&](const CouplingsView& couplings, std::uint32_t layer, std::uint32_t column) {
+      const std::size_t block = (9 * layout::value_bits[layer] + 7) / 8 + couplings.index_bytes;
+      bytes += block * column_length(couplings, column);
+    };
+    for (std::uint32_t q = 0; q <= body.touched.finest; ++q) {
+      for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
+        const std::uint32_t coefficient = body.touched.list[q][k];
+        bytes += sizeof(layout::Scale);
+        bytes += coefficient < body.base.columns ? BaseColumns::tile_bytes * body.base.tiles : 0;
+        for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+          add_column(view_->level[q].couplings[layer], layer, coefficient - view_->level[q].domain_begin);
+          add_column(body.mirrored.layer[layer], layer, coefficient);
+        }
+      }
+    }
+    return static_cast<double>(bytes);
   }
 
   // of the couplings between touched coefficients, as they lie in the file, of the indices of all blocks in their

@@ -79,9 +79,9 @@ struct ScriptOutcome {
 };
 
 /// The digests of the script on write_recorded_model's models: what every target has to find.
-inline constexpr std::uint64_t recorded_digest = 0x89e2f8fbb7b8ac3c;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xfc7e7e70b6e534b4;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0x8ff53ec784529043;
+inline constexpr std::uint64_t recorded_digest = 0xedd51eb3146ab249;  ///< lifted Linear wavelets
+inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xa398c99615c64c55;
+inline constexpr std::uint64_t recorded_butterfly_digest = 0xa0339b07d556c417;
 
 /// A body that ran the whole script, or why it did not.
 struct RecordedRun {

@@ -83,7 +83,6 @@ ModelData arbitrary_model(layout::Wavelet wavelet) {
     level.counts.field_column_error = 0.5F;
     level.counts.field_rms_error = 0.25F;
   }
-  allow_all_field_blocks(data);
   return data;
 }
 

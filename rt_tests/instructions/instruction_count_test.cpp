@@ -76,17 +76,17 @@ TEST_CASE("kernels take the same instructions whatever the numbers") {
   const std::uint32_t place = domain_place(view, nodes[nodes.size() / 2]);
   const std::uint32_t column = make_column(1, place);
   std::vector<Float4> x(view.node_count);
+  touch(body.refinement, &column, 1, body.touched);
   const auto field = counts([&](float value) {
     const float force[] = {value, value, value};
-    compute_field({view, body.columns, body.parents}, {1, &column, force}, {1, 1}, body.field_scratch(), x.data());
+    compute_field(body.field_model(), {1, &column, force}, body.touched, {1, 1}, body.field_scratch(), x.data());
   });
   CHECK(all_equal(field));
   CHECK(field[0] > 100);
 
-  touch(body.refinement, &column, 1, body.touched);
   const auto transformed = counts([&](float value) {
-    body.force[place] = Float4{value, value, value, 0};
-    transform_forces(body.refinement, body.touched, body.force);
+    const float force[] = {value, value, value};
+    transform_forces(body.refinement, {1, &column, force}, body.touched, body.force);
     clear_forces(body.touched, body.force);
   });
   CHECK(all_equal(transformed));

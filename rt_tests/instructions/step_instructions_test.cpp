@@ -165,7 +165,6 @@ TestModel with_couplings(std::int16_t value) {
       std::fill(couplings.value.begin(), couplings.value.end(), value);
     }
   }
-  allow_all_field_blocks(data);
   return TestModel(encode(data));
 }
 

@@ -23,9 +23,9 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
                                      {.levels = 3, .epsilon = 0, .quantum = 0},
                                      {.levels = 4},
                                      {.levels = 4, .coarsest_constraint_level = 2, .touchable_above = 0.6},
-                                     {.levels = 5, .field_threshold = 0.01, .touchable_above = 0.5},
+                                     {.levels = 5, .touchable_above = 0.5},
                                      {.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly},
-                                     {.levels = 4, .wavelet = layout::Wavelet::butterfly, .field_threshold = 0.01}};
+                                     {.levels = 4, .wavelet = layout::Wavelet::butterfly}};
   const Limits limits[] = {{.max_contacts = 1, .cached_factors = 1},
                            {.max_contacts = 16, .cached_factors = 3},
                            {.max_contacts = 33, .cached_factors = 8}};

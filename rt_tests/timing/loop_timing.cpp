@@ -89,11 +89,11 @@ void time_kernels(const TestModel& model) {
   });
   SetCounts counts;
   count_factor(body.set, body.touched, body.cost, body.stored, counts);
-  const auto blocks = static_cast<double>(count_field_blocks(body.columns, body.set, c));
+  const auto blocks = static_cast<double>(count_field_blocks(body.field_blocks, body.touched, c));
   const std::vector<float> force(3 * contacts.size(), 1e-3F);
   const ColumnForces forces{body.set.columns, body.set.column, force.data()};
   const double field = median_nanoseconds(20, [&](int) {
-    compute_field({view, body.columns, body.parents}, forces, {c, c}, body.field_scratch(), x.data());
+    compute_field(body.field_model(), forces, body.touched, {c, c}, body.field_scratch(), x.data());
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
@@ -101,7 +101,7 @@ void time_kernels(const TestModel& model) {
                          body.force, 48, matrix.data());
   });
   const double transform = median_nanoseconds(20, [&](int) {
-    inverse_transform(view, body.parents, {c, c}, body.field_scratch(), x.data());
+    inverse_transform(view, body.parents, {c, c}, body.field_sums.of_blocks, x.data());
   });
   std::printf("%u nodes, %u in the domain; 16 contacts touch %llu coefficients, %.0f blocks of the field\n",
               view.node_count, view.domain_count, static_cast<unsigned long long>(counts.coefficients), blocks);

@@ -2,14 +2,11 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <bit>
 #include <map>
 #include <utility>
 
 #include "runtime/column.hpp"
 #include "runtime/domain.hpp"
-#include "runtime/testing/placed_body.hpp"
-#include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
 namespace {
@@ -55,37 +52,10 @@ Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q)
   return interpolate * undo_lifting;
 }
 
-MatrixXd dense_field_columns(const Body& body, std::uint32_t c) {
-  const ModelView& view = *body.view;
-  const Index places = domain_up_to(view, c);
-  MatrixXd columns = MatrixXd::Zero(Index{3} * view.domain_count, 3 * places);
-  for (Index place = 0; place < places; ++place) {
-    const std::uint32_t* begin = body.columns.begin[c] + place * view.levels;
-    for (std::uint32_t b = begin[0]; b < begin[view.levels]; ++b) {
-      const ColumnBlock& block = body.columns.block[b];
-      const Index row = moved_place(block);
-      for (Index k = 0; k < 9; ++k) {
-        columns(3 * row + k % 3, 3 * place + k / 3) +=
-            double{std::bit_cast<float>(std::uint32_t{block.value[k]} << 16)};
-      }
-    }
-  }
-  return columns;
-}
-
 DenseReference::DenseReference(const ModelData& model) : wavelet_(model) {
-  const TestModel file(encode(model));
-  const PlacedBody placed(file.view());
   for (std::uint32_t c = 0; c < wavelet_.levels(); ++c) {
     compliance_.push_back(decoded_compliance(model, c));
-    MatrixXd field = MatrixXd::Zero(3 * wavelet_.end(wavelet_.levels() - 1), 3 * wavelet_.end(c));
-    if (c >= file.view().info->coarsest_constraint_level) {
-      field = dense_field_columns(*placed.body, c);
-    }
-    for (std::uint32_t q = 1; q < wavelet_.levels(); ++q) {
-      wavelet_.inverse(q, field.topRows(3 * wavelet_.end(q)));
-    }
-    field_.push_back(std::move(field));
+    field_.push_back(field_displacements(model, c));
   }
   for (std::uint32_t c = 0; c < wavelet_.levels(); ++c) {
     finest_compliance_.push_back(averages(c, compliance_.back()));

@@ -17,9 +17,6 @@ namespace greenloop {
 /// three rows and columns a domain node.
 [[nodiscard]] Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q);
 
-/// A body's field columns of constraint level c as a matrix: 3 domain by 3 |K(c)|, m/N.
-[[nodiscard]] Eigen::MatrixXd dense_field_columns(const Body& body, std::uint32_t c);
-
 /// The compliances that a model stands for, as dense matrices in double precision: 3 rows and columns per domain node,
 /// by place in the domain. For tests: plain and slow.
 class DenseReference {
@@ -30,7 +27,7 @@ class DenseReference {
   [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c) const { return compliance_[c]; }
   /// Of the averages of level c per force on the nodes of the finest level; m/N.
   [[nodiscard]] const Eigen::MatrixXd& finest_compliance(std::uint32_t c) const { return finest_compliance_[c]; }
-  /// Displacement of the domain per force of level c, by the field columns of a body: 3 domain by 3 |K(c)|.
+  /// Displacement of the domain per force of level c: 3 domain by 3 |K(c)|.
   [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
   /// The averages of level q of displacements of the domain.
   [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;

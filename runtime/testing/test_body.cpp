@@ -67,7 +67,6 @@ ModelData indefinite_model(const SyntheticOptions& options) {
     couplings.value.resize(9 * couplings.index.size(), 30000);
     place += columns;
   }
-  allow_all_field_blocks(data);
   return data;
 }
 
