@@ -14,7 +14,7 @@ struct Body;  // what a body keeps in its arena: runtime/body.hpp
 struct Limits {
   std::uint32_t max_contacts = 64;   ///< 1..4096, contacts per step
   std::uint32_t cached_factors = 8;  ///< 1..1024, capacitance factors kept
-  bool forces_only = false;          ///< no fields: little memory, and no columns to be made at the start
+  bool forces_only = false;          ///< no fields: little memory, and no couplings to be mirrored
   std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
   std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
 };

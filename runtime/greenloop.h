@@ -99,7 +99,7 @@ typedef struct greenloop_fault {
 typedef struct greenloop_limits {
   uint32_t max_contacts;   /* 1..4096, contacts per step */
   uint32_t cached_factors; /* 1..1024, capacitance factors kept */
-  int forces_only;         /* 1: no fields, little memory, and no columns to be made at the start */
+  int forces_only;         /* 1: no fields, little memory */
   uint32_t glide_cycles;   /* 1..256, steps in which the forces go over to another level; 1: at once; 0: 16 */
   uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
 } greenloop_limits;

@@ -91,8 +91,7 @@ TEST_CASE("micrometres of 1 Pa and kilometres of 100 GPa answer as metres of 100
     // forces and compliances by one or two ten-thousandths
     CHECK(force < 4e-4);
     CHECK(difference(scaled.compliance, metres.compliance) < 4e-4);
-    // round-off of the units decides which blocks near its threshold a field column keeps
-    CHECK(field < 2 * test::default_accuracy.worst_column);
+    CHECK(field < 1e-3);  // a field of forces that nearly cancel feels such a value some four times as much
   }
 }
 
