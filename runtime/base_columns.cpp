@@ -13,7 +13,7 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint32_t eight_bits = 2;  // the layer of most large couplings
+constexpr std::uint32_t eight_bits = BaseColumns::quantum_layer;
 constexpr std::uint32_t four_bits = 3;
 constexpr std::uint32_t least_domain = 512;
 static_assert(layout::value_bits[eight_bits] == 8 && layout::value_bits[four_bits] == 4);

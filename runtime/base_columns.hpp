@@ -13,8 +13,9 @@ namespace greenloop {
 /// without gathering. They hold the layers of 8 and 4 bits, as far as these have one quantum; what needs 16 bits stays
 /// among the mirrored couplings.
 struct BaseColumns {
-  static constexpr std::uint32_t width = 8;      ///< coefficients of a tile, of consecutive places
-  static constexpr std::size_t tile_bytes = 72;  ///< element k of its blocks is the 8 bytes from 8 k on
+  static constexpr std::uint32_t quantum_layer = 2;  ///< whose quantum they have: that of 8 bits
+  static constexpr std::uint32_t width = 8;          ///< coefficients of a tile, of consecutive places
+  static constexpr std::size_t tile_bytes = 72;      ///< element k of its blocks is the 8 bytes from 8 k on
 
   std::uint32_t columns = 0;         ///< level 0's, or none
   std::uint32_t tiles = 0;           ///< of a column

@@ -9,8 +9,6 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint32_t base_quantum = 2;  // the layer whose quantum BaseColumns have
-
 // the blocks of a column in rows before `end`
 BlockRange blocks_before(const CouplingsView& couplings, std::uint32_t column, std::uint32_t end) {
   if (couplings.columns == 0) {
@@ -51,7 +49,7 @@ class CoefficientColumn {
     }
     if (coefficient_ < model_.base.columns) {
       model_.add_tiles(model_.base.column(coefficient_), tiles_of(end_),
-                       without_denormals(splat(info.quantum[base_quantum]) * scaled), sums.of_tiles);
+                       without_denormals(splat(info.quantum[BaseColumns::quantum_layer]) * scaled), sums.of_tiles);
     }
     const bool whole = end_ == model_.refinement.view->domain_count;
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
