@@ -33,6 +33,8 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
       return fmt::format("Refinement({})", a);
     case SectionKind::stencils:
       return fmt::format("Stencils({})", a);
+    case SectionKind::predictions:
+      return fmt::format("Predictions({})", a);
     case SectionKind::representatives:
       return fmt::format("Representatives({}, {})", a, b);
     case SectionKind::scales:
@@ -55,6 +57,8 @@ std::string_view wavelet_name(std::uint32_t wavelet) {
       return "lifted butterfly";
     case layout::Wavelet::butterfly:
       return "butterfly";
+    case layout::Wavelet::equilibrated:
+      return "equilibrated";
   }
   return "unknown";
 }

@@ -14,6 +14,7 @@
 //       BaseTriangles                                    only q = 0: u32 [3 * base_triangle_count]
 //       Refinement(q)                                    only q > 0: RefinementRecord [node_count(q)]
 //       Stencils(q)                                      only q > 0, Butterfly: StencilRecord [domain_count(q)]
+//       Predictions(q)                                   only q > 0, Equilibrated: PredictionsHeader and its arrays
 //       Representatives(c, q) for c = first..q           u32 [node_count(q)]: node of K(c) that stands for a node
 //       Representatives(q, r) for r = 0..q-1             u32 [node_count(r)]
 //       Scales(q)                                        Scale [domain_count(q)]
@@ -44,7 +45,7 @@ namespace greenloop::layout {
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
 inline constexpr std::uint16_t version_major = 4;
-inline constexpr std::uint16_t version_minor = 0;
+inline constexpr std::uint16_t version_minor = 1;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
 inline constexpr std::uint32_t none = 0xffffffff;  ///< no node
@@ -62,6 +63,7 @@ enum class SectionKind : std::uint32_t {
   couplings = 11,       ///< (q, layer) CouplingsHeader and its arrays
   stencils = 12,        ///< (q) StencilRecord[]
   patterns = 13,        ///< (q) PatternRecord[]
+  predictions = 14,     ///< (q) PredictionsHeader and its arrays
 };
 
 /// Couplings are stored in layers by size. The first, of a coarser quantum, is for what is too large for the second;
@@ -95,9 +97,15 @@ struct SectionEntry {
 static_assert(sizeof(SectionEntry) == 32);
 
 enum class Problem : std::uint32_t { elastostatic = 1 };
-enum class Wavelet : std::uint32_t { lifted_linear = 1, linear = 2, lifted_butterfly = 3, butterfly = 4 };
+enum class Wavelet : std::uint32_t {
+  lifted_linear = 1,
+  linear = 2,
+  lifted_butterfly = 3,
+  butterfly = 4,
+  equilibrated = 5,
+};
 inline constexpr Wavelet wavelets[] = {Wavelet::lifted_linear, Wavelet::linear, Wavelet::lifted_butterfly,
-                                       Wavelet::butterfly};
+                                       Wavelet::butterfly, Wavelet::equilibrated};
 
 constexpr bool is_lifted(Wavelet wavelet) {
   return wavelet == Wavelet::lifted_linear || wavelet == Wavelet::lifted_butterfly;
@@ -182,6 +190,25 @@ struct StencilRecord {
 static_assert(sizeof(StencilRecord) == 24);
 
 inline constexpr float wing_weight = 0.125F, outer_weight = -0.0625F;
+
+/// Predictions with 3x3 weights: x_m = d_m + sum over k of P_mk x_k, for the domain nodes m of M(q), from as many
+/// domain nodes k of K(q-1) each. Arrays at 64-byte multiples in the section, with n = nodes:
+///   index   u16|u32 [n * terms]   the nodes k, by their place among all domain nodes; weights of the same node add
+///   weight  i16 [9 * n * terms]   P_mk in units of prediction_unit, then >= 16 zero bytes; element 3 c + r of a block:
+///                                 displacement r of m per displacement c of k; the most negative value does not occur
+struct PredictionsHeader {
+  std::uint32_t nodes;         ///< domain nodes of M(q)
+  std::uint32_t terms;         ///< 0..most_prediction_terms; the same for every node
+  std::uint32_t rows;          ///< domain nodes of K(q-1)
+  std::uint32_t index_bytes;   ///< 2 or 4
+  std::uint64_t index_offset;  ///< from the start of the section
+  std::uint64_t weight_offset;
+  std::uint32_t reserved[8];
+};
+static_assert(sizeof(PredictionsHeader) == 64);
+
+inline constexpr std::uint32_t most_prediction_terms = 8;
+inline constexpr float prediction_unit = 0x1p-12F;
 
 /// What people do to a body: contacts that a model's answers are measured on.
 enum class PatternKind : std::uint32_t {

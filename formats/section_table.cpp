@@ -26,6 +26,7 @@ bool is_known(std::uint32_t kind) {
     case SectionKind::couplings:
     case SectionKind::stencils:
     case SectionKind::patterns:
+    case SectionKind::predictions:
       return true;
   }
   return false;
@@ -104,7 +105,7 @@ bool SectionTable::check_entry(std::uint32_t i, std::uint64_t end_of_previous, V
     return refuse_entry(result, rule, entry, field, i, static_cast<double>(value), static_cast<double>(limit));
   };
   if (reserved_is_zero()) {
-    const auto last_kind = static_cast<std::uint32_t>(SectionKind::patterns);
+    const auto last_kind = static_cast<std::uint32_t>(SectionKind::predictions);
     if (!is_known(entry.kind)) return refuse(VerifyRule::bad_enum, "section.kind", entry.kind, last_kind);
     if (entry.reserved != 0) return refuse(VerifyRule::reserved_not_zero, "section.reserved", entry.reserved, 0);
   }

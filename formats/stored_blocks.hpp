@@ -8,8 +8,8 @@
 
 namespace greenloop {
 
-// Reading the blocks of a couplings section in place: see layout::CouplingsHeader. All of constant work but for the sum
-// over a model; none throws or allocates.
+// Reading the blocks of couplings and predictions in place: see layout::CouplingsHeader and PredictionsHeader. All of
+// constant work but for the sum over a model; none throws or allocates.
 
 /// Blocks of a section.
 inline std::uint32_t block_count(const CouplingsView& view) { return view.begin[view.columns]; }
@@ -45,6 +45,19 @@ inline std::int16_t stored_value(const CouplingsView& view, std::uint32_t value_
   }
   std::int16_t value;
   std::memcpy(&value, view.value + 2 * at, sizeof value);
+  return value;
+}
+
+/// Place, among all domain nodes, of what a prediction is from; term: node of the level times terms, plus its own.
+inline std::uint32_t stored_source(const PredictionsView& view, std::size_t term) {
+  return view.index_bytes == 2 ? static_cast<const std::uint16_t*>(view.index)[term]
+                               : static_cast<const std::uint32_t*>(view.index)[term];
+}
+
+/// Element k of its weight, in units of layout::prediction_unit.
+inline std::int16_t stored_weight(const PredictionsView& view, std::size_t term, std::uint32_t k) {
+  std::int16_t value;
+  std::memcpy(&value, view.weight + 2 * (9 * term + k), sizeof value);
   return value;
 }
 

@@ -35,13 +35,19 @@ class SectionWalk {
     return next(SectionKind::level, q, 0, verify_level) && next(SectionKind::nodes, q, 0, verify_nodes) &&
            (q == 0 ? next(SectionKind::base_triangles, 0, 0, verify_base_triangles)
                    : next(SectionKind::refinement, q, 0, verify_refinement)) &&
-           stencils(q) && representatives(q) && next(SectionKind::scales, q, 0, verify_scales) && couplings(q) &&
-           patterns(q) && verify_counts(q, context_);
+           stencils(q) && predictions(q) && representatives(q) && next(SectionKind::scales, q, 0, verify_scales) &&
+           couplings(q) && patterns(q) && verify_counts(q, context_);
   }
 
   bool stencils(std::uint32_t q) {
     const auto wavelet = static_cast<layout::Wavelet>(context_.view.info->wavelet);
     return q == 0 || !layout::is_butterfly(wavelet) || next(SectionKind::stencils, q, 0, verify_stencils);
+  }
+
+  bool predictions(std::uint32_t q) {
+    const auto wavelet = static_cast<layout::Wavelet>(context_.view.info->wavelet);
+    return q == 0 || wavelet != layout::Wavelet::equilibrated ||
+           next(SectionKind::predictions, q, 0, verify_predictions);
   }
 
   // (c, q) for c = first..q, then (q, r) for r = 0..q-1, of the constraint levels that contacts may be resolved on

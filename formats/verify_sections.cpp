@@ -86,7 +86,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
   const std::uint32_t present = context.view.header->levels;
   context.view.info = &info;
   return require_enum(check, "problem", info.problem, static_cast<std::uint32_t>(layout::Problem::elastostatic)) &&
-         require_enum(check, "wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::butterfly)) &&
+         require_enum(check, "wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::equilibrated)) &&
          require_equal(check, "components", 0, info.components, 3) &&
          require_at_most(check, "levels", 0, info.levels, layout::max_levels) &&
          check.require(info.levels >= present, VerifyRule::inconsistent, "levels", 0, info.levels, present) &&

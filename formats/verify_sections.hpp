@@ -23,6 +23,7 @@ bool verify_nodes(const Section& section, VerifyContext& context);
 bool verify_base_triangles(const Section& section, VerifyContext& context);
 bool verify_refinement(const Section& section, VerifyContext& context);
 bool verify_stencils(const Section& section, VerifyContext& context);
+bool verify_predictions(const Section& section, VerifyContext& context);
 bool verify_representatives(const Section& section, VerifyContext& context);
 bool verify_scales(const Section& section, VerifyContext& context);
 bool verify_couplings(const Section& section, VerifyContext& context);

@@ -96,7 +96,7 @@ TEST_CASE("verify refuses: sections whose size does not follow from the counts")
 TEST_CASE("verify refuses: an unknown problem or wavelet") {
   check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 2; });
   check_info(VerifyRule::bad_enum, "problem", 0, [](Info& info) { info.problem = 0; });
-  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 5; });
+  check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 6; });
   check_info(VerifyRule::bad_enum, "wavelet", 0, [](Info& info) { info.wavelet = 0; });
 }
 
@@ -304,10 +304,10 @@ TEST_CASE("verify refuses: lifting weights that are not finite, or towards a par
 TEST_CASE("verify refuses: a wavelet of a newer minor version by its name, not by the sections it brings") {
   ModelMutant mutant = valid();
   mutant.header().minor = layout::version_minor + 1;
-  mutant.records<layout::Info>(SectionKind::info)->wavelet = 5;
+  mutant.records<layout::Info>(SectionKind::info)->wavelet = 6;
   mutant.rebuild([](std::vector<SectionCopy>& sections) {
     SectionCopy unknown = sections.front();
-    unknown.entry.kind = 13;
+    unknown.entry.kind = 15;
     sections.insert(sections.begin() + 7, unknown);
   });
   check_refused(mutant, VerifyRule::bad_enum, SectionKind::info, 0, 0, "wavelet", 0);

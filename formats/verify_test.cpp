@@ -362,7 +362,7 @@ TEST_CASE("verify refuses: an unknown section that is not of a newer minor versi
   mutant.rebuild([](std::vector<SectionCopy>& sections) { sections.push_back(unknown_section()); });
   check_refused(mutant, VerifyRule::bad_enum, static_cast<SectionKind>(unknown_kind), 0, 0, "section.kind",
                 mutant.table().size() - 1);
-  for (const std::uint32_t undefined : {0u, 7u, 9u, 14u}) {
+  for (const std::uint32_t undefined : {0u, 7u, 9u, 15u}) {
     mutant.table().back().kind = undefined;
     const VerifyResult result = mutant.verdict();
     CHECK(result.rule == VerifyRule::bad_enum);

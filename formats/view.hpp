@@ -18,6 +18,14 @@ struct CouplingsView {
   const std::byte* value = nullptr;      ///< by the layer's value_bits
 };
 
+/// Predictions(q) in place: see layout::PredictionsHeader.
+struct PredictionsView {
+  std::uint32_t terms = 0;
+  std::uint32_t index_bytes = 0;
+  const void* index = nullptr;        ///< u16 or u32 by index_bytes; [domain nodes * terms]
+  const std::byte* weight = nullptr;  ///< 18 bytes a term; null without Equilibrated wavelets
+};
+
 /// One level of the mesh, in place.
 struct LevelView {
   const layout::Level* counts = nullptr;
@@ -26,7 +34,8 @@ struct LevelView {
   const layout::NodeRecord* nodes = nullptr;
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
   const layout::StencilRecord* stencils = nullptr;       ///< [domain nodes]; null without Butterfly wavelets
-  const layout::Scale* scales = nullptr;                 ///< [domain nodes]
+  PredictionsView predictions;
+  const layout::Scale* scales = nullptr;  ///< [domain nodes]
   CouplingsView couplings[layout::layers];
   std::span<const layout::PatternRecord> patterns;  ///< empty: not measured, or no constraint level
 };

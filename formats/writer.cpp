@@ -20,6 +20,7 @@ namespace greenloop {
 namespace {
 
 using layout::CouplingsHeader;
+using layout::PredictionsHeader;
 using layout::SectionEntry;
 using layout::SectionKind;
 using Bytes = std::vector<std::byte>;
@@ -88,6 +89,31 @@ Bytes encode_values(const std::vector<std::int16_t>& values, std::uint32_t bits,
   }
 }
 
+// a row among so many in as few bytes as hold any
+std::uint32_t index_bytes_of(std::uint32_t rows) { return rows <= 65536 ? 2 : 4; }
+
+Bytes encode_index(const std::vector<std::uint32_t>& index, std::uint32_t index_bytes, const std::string& what) {
+  return index_bytes == 2 ? narrowed<std::uint16_t>(index, what) : bytes_of(index);
+}
+
+Bytes encode_predictions(const PredictionsData& data, std::uint32_t nodes, std::uint32_t rows,
+                         const std::string& name) {
+  PredictionsHeader header{};
+  header.nodes = nodes;
+  header.terms = data.terms;
+  header.rows = rows;
+  header.index_bytes = index_bytes_of(rows);
+  Bytes bytes(sizeof(header));
+  header.index_offset = bytes.size();
+  append(bytes, encode_index(data.index, header.index_bytes, name + ".index"));
+  pad(bytes);
+  header.weight_offset = bytes.size();
+  append(bytes, bytes_of(data.weight));
+  bytes.resize(bytes.size() + tail_bytes);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  return bytes;
+}
+
 struct SectionBytes {
   SectionEntry entry{};
   Bytes bytes;
@@ -131,6 +157,7 @@ class SectionList {
       add(SectionKind::refinement, q, 0, bytes_of(level.refinement));
     }
     add_stencils(q);
+    add_predictions(q);
     for (std::uint32_t c = 0; c <= q; ++c) add_representatives(c, q);
     for (std::uint32_t r = 0; r < q; ++r) add_representatives(q, r);
     require_size(fmt::format("levels[{}].scales", q), level.scales.size(), domain_count(q));
@@ -146,6 +173,17 @@ class SectionList {
     const auto& stencils = model_.levels[q].stencils;
     require_size(fmt::format("levels[{}].stencils", q), stencils.size(), wanted ? domain_count(q) : 0);
     if (wanted) add(SectionKind::stencils, q, 0, bytes_of(stencils));
+  }
+
+  void add_predictions(std::uint32_t q) {
+    const bool wanted = q > 0 && static_cast<layout::Wavelet>(model_.info.wavelet) == layout::Wavelet::equilibrated;
+    const PredictionsData& data = model_.levels[q].predictions;
+    const std::string name = fmt::format("levels[{}].predictions", q);
+    const std::size_t terms = wanted ? std::size_t{domain_count(q)} * data.terms : 0;
+    require_size(name + ".index", data.index.size(), terms);
+    require_size(name + ".weight", data.weight.size(), 9 * terms);
+    if (!wanted) return;
+    add(SectionKind::predictions, q, 0, encode_predictions(data, domain_count(q), domain_of_mesh(q - 1), name));
   }
 
   void add_representatives(std::uint32_t c, std::uint32_t q) {
@@ -254,7 +292,7 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
   CouplingsHeader header{};
   header.columns = blocks > 0 ? columns : 0;
   header.rows = rows;
-  header.index_bytes = rows <= 65536 ? 2 : 4;
+  header.index_bytes = index_bytes_of(rows);
   header.block_count = blocks;
 
   Bytes bytes;
@@ -264,7 +302,7 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
   append(bytes, std::as_bytes(std::span(data.begin).first(header.columns + std::size_t{1})));
   pad(bytes);
   header.index_offset = bytes.size();
-  append(bytes, header.index_bytes == 2 ? narrowed<std::uint16_t>(data.index, name + ".index") : bytes_of(data.index));
+  append(bytes, encode_index(data.index, header.index_bytes, name + ".index"));
   pad(bytes);
   header.value_offset = bytes.size();
   append(bytes, encode_values(data.value, value_bits, name + ".value"));

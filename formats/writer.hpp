@@ -19,12 +19,20 @@ struct CouplingsData {
   std::vector<std::int16_t> value;   ///< 9 per block, by columns
 };
 
+/// Predictions of one level before encoding; see layout::PredictionsHeader.
+struct PredictionsData {
+  std::uint32_t terms = 0;           ///< of every domain node
+  std::vector<std::uint32_t> index;  ///< [domain nodes * terms]
+  std::vector<std::int16_t> weight;  ///< 9 per term, by columns
+};
+
 /// One level of a model before encoding.
 struct LevelData {
   layout::Level counts{};
   std::vector<layout::NodeRecord> nodes;
   std::vector<layout::RefinementRecord> refinement;  ///< empty on level 0
   std::vector<layout::StencilRecord> stencils;  ///< [domain nodes]; empty on level 0 and without Butterfly wavelets
+  PredictionsData predictions;                  ///< empty on level 0 and without Equilibrated wavelets
   /// [mesh level][node in that level], every mesh level; empty below the coarsest constraint level
   std::vector<std::vector<std::uint32_t>> representatives;
   std::vector<layout::Scale> scales;  ///< [domain nodes]

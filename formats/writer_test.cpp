@@ -80,6 +80,8 @@ TEST_CASE("writer: what the view shows is what was given") {
       CHECK(level.stencils.empty() == (q == 0 || !layout::is_butterfly(kind)));
       CHECK((view.level[q].stencils == nullptr) == level.stencils.empty());
       CHECK((level.stencils.empty() || same_bytes(view.level[q].stencils, level.stencils)));
+      CHECK(level.predictions.index.empty() == (q == 0 || kind != layout::Wavelet::equilibrated));
+      CHECK((view.level[q].predictions.weight == nullptr) == level.predictions.index.empty());
       CHECK(same_bytes(view.level[q].scales, level.scales));
       for (std::uint32_t r = 0; r < 4; ++r) {
         CHECK((view.representatives[q][r] == nullptr) == (q == 0));

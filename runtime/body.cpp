@@ -4,6 +4,7 @@
 #include <cstring>
 #include <new>
 
+#include "formats/stored_blocks.hpp"
 #include "runtime/cholesky.hpp"
 #include "runtime/couplings.hpp"
 #include "runtime/domain.hpp"
@@ -15,11 +16,27 @@ double magnitude(double value) { return value < 0 ? -value : value; }
 
 double larger(double a, double b) { return a > b ? a : b; }
 
-// sum of the magnitudes of a prediction's weights
-double prediction_sum(const ModelView& view) { return has_stencils(view) ? 1.5 : 1; }
+// largest sum of the magnitudes of what one component of a node of a level is predicted with, which is also what one of
+// a force on it is shared with
+double prediction_sum(const ModelView& view, const Prediction& prediction, std::uint32_t level) {
+  if (!prediction.blocks) {
+    return prediction.length > 2 ? 1.5 : 1;
+  }
+  const LevelView& at = view.level[level];
+  double most = 0;
+  for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
+    double sum[3] = {};
+    for (std::uint32_t k = 0; k < 9 * at.predictions.terms; ++k) {
+      const std::size_t term = std::size_t{at.predictions.terms} * i + k / 9;
+      sum[k % 3] += magnitude(double{layout::prediction_unit} * stored_weight(at.predictions, term, k % 9));
+    }
+    most = larger(most, larger(sum[0], larger(sum[1], sum[2])));
+  }
+  return most;
+}
 
 // largest factor between coefficients and node values, intermediate sums included
-double transform_growth(const ModelView& view, const Lifting& lifting) {
+double transform_growth(const ModelView& view, const Prediction& prediction, const Lifting& lifting) {
   double growth = 1;
   for (std::uint32_t level = 1; level < view.levels; ++level) {
     const std::uint32_t* begin = lifting.begin[level];
@@ -34,17 +51,17 @@ double transform_growth(const ModelView& view, const Lifting& lifting) {
       most = larger(most, sum);
     }
     // values of the level before, its averages, and the details
-    growth = prediction_sum(view) * (growth + 2 * most) + 2;
+    growth = prediction_sum(view, prediction, level) * (growth + 2 * most) + 2;
   }
-  return 2 * growth;
+  return 2 * growth / (prediction.blocks ? double{weight_unit} : 1);
 }
 
 // largest factor between the sum of nodal forces and force coefficients
-double force_growth(const ModelView& view) {
+double force_growth(const ModelView& view, const Prediction& prediction) {
   double most = 0;
   double sum = 1;
   for (std::uint32_t level = 1; level < view.levels; ++level) {
-    sum *= prediction_sum(view);
+    sum *= larger(1, prediction_sum(view, prediction, level));
     for (std::uint32_t i = 0; i < view.level[level].counts->domain_count; ++i) {
       const float* lift = view.level[level].refinement[i].lift;
       most = larger(most, magnitude(double{lift[0]}) + magnitude(double{lift[1]}));
@@ -79,7 +96,9 @@ double largest_value(const ModelView& view) {
 float largest_force_sum(const ModelView& view, const Lifting& lifting) {
   const double root = 3 * largest_scale(view, &layout::Scale::root);
   const double sums = 3.0 * view.domain_count * largest_value(view);
-  const double per_newton = transform_growth(view, lifting) * root * sums * root * force_growth(view);
+  const Prediction prediction = prediction_of(view);
+  const double per_newton =
+      transform_growth(view, prediction, lifting) * root * sums * root * force_growth(view, prediction);
   return static_cast<float>(FLT_MAX / 4.0 / per_newton);
 }
 
@@ -87,7 +106,7 @@ float largest_force_sum(const ModelView& view, const Lifting& lifting) {
 struct Tables {
   RefinementTables refinement;
   ColumnCost* cost[layout::max_levels] = {};
-  ParentOffsets* parent_offsets = nullptr;
+  PredictionOffsets offsets;
   BaseColumnsMaker base;
   MirroredCouplingsMaker mirrored;
   std::uint8_t* read = nullptr;
@@ -102,7 +121,7 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   if (sizes.counts.forces_only) {
     return;
   }
-  tables.parent_offsets = arena.take<ParentOffsets>(view.domain_count);
+  tables.offsets.carve(arena, view);
   tables.base.carve(arena, view);
   tables.mirrored.carve(arena, view, tables.base.columns());
   tables.read = arena.take<std::uint8_t>(view.domain_count);
@@ -124,14 +143,11 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
   scratch.sorted = arena.take<std::uint32_t>(sizes.set_columns);
   scratch.sorting = arena.take<std::uint32_t>(sizes.set_columns);
   scratch.answer = arena.take<std::uint32_t>(sizes.set_columns);
-  scratch.coefficients = arena.take<PointCoefficient>(entries);
-  scratch.begin = arena.take<std::uint32_t>(sizes.set_columns + std::uint64_t{1});
-  scratch.row = arena.take<SlotRow>(entries);
-  scratch.slot_begin = arena.take<std::uint32_t>(sizes.slots + 1);
+  scratch.functionals.carve(arena, sizes.set_columns, entries, sizes.slots, sizes.counts.prediction);
   scratch.slot = arena.take<std::uint32_t>(view.domain_count);
   scratch.coefficient = arena.take<std::uint32_t>(sizes.slots);
   scratch.root = arena.take<Block>(sizes.slots);
-  scratch.inverse.carve(arena, sizes.slots, sizes.counts.butterfly);
+  scratch.inverse.carve(arena, sizes.slots, sizes.counts.prediction);
   scratch.sum = arena.take<BlockPair>(scratch.room);
   scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
   scratch.blocks = arena.take<Block>(sizes.longest_column + std::uint64_t{1});
@@ -195,7 +211,7 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
 }
 
 void prepare_fields(const ModelView& view, Tables& tables, Body& body) {
-  list_parent_offsets(view, tables.parent_offsets);
+  tables.offsets.fill(view);
   mark_read(body.refinement, body.touched, tables.read);
   body.base = tables.base.make(view);
   body.mirrored = tables.mirrored.make(view, body.base, tables.read);
@@ -223,7 +239,7 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
     body.cost.level[q] = tables.cost[q];
   }
   body.refinement = tables.refinement.refinement(view, body.lifting);
-  body.parents = tables.parent_offsets;
+  body.offsets = tables.offsets;
   fill_tables(view, tables, body);
   if (!body.counts.forces_only) {
     prepare_fields(view, tables, body);

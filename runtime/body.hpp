@@ -35,9 +35,9 @@ struct Body {
   FieldBlocks field_blocks;
   BaseColumns base;
   AddTiles add_tiles = greenloop::add_tiles;
-  CoefficientSums field_sums{};            ///< zero between steps
-  const ParentOffsets* parents = nullptr;  ///< [domain]
-  std::uint32_t* stored = nullptr;         ///< [domain] blocks of all layers in a coefficient's column
+  CoefficientSums field_sums{};     ///< zero between steps
+  PredictionOffsets offsets;        ///< empty without fields
+  std::uint32_t* stored = nullptr;  ///< [domain] blocks of all layers in a coefficient's column
   ColumnCosts cost;
   NodeFacts* facts = nullptr;  ///< [node_count]
   ContactSet set;
@@ -54,7 +54,7 @@ struct Body {
   Mixture mixture;
   const std::byte* last_red_zone = nullptr;
 
-  [[nodiscard]] FieldModel field_model() const { return {refinement, mirrored, base, parents, block_sums, add_tiles}; }
+  [[nodiscard]] FieldModel field_model() const { return {refinement, mirrored, base, offsets, block_sums, add_tiles}; }
   [[nodiscard]] FieldScratch field_scratch() const { return {force, field_sums}; }
 };
 

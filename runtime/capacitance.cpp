@@ -37,7 +37,7 @@ Block& sum_at(const CapacitanceScratch& scratch, const PartialCapacitance& parti
   return sum_pair(scratch, partial, t / 2)[slot].row[t % 2];
 }
 
-// couplings of coefficients 2 p and 2 p + 1 with those of the computed rows
+// displacements of coefficients 2 p and 2 p + 1 per force on those of the computed rows
 BlockPair* panel_pair(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t p) {
   return sum_pair(scratch, partial, (partial.computed + 1) / 2) + std::size_t{p} * partial.own;
 }
@@ -79,65 +79,25 @@ std::uint32_t assign_answers(const PartialCapacitance& partial, std::uint32_t fi
   return slots;
 }
 
-// the functional of a column, from `begin`; returns its end
-std::uint32_t write_functional(const Refinement& refinement, std::uint32_t column, std::uint32_t begin,
-                               CapacitanceScratch& scratch, Float4* force) {
-  Touched& touched = scratch.touched;
-  constexpr float unit[3] = {1, 1, 1};
-  touch(refinement, &column, 1, touched);
-  transform_forces(refinement, {1, &column, unit}, touched, force);
-  std::uint32_t end = begin;
-  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      const std::uint32_t coefficient = touched.list[q][k];
-      scratch.coefficients[end++] = {scratch.slot[coefficient], force[coefficient][0]};
-    }
-  }
-  clear_forces(touched, force);
-  clear(touched);
-  return end;
-}
-
-// the functionals' weights by slots
-void list_slot_rows(std::uint32_t rows, std::uint32_t slots, CapacitanceScratch& scratch) {
-  std::uint32_t* begin = scratch.slot_begin;
-  std::memset(begin, 0, sizeof(std::uint32_t) * (slots + std::size_t{1}));
-  for (std::uint32_t k = 0; k < scratch.begin[rows]; ++k) {
-    ++begin[scratch.coefficients[k].slot];
-  }
-  for (std::uint32_t s = 0; s < slots; ++s) {
-    begin[s + 1] += begin[s];
-  }
-  for (std::uint32_t i = rows; i-- > 0;) {
-    for (std::uint32_t k = scratch.begin[i]; k < scratch.begin[i + 1]; ++k) {
-      const PointCoefficient& at = scratch.coefficients[k];
-      scratch.row[--begin[at.slot]] = {2 * slots * (i / 2) + i % 2, at.weight};
-    }
-  }
-}
-
-// functionals of the computed rows, also by slots
-void list_functionals(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch,
-                      Float4* force) {
-  scratch.begin[0] = 0;
-  for (std::uint32_t t = 0; t < partial.computed; ++t) {
-    scratch.begin[t + 1] =
-        write_functional(refinement, partial.set.column[first_computed(partial) + t], scratch.begin[t], scratch, force);
-  }
-  list_slot_rows(partial.computed, partial.slots, scratch);
-}
-
 // sums of slot `to` += the weights of slot `from` times a block; returns their number
+template <bool blocks>
 std::uint32_t add_block(const Block& block, std::uint32_t from, std::uint32_t to, const CapacitanceScratch& scratch) {
-  const std::uint32_t begin = scratch.slot_begin[from];
-  const std::uint32_t end = scratch.slot_begin[from + 1];
+  const Functionals& functionals = scratch.functionals;
+  const std::uint32_t begin = functionals.slot_begin[from];
+  const std::uint32_t end = functionals.slot_begin[from + 1];
   auto* sums = reinterpret_cast<Block*>(scratch.sum + to);
-  for (std::uint32_t k = begin; k < end; ++k) {
-    const SlotRow at = scratch.row[k];
-    add(splat(at.weight), block, sums[at.first]);
+  if constexpr (blocks) {
+    add_by_blocks(functionals, from, block, sums);
+  } else {
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const SlotRow at = functionals.row[k];
+      add(splat(at.weight), block, sums[at.first]);
+    }
   }
   return end - begin;
 }
+
+bool has_block_weights(const CapacitanceScratch& scratch) { return scratch.functionals.block != nullptr; }
 
 void set_diagonal(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch) {
   for (std::uint32_t s = 0; s < partial.own; ++s) {
@@ -149,9 +109,11 @@ void set_diagonal(const Refinement& refinement, const PartialCapacitance& partia
     const Block scale = symmetric_block(level.scales[coefficient - level.domain_begin].diagonal);
     const Block diagonal = product(scratch.root[s], product(scale, scratch.root[s]));
     if (partial.panel) {
-      panel_at(scratch, partial, s, s) = diagonal;
+      panel_at(scratch, partial, s, s) = transposed(diagonal);
+    } else if (has_block_weights(scratch)) {
+      add_block<true>(diagonal, s, s, scratch);
     } else {
-      add_block(diagonal, s, s, scratch);
+      add_block<false>(diagonal, s, s, scratch);
     }
   }
 }
@@ -168,13 +130,14 @@ Block loaded_block(const LoadedColumn& column, std::uint32_t n, const Capacitanc
 }
 
 // in both directions; returns the number of sums
+template <bool blocks>
 std::uint64_t add_to_sums(const LoadedColumn& column, const CapacitanceScratch& scratch) {
   std::uint64_t added = 0;
   for (std::uint32_t n = 0; n < column.count; ++n) {
     const std::uint32_t row = scratch.places[n].target;
     const Block block = loaded_block(column, n, scratch);
-    added += add_block(block, row, column.slot, scratch);
-    added += add_block(transposed(block), column.slot, row, scratch);
+    added += add_block<blocks>(block, row, column.slot, scratch);
+    added += add_block<blocks>(transposed(block), column.slot, row, scratch);
   }
   return added;
 }
@@ -188,10 +151,10 @@ void add_to_panel(const PartialCapacitance& partial, const LoadedColumn& column,
     const std::uint32_t row = scratch.places[n].target;
     const Block block = loaded_block(column, n, scratch);
     if (row < own) {
-      add(block, of_slot[row].row[column.slot % 2]);
+      add(transposed(block), of_slot[row].row[column.slot % 2]);
     }
     if (column.slot < own) {
-      add(transposed(block), panel[row / 2 * own + column.slot].row[row % 2]);
+      add(block, panel[row / 2 * own + column.slot].row[row % 2]);
     }
   }
 }
@@ -214,9 +177,10 @@ std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitan
   if (partial.panel) {
     add_to_panel(partial, loaded, scratch);
   } else {
-    added = add_to_sums(loaded, scratch);
+    added = has_block_weights(scratch) ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
   }
-  return 4 * std::uint64_t{column_length(couplings, column)} + 84 * std::uint64_t{loaded.count} + 9 * added;
+  return 4 * std::uint64_t{column_length(couplings, column)} + 84 * std::uint64_t{loaded.count} +
+         refinement.prediction.weight_work * added;
 }
 
 // bound of what add_couplings returns
@@ -225,22 +189,44 @@ std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCap
   const std::uint32_t coefficient = scratch.coefficient[partial.next];
   const LevelView& level = refinement.view->level[refinement.level[coefficient]];
   const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
-  return length * (partial.panel ? 88 : 88 + 18 * std::uint64_t{partial.computed});
+  const std::uint64_t of_block = 2 * std::uint64_t{refinement.prediction.weight_work} * partial.computed;
+  return length * (partial.panel ? 88 : 88 + of_block);
 }
 
-// T^-1 of two rows of coefficients, the first steps
+// the sum of a step's terms alone: details are smaller than what they are added to
+BlockPair sum_numbers(const SparseInverse::Term* term, const SparseInverse::Term* end, const BlockPair* x) {
+  BlockPair sum{};
+  for (; term != end; ++term) {
+    const Float4 weight = splat(term->weight);
+    add(weight, x[term->source].row[0], sum.row[0]);
+    add(weight, x[term->source].row[1], sum.row[1]);
+  }
+  return sum;
+}
+
+BlockPair sum_blocks(const SparseInverse::Term* term, const SparseInverse::Term* end, const std::byte* stored,
+                     const BlockPair* x) {
+  BlockPair sum{};
+  for (; term != end; ++term, stored += StoredBlock<16>::bytes) {
+    const BlockSplats weight = splats(transposed(StoredBlock<16>::load(stored)));
+    add(product(x[term->source].row[0], weight), sum.row[0]);
+    add(product(x[term->source].row[1], weight), sum.row[1]);
+  }
+  return {{scaled(splat(weight_unit), sum.row[0]), scaled(splat(weight_unit), sum.row[1])}};
+}
+
+// T^-1 of two rows of coefficients, the first steps; x: what the rows are displaced by per force on each slot, so that
+// blocks apply from the right, transposed
 void reconstruct(const SparseInverse& inverse, std::uint32_t steps, BlockPair* x) {
   const SparseInverse::Term* term = inverse.term;
   for (std::uint32_t k = 0; k < steps; ++k) {
-    const auto [target, end] = inverse.step[k];
-    BlockPair sum{};  // of terms alone: details are smaller than what they are added to
-    for (; term != inverse.term + end; ++term) {
-      const Float4 weight = splat(term->weight);
-      add(weight, x[term->source].row[0], sum.row[0]);
-      add(weight, x[term->source].row[1], sum.row[1]);
-    }
+    const auto& [target, last] = inverse.step[k];
+    const SparseInverse::Term* const end = inverse.term + last;
+    const std::byte* const block = inverse.block == nullptr ? nullptr : inverse.block[k];
+    const BlockPair sum = block == nullptr ? sum_numbers(term, end, x) : sum_blocks(term, end, block, x);
     add(sum.row[0], x[target].row[0]);
     add(sum.row[1], x[target].row[1]);
+    term = end;
   }
 }
 
@@ -251,7 +237,7 @@ void transform_panel(const PartialCapacitance& partial, std::uint32_t pair, Capa
   for (std::uint32_t t = 0; t < partial.computed; ++t) {
     const BlockPair& own = x[scratch.answer[first_computed(partial) + t]];
     for (std::uint32_t s = 2 * pair; s < partial.slots && s < 2 * pair + 2; ++s) {
-      sum_at(scratch, partial, t, s) = own.row[s % 2];
+      sum_at(scratch, partial, t, s) = transposed(own.row[s % 2]);
     }
   }
 }
@@ -275,9 +261,13 @@ void visit_row(const CapacitanceScratch& scratch, const PartialCapacitance& part
   }
 }
 
-std::uint64_t panel_pair_work(std::uint64_t own_visits, std::uint64_t rows) { return 18 * own_visits + 6 * rows; }
+std::uint64_t panel_pair_work(const Prediction& prediction, std::uint64_t own_visits, std::uint64_t rows) {
+  return prediction.pair_work * own_visits + 6 * rows;
+}
 
-std::uint64_t sum_pair_work(std::uint64_t set_visits) { return 18 * set_visits; }
+std::uint64_t sum_pair_work(const Prediction& prediction, std::uint64_t set_visits) {
+  return prediction.pair_work * set_visits;
+}
 
 // three rows or columns of a matrix, `stride` floats apart, each with three entries
 void store(const Block& block, std::size_t stride, float* a) {
@@ -308,11 +298,13 @@ std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
 }
 
 std::uint64_t functionals_work(const CapacitanceCounts& counts) {
-  return 5 * counts.visits + 16 * counts.coefficients + counts.rows * counts.slots;
+  const std::uint64_t transforms = counts.prediction.blocks ? 3 : 1;
+  const std::uint64_t visit_work = 2 + transforms * counts.prediction.force_work;
+  return visit_work * counts.visits + 16 * transforms * counts.coefficients + counts.rows * counts.slots;
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
-  return pairs(slots) * panel_pair_work(own_visits(counts), counts.rows);
+  return pairs(slots) * panel_pair_work(counts.prediction, own_visits(counts), counts.rows);
 }
 
 }  // namespace
@@ -352,8 +344,8 @@ std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept {
 
 std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept {
   const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
-  return 88 * counts.stored + pairs(counts.rows) * sum_pair_work(counts.set_visits) +
-         (panel_of(counts) ? 0 : 9 * counts.blocks) +
+  return 88 * counts.stored + pairs(counts.rows) * sum_pair_work(counts.prediction, counts.set_visits) +
+         (panel_of(counts) ? 0 : counts.prediction.weight_work * counts.blocks) +
          (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
 }
 
@@ -440,7 +432,8 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
     }
   } else {
     std::memset(scratch.sum, 0, sizeof(BlockPair) * pairs(partial.computed) * partial.slots);
-    list_functionals(refinement, partial, scratch, force);
+    const SlottedColumns computed{partial.computed, partial.set.column + first, partial.slots, scratch.slot};
+    list_functionals(refinement, computed, scratch.touched, force, scratch.functionals);
   }
 }
 
@@ -461,8 +454,8 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
   }
   for (const std::uint32_t panel = partial.panel_pairs(); partial.has_blocks_left(); ++partial.transformed) {
     const bool in_panel = partial.transformed < panel;
-    const std::uint64_t pair =
-        in_panel ? panel_pair_work(partial.own_visits, partial.computed) : sum_pair_work(touched.visits);
+    const std::uint64_t pair = in_panel ? panel_pair_work(refinement.prediction, partial.own_visits, partial.computed)
+                                        : sum_pair_work(refinement.prediction, touched.visits);
     if (pair > allowance - work) {
       return work;
     }

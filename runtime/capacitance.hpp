@@ -6,16 +6,10 @@
 #include "runtime/column.hpp"
 #include "runtime/contact_set.hpp"
 #include "runtime/couplings.hpp"
+#include "runtime/functionals.hpp"
 #include "runtime/sparse_forces.hpp"
 
 namespace greenloop {
-
-/// A coefficient, by its slot, that a node's displacement depends on, and the weight: together a row of T^-1, which is
-/// a column of T^-T.
-struct PointCoefficient {
-  std::uint32_t slot;
-  float weight;
-};
 
 /// What a column of the capacitance matrix costs.
 struct ColumnCost {
@@ -46,12 +40,6 @@ struct ColumnCosts {
   }
 };
 
-/// A row that depends on a coefficient, among those that are computed, and the weight.
-struct SlotRow {
-  std::uint32_t first;  ///< its sum of slot 0, counted in blocks
-  float weight;
-};
-
 /// What two rows of a matrix have in the same column.
 struct BlockPair {
   Block row[2];
@@ -65,22 +53,19 @@ constexpr std::uint64_t pairs(std::uint64_t rows) { return (rows + 1) / 2; }
 struct CapacitanceScratch {
   static constexpr std::uint32_t batch = 16;  ///< rows of the matrix that are summed together, at least; even
 
-  Touched touched;                           ///< by the rows that are computed, or by one column
-  std::uint32_t* sorted = nullptr;           ///< [columns] those rows
-  std::uint32_t* sorting = nullptr;          ///< [columns] scratch
-  std::uint32_t* answer = nullptr;           ///< [columns] slot that holds each column's value in the end
-  PointCoefficient* coefficients = nullptr;  ///< [entries] functionals, one after the other
-  std::uint32_t* begin = nullptr;            ///< [columns + 1] of each functional
-  SlotRow* row = nullptr;                    ///< [entries] the same by slots
-  std::uint32_t* slot_begin = nullptr;       ///< [slots + 1] of each slot
-  std::uint32_t* slot = nullptr;             ///< [domain], layout::none between calls
-  std::uint32_t* coefficient = nullptr;      ///< [slots] its place; layout::none: that of a column
-  Block* root = nullptr;                     ///< [slots] scale
-  SparseInverse inverse;                     ///< of the slots
-  std::uint64_t room = 0;                    ///< pairs: slots * pairs(min(columns, batch)) of the most there may be
-  BlockPair* sum = nullptr;                  ///< [room]
-  BlockPlace* places = nullptr;              ///< [longest column + 1]
-  Block* blocks = nullptr;                   ///< [longest column + 1]
+  Touched touched;                       ///< by the rows that are computed, or by one column
+  std::uint32_t* sorted = nullptr;       ///< [columns] those rows
+  std::uint32_t* sorting = nullptr;      ///< [columns] scratch
+  std::uint32_t* answer = nullptr;       ///< [columns] slot that holds each column's value in the end
+  Functionals functionals;               ///< of the rows that are computed; `entries` weights
+  std::uint32_t* slot = nullptr;         ///< [domain], layout::none between calls
+  std::uint32_t* coefficient = nullptr;  ///< [slots] its place; layout::none: that of a column
+  Block* root = nullptr;                 ///< [slots] scale
+  SparseInverse inverse;                 ///< of the slots
+  std::uint64_t room = 0;                ///< pairs: slots * pairs(min(columns, batch)) of the most there may be
+  BlockPair* sum = nullptr;              ///< [room]
+  BlockPlace* places = nullptr;          ///< [longest column + 1]
+  Block* blocks = nullptr;               ///< [longest column + 1]
 };
 
 /// Adds the blocks, of all layers, that level q stores to the counts of both of their coefficients. degree: [domain of
@@ -93,6 +78,7 @@ void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) 
 
 /// What the work of assemble_capacitance follows from.
 struct CapacitanceCounts {
+  Prediction prediction{};
   std::uint64_t columns = 0;       ///< of the set
   std::uint64_t rows = 0;          ///< that are computed
   std::uint64_t slots = 0;         ///< of the set
@@ -179,10 +165,10 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
                        PartialCapacitance& partial) noexcept;
 
 /// Adds the blocks of as many coefficients as `allowance` holds, at 4 units for each that is stored, 84 for each that
-/// is between touched coefficients and, by functionals, 9 for each sum that one adds to; then transforms the couplings
-/// of two coefficients at a time, for 18 units for each visit that touching the computed rows takes and 6 for each of
-/// these, and two of these at a time, for 18 units for each visit that the set takes.
-/// Returns the units spent. For the loop.
+/// is between touched coefficients and, by functionals, Prediction::weight_work for each sum that one adds to; then
+/// transforms the couplings of two coefficients at a time, for Prediction::pair_work for each visit that touching the
+/// computed rows takes and 6 for each of these, and two of these at a time, for pair_work for each visit that the set
+/// takes. Returns the units spent. For the loop.
 std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch,
                                      std::uint64_t allowance, PartialCapacitance& partial) noexcept;
 

@@ -53,6 +53,15 @@ inline std::uint32_t domain_place(const ModelView& view, std::uint32_t level, st
   return node - view.level[level].node_begin + view.level[level].domain_begin;
 }
 
+/// The domain node of a place among all domain nodes. Work: at most one unit per level.
+inline std::uint32_t domain_node(const ModelView& view, std::uint32_t place) noexcept {
+  std::uint32_t level = 0;
+  while (place >= domain_up_to(view, level)) {
+    ++level;
+  }
+  return place - view.level[level].domain_begin + view.level[level].node_begin;
+}
+
 /// Place of a domain node among all domain nodes.
 inline std::uint32_t domain_place(const ModelView& view, std::uint32_t node) noexcept {
   return domain_place(view, level_of(view, node), node);

@@ -34,7 +34,10 @@ double difference(std::span<const float> a, std::span<const float> b, std::size_
 }
 
 TEST_CASE("a factor that follows a sliding contact holds it with the forces of a fresh one, for less work") {
-  const TestModel model({.levels = 5, .touchable_above = 0.5});
+  layout::Wavelet kind{};
+  SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
+  const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.5});
   const auto nodes = model.touchable();
   for (const std::uint32_t factors : {1U, 3U}) {
     CAPTURE(factors);

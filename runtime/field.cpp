@@ -153,7 +153,7 @@ void compute_field(const FieldModel& model, const ColumnForces& forces, const To
   transform_forces(model.refinement, forces, touched, scratch.force);
   sum_couplings(model, touched, domain_up_to(view, levels.details), scratch.force, scratch.sums);
   scale_sums(view, domain_up_to(view, levels.details), scratch.sums);
-  inverse_transform(view, model.parents, levels, scratch.sums.of_blocks, x);
+  inverse_transform(view, model.offsets, levels, scratch.sums.of_blocks, x);
 }
 
 }  // namespace greenloop

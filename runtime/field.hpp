@@ -16,9 +16,9 @@ struct FieldModel {
   const Refinement& refinement;
   const MirroredCouplings& mirrored;
   const BaseColumns& base;
-  const ParentOffsets* parents;  ///< [domain]
-  const BlockSums& sums;         ///< what blocks are summed with
-  AddTiles add_tiles;            ///< and tiles
+  const PredictionOffsets& offsets;
+  const BlockSums& sums;  ///< what blocks are summed with
+  AddTiles add_tiles;     ///< and tiles
 };
 
 /// What is summed, in units of the coefficients' scales: the sums of both, zero between uses.

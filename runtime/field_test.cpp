@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "formats/stored_blocks.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/testing/dense_reference.hpp"
 #include "runtime/testing/placed_body.hpp"
@@ -67,8 +68,23 @@ double averages_error(const Body& body, const Eigen::VectorXd& averages, const s
   return error;
 }
 
+// what the coarser levels say of node i of a level by blocks
+float by_blocks(const ModelView& view, const LevelView& level, std::uint32_t i, const std::vector<Float4>& x) {
+  const PredictionsView& at = level.predictions;
+  float sum = 0;
+  for (std::size_t term = std::size_t{at.terms} * i; term < std::size_t{at.terms} * (i + 1); ++term) {
+    const Float4 from = x[domain_node(view, stored_source(at, term))];
+    const auto weight = [&](std::uint32_t k) { return 65536 * static_cast<float>(stored_weight(at, term, k)); };
+    sum += (weight(1) * from[0] + weight(4) * from[1]) + weight(7) * from[2];
+  }
+  return 0x1p-28F * sum;
+}
+
 // what the coarser levels say of node i of a level
-float interpolated(const LevelView& level, std::uint32_t i, const std::vector<Float4>& x) {
+float interpolated(const ModelView& view, const LevelView& level, std::uint32_t i, const std::vector<Float4>& x) {
+  if (level.predictions.weight != nullptr) {
+    return by_blocks(view, level, i, x);
+  }
   const auto at = [&](std::uint32_t node) { return float{x[node][1]}; };
   const std::uint32_t* parent = level.refinement[i].parent;
   float value = 0.5F * (at(parent[0]) + at(parent[1]));
@@ -85,7 +101,8 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
                               synthetic_model({.levels = 4, .epsilon = 0, .quantum = 0}),
                               synthetic_model({.levels = 4, .wavelet = layout::Wavelet::linear}),
                               synthetic_model({.levels = 5, .wavelet = layout::Wavelet::lifted_butterfly}),
-                              synthetic_model({.levels = 4, .wavelet = layout::Wavelet::butterfly, .epsilon = 0})};
+                              synthetic_model({.levels = 4, .wavelet = layout::Wavelet::butterfly, .epsilon = 0}),
+                              synthetic_model({.levels = 5, .wavelet = layout::Wavelet::equilibrated})};
   for (const ModelData& data : models) {
     const TestModel model(encode(data));
     const ModelView& view = model.view();
@@ -113,7 +130,7 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
           CHECK(all_zero(x.data() + level.node_begin + level.counts->domain_count,
                          level.counts->node_count - level.counts->domain_count));
           for (std::uint32_t i = 0; q > field_level && i < level.counts->domain_count; ++i) {
-            CHECK(float{x[level.node_begin + i][1]} == interpolated(level, i, x));
+            CHECK(float{x[level.node_begin + i][1]} == interpolated(view, level, i, x));
           }
         }
         std::vector<Float4> coarse(nodes_up_to(view, field_level), splat(1e30F));
@@ -124,6 +141,26 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
         const Eigen::VectorXd averages = reference.averages(field_level, whole);
         CHECK(averages_error(body, averages, x) <= 1e-5 * whole.cwiseAbs().maxCoeff());
       }
+    }
+  }
+}
+
+TEST_CASE("forces up to the limit cannot overflow the field") {
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const TestModel model({.levels = 4, .wavelet = kind});
+    const PlacedBody placed(model.view(), 5);
+    Body& body = *placed.body;
+    REQUIRE(body.force_limit > 1e6F);
+    std::vector<Float4> x(model.view().node_count);
+    for (const std::uint32_t node : model.touchable()) {
+      const std::uint32_t column = make_column(3, domain_place(model.view(), node));
+      const float third = body.force_limit / 3;
+      const float force[] = {third, -third, third};
+      clear(body.touched);
+      touch(body.refinement, &column, 1, body.touched);
+      compute_field(body.field_model(), {1, &column, force}, body.touched, {3, 3}, body.field_scratch(), x.data());
+      CHECK(std::all_of(x.begin(), x.end(),
+                        [](Float4 v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }));
     }
   }
 }
@@ -159,7 +196,10 @@ TEST_CASE("what is read of a body has the whole field where only a part is read"
 }
 
 TEST_CASE("forces on columns of several levels move what each of them moves") {
-  const ModelData data = synthetic_model({.levels = 5, .wavelet = layout::Wavelet::lifted_linear});
+  layout::Wavelet kind{};
+  SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
+  const ModelData data = synthetic_model({.levels = 5, .wavelet = kind});
   const TestModel model(encode(data));
   const ModelView& view = model.view();
   const DenseReference reference(data);

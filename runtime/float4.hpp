@@ -120,6 +120,12 @@ inline Float4 product(const Block& m, Float4 x) {
   return product(m, splats);
 }
 
+/// Transposed block times vector: the fourth lane is 0 if that of `x` is.
+inline Float4 transposed_product(const Block& m, Float4 x) {
+  const Block rows = transposed({{m.column[0] * x, m.column[1] * x, m.column[2] * x}});
+  return (rows.column[0] + rows.column[1]) + rows.column[2];
+}
+
 /// A symmetric matrix xx, xy, xz, yy, yz, zz times a vector; the fourth lane is 0.
 inline Float4 symmetric_product(const float (&matrix)[6], Float4 x) {
 #if defined(__SSE2__) || defined(__ARM_NEON)
@@ -136,6 +142,24 @@ inline Float4 symmetric_product(const float (&matrix)[6], Float4 x) {
   };
   return Float4{row(0, 1, 2), row(1, 3, 4), row(2, 4, 5), 0.0F};
 #endif
+}
+
+/// Each element of a block in all lanes.
+struct BlockSplats {
+  Float4 column[3][3];
+};
+
+inline BlockSplats splats(const Block& m) {
+  BlockSplats result;
+  for (std::size_t k = 0; k < 9; ++k) {
+    result.column[k / 3][k % 3] = splat(m.column[k / 3][k % 3]);
+  }
+  return result;
+}
+
+/// Product of two blocks: fourth lanes are 0 if those of `a` are.
+inline Block product(const Block& a, const BlockSplats& b) {
+  return {{product(a, b.column[0]), product(a, b.column[1]), product(a, b.column[2])}};
 }
 
 /// Product of two blocks: fourth lanes are 0 if those of `a` are.

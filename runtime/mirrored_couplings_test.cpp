@@ -25,7 +25,7 @@ std::uint32_t find_row(const CouplingsView& view, std::uint32_t column, std::uin
 }
 
 TEST_CASE("the mirrored couplings are the stored ones, transposed, each once, rows increasing") {
-  for (const layout::Wavelet kind : {layout::Wavelet::lifted_linear, layout::Wavelet::butterfly}) {
+  for (const layout::Wavelet kind : layout::wavelets) {
     const TestModel model({.levels = 4, .wavelet = kind});
     const ModelView& view = model.view();
     const PlacedBody placed(view);

@@ -52,8 +52,7 @@ std::vector<float> solve(Body& body, const std::vector<Contact>& contacts, const
 }
 
 TEST_CASE("every mixture of a level and the finest is positive definite and agrees with dense matrices") {
-  for (const layout::Wavelet wavelet : {layout::Wavelet::lifted_linear, layout::Wavelet::linear,
-                                        layout::Wavelet::lifted_butterfly, layout::Wavelet::butterfly}) {
+  for (const layout::Wavelet wavelet : layout::wavelets) {
     const ModelData data = synthetic_model({.levels = 4, .wavelet = wavelet});
     const TestModel model(encode(data));
     const DenseReference reference(data);

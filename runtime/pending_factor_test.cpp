@@ -49,8 +49,9 @@ std::uint64_t largest_piece(const Body& body, const SetCounts& whole) {
       }
     }
   }
-  const std::uint64_t blocks = longest * (88 + 9 * 2 * whole.columns);
-  const std::uint64_t pair = 18 * whole.visits + 6 * whole.columns;
+  const Prediction& prediction = body.counts.prediction;
+  const std::uint64_t blocks = longest * (88 + prediction.weight_work * 2 * whole.columns);
+  const std::uint64_t pair = prediction.pair_work * whole.visits + 6 * whole.columns;
   return std::max({blocks, pair, begin_batch_work(body.counts, whole, 0), enter_work(whole, whole.columns)});
 }
 
@@ -70,7 +71,10 @@ std::vector<float> solve_ones(const Body& body, const Factor& factor) {
 }
 
 TEST_CASE("a factor is complete after as many slices as its work holds, each within its allowance") {
-  const TestModel model({.levels = 5, .touchable_above = 0.3});
+  layout::Wavelet kind{};
+  SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
+  const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.3});
   const PlacedBody other(model.view(), 40);
   Body& fresh = *other.body;
   resolve(fresh, patch(model, 7, 40));

@@ -32,7 +32,8 @@ std::uint64_t touch_work(const SetCounts& set) noexcept {
 }
 
 CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
-  return {.columns = set.columns,
+  return {.prediction = model.prediction,
+          .columns = set.columns,
           .rows = set.columns,
           .slots = set.slots,
           .set_visits = set.visits,
@@ -70,10 +71,10 @@ std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const F
   constexpr std::uint64_t coefficient_work = 60;  // its scale, and where its blocks stand
   constexpr std::uint64_t scale_work = 14;
   const std::uint64_t details = model.rows[levels.details];
-  return 4 * set.columns + 3 * set.visits + coefficient_work * set.coefficients + block_work * blocks +
-         scale_work * details +
+  return 4 * set.columns + model.prediction.force_work * set.visits + coefficient_work * set.coefficients +
+         block_work * blocks + scale_work * details +
          inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details,
-                                model.butterfly) +
+                                model.prediction) +
          4 * set.contacts;
 }
 

@@ -20,7 +20,7 @@ struct ModelCounts {
   std::uint32_t glide_cycles = 1;
   std::uint64_t refining_work = 0;
   std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
-  bool butterfly = false;              ///< has_stencils
+  Prediction prediction{};
   bool forces_only = false;
   std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
   std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F

@@ -20,7 +20,7 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   counts.cached_factors = limits.cached_factors;
   counts.glide_cycles = limits.glide_cycles;
   counts.refining_work = limits.refining_work;
-  counts.butterfly = has_stencils(view);
+  counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "formats/stored_blocks.hpp"
 #include "runtime/column.hpp"
 #include "runtime/domain.hpp"
 
@@ -15,9 +16,20 @@ void add(Touched& touched, std::uint32_t level, std::uint32_t place) {
   touched.mark[place] = true;
 }
 
-// calls visit(place, weight) for what predicts an odd node
+// calls visit(place, stored block) for what predicts an odd node
 template <class Visit>
-void visit_prediction(const Refinement& refinement, std::uint32_t odd, Visit visit) {
+void visit_blocks(const Refinement& refinement, std::uint32_t odd, Visit visit) {
+  const LevelView& at = refinement.view->level[refinement.level[odd]];
+  const std::uint32_t terms = at.predictions.terms;
+  const std::size_t first = std::size_t{terms} * (odd - at.domain_begin);
+  for (std::size_t term = first; term < first + terms; ++term) {
+    visit(stored_source(at.predictions, term), stored_block(at.predictions, term));
+  }
+}
+
+// calls visit(place, number)
+template <class Visit>
+void visit_numbers(const Refinement& refinement, std::uint32_t odd, Visit visit) {
   for (const std::uint32_t parent : refinement.parents[odd].place) {
     if (parent != layout::none) {
       visit(parent, 0.5F);
@@ -28,6 +40,23 @@ void visit_prediction(const Refinement& refinement, std::uint32_t odd, Visit vis
       visit(refinement.stencils[odd].place[k], k < 2 ? layout::wing_weight : layout::outer_weight);
     }
   }
+}
+
+// calls visit(place, weight): either
+template <class Visit>
+void visit_prediction(const Refinement& refinement, std::uint32_t odd, Visit visit) {
+  if (refinement.prediction.blocks) {
+    visit_blocks(refinement, odd, visit);
+  } else {
+    visit_numbers(refinement, odd, visit);
+  }
+}
+
+// what a force on an odd node adds to one that predicts it with a weight
+Float4 shared(float weight, Float4 force) { return splat(weight) * force; }
+
+Float4 shared(const std::byte* weight, Float4 force) {
+  return splat(weight_unit) * transposed_product(StoredBlock<16>::load(weight), force);
 }
 
 // calls visit(place of the odd neighbour, lift) for the neighbours in M(level) of an even node
@@ -48,6 +77,19 @@ std::uint64_t neighbour_visits(const Refinement& refinement, std::uint32_t level
   return std::uint64_t{OddNeighbours::most} * (begin[1] - begin[0]);
 }
 
+void list_parents(const ModelView& view, DomainParents* parents) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& at = view.level[q];
+    for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
+      for (std::uint32_t side = 0; side < 2; ++side) {
+        const std::uint32_t parent = q == 0 ? layout::none : at.refinement[i].parent[side];
+        const bool stored = q > 0 && in_domain(view, parent);
+        parents[at.domain_begin + i].place[side] = stored ? domain_place(view, parent) : layout::none;
+      }
+    }
+  }
+}
+
 void list_stencils(const ModelView& view, DomainStencil* stencils) {
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& at = view.level[q];
@@ -65,23 +107,24 @@ void list_stencils(const ModelView& view, DomainStencil* stencils) {
 
 }  // namespace
 
-bool has_stencils(const ModelView& view) noexcept {
-  return layout::is_butterfly(static_cast<layout::Wavelet>(view.info->wavelet));
-}
-
 void RefinementTables::carve(Arena& arena, const ModelView& view) noexcept {
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     begin_[q] = arena.take<std::uint32_t>(domain_up_to(view, q - 1) + std::uint64_t{1});
     neighbours_[q] = arena.take<OddNeighbours>(count_lifting(view, q).records);
   }
-  parents_ = arena.take<DomainParents>(view.domain_count);
-  if (has_stencils(view)) {
+  if (!prediction_of(view).blocks) {
+    parents_ = arena.take<DomainParents>(view.domain_count);
+  }
+  if (layout::is_butterfly(static_cast<layout::Wavelet>(view.info->wavelet))) {
     stencils_ = arena.take<DomainStencil>(view.domain_count);
   }
   level_ = arena.take<std::uint8_t>(view.domain_count);
 }
 
 void RefinementTables::fill(const ModelView& view) noexcept {
+  if (parents_ != nullptr) {
+    list_parents(view, parents_);
+  }
   if (stencils_ != nullptr) {
     list_stencils(view, stencils_);
   }
@@ -91,12 +134,7 @@ void RefinementTables::fill(const ModelView& view) noexcept {
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& at = view.level[q];
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-      const std::uint32_t place = at.domain_begin + i;
-      level_[place] = static_cast<std::uint8_t>(q);
-      for (std::uint32_t side = 0; side < 2; ++side) {
-        const std::uint32_t parent = q == 0 ? layout::none : at.refinement[i].parent[side];
-        parents_[place].place[side] = q > 0 && in_domain(view, parent) ? domain_place(view, parent) : layout::none;
-      }
+      level_[at.domain_begin + i] = static_cast<std::uint8_t>(q);
     }
   }
 }
@@ -106,7 +144,7 @@ Refinement RefinementTables::refinement(const ModelView& view, Lifting& lifting)
     lifting.begin[q] = begin_[q];
     lifting.neighbours[q] = neighbours_[q];
   }
-  return {&view, &lifting, parents_, stencils_, level_};
+  return {&view, &lifting, prediction_of(view), parents_, stencils_, level_};
 }
 
 void Touched::carve(Arena& arena, const ModelView& view) noexcept {
@@ -145,10 +183,10 @@ void touch(const Refinement& refinement, const std::uint32_t* column, std::uint3
   for (std::uint32_t level = touched.finest; level > 0; --level) {
     add_columns(level);
     touched.forced[level] = touched.count[level];
-    touched.visits += std::uint64_t{prediction_length(refinement.stencils != nullptr)} * touched.forced[level];
+    touched.visits += std::uint64_t{refinement.prediction.length} * touched.forced[level];
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
       visit_prediction(refinement, touched.list[level][k],
-                       [&](std::uint32_t even, float) { add(touched, refinement.level[even], even); });
+                       [&](std::uint32_t even, auto) { add(touched, refinement.level[even], even); });
     }
     for (std::uint32_t q = 0; q < level; ++q) {
       touched.even[level][q] = touched.count[q];
@@ -186,7 +224,7 @@ void transform_forces(const Refinement& refinement, const ColumnForces& columns,
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
       const std::uint32_t odd = touched.list[level][k];
       visit_prediction(refinement, odd,
-                       [&](std::uint32_t even, float weight) { force[even] += splat(weight) * force[odd]; });
+                       [&](std::uint32_t even, auto weight) { force[even] += shared(weight, force[odd]); });
     }
     for (std::uint32_t q = 0; q < level; ++q) {
       for (std::uint32_t k = 0; k < touched.even[level][q]; ++k) {
@@ -200,11 +238,14 @@ void transform_forces(const Refinement& refinement, const ColumnForces& columns,
   add_columns(0);
 }
 
-void SparseInverse::carve(Arena& arena, std::uint64_t slots, bool butterfly) noexcept {
-  // a slot is predicted once, lifted into two, and may be copied from another
+void SparseInverse::carve(Arena& arena, std::uint64_t slots, const Prediction& prediction) noexcept {
+  // a slot is predicted once, lifted into two unless with blocks, and may be copied from another
   step = arena.take<Step>(4 * slots);
-  term = arena.take<Term>(slots * (prediction_length(butterfly) + std::uint64_t{3}));
+  term = arena.take<Term>(slots * (prediction.length + std::uint64_t{3}));
   settled = arena.take<std::uint32_t>(slots);
+  if (prediction.blocks) {
+    block = arena.take<const std::byte*>(2 * slots);
+  }
 }
 
 void list_inverse(const Refinement& refinement, const Touched& touched, const std::uint32_t* slot,
@@ -212,9 +253,12 @@ void list_inverse(const Refinement& refinement, const Touched& touched, const st
   std::uint32_t terms = 0;
   inverse.steps = 0;
   const auto add_term = [&](std::uint32_t place, float weight) { inverse.term[terms++] = {slot[place], weight}; };
-  const auto end_step = [&](std::uint32_t target) {
+  const auto end_step = [&](std::uint32_t target, const std::byte* block = nullptr) {
     const std::uint32_t begin = inverse.steps == 0 ? 0 : inverse.step[inverse.steps - 1].end;
     if (terms > begin) {
+      if (inverse.block != nullptr) {
+        inverse.block[inverse.steps] = block;
+      }
       inverse.step[inverse.steps++] = {target, terms};
       inverse.settled[target] = inverse.steps;
     }
@@ -244,8 +288,16 @@ void list_inverse(const Refinement& refinement, const Touched& touched, const st
     }
     for (std::uint32_t k = 0; k < touched.forced[level]; ++k) {
       const std::uint32_t odd = touched.list[level][k];
-      visit_prediction(refinement, odd, add_term);
-      end_step(slot[odd]);
+      const std::byte* first = nullptr;
+      if (refinement.prediction.blocks) {
+        visit_blocks(refinement, odd, [&](std::uint32_t even, const std::byte* block) {
+          first = first == nullptr ? block : first;
+          add_term(even, 1);
+        });
+      } else {
+        visit_numbers(refinement, odd, add_term);
+      }
+      end_step(slot[odd], first);
     }
     copy_columns(level);
   }

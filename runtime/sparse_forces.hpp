@@ -5,12 +5,13 @@
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
 #include "runtime/float4.hpp"
+#include "runtime/prediction.hpp"
 #include "runtime/wavelet.hpp"
 
 namespace greenloop {
 
 // The transform of sparse nodal forces into wavelet coefficients, T_l^-T for l = c..1 (docs/theory.md):
-//   g_a = f_a + (sum of w f_m over the odd m that a predicts with weight w),
+//   g_a = f_a + (sum of w^T f_m over the odd m that a predicts with weight w),
 //   e_m = f_m - (sum of lift(m -> a) g_a over parents a),
 // in place, by place in the domain, since the places of K(l-1) come before those of M(l). With a unit force at one node
 // it gives the weights with which that node's displacement depends on every coefficient.
@@ -30,7 +31,8 @@ struct DomainStencil {
 struct Refinement {
   const ModelView* view = nullptr;
   const Lifting* lifting = nullptr;
-  const DomainParents* parents = nullptr;   ///< [domain]
+  Prediction prediction{};
+  const DomainParents* parents = nullptr;   ///< [domain]; null with block predictions
   const DomainStencil* stencils = nullptr;  ///< [domain]; null without Butterfly wavelets
   const std::uint8_t* level = nullptr;      ///< [domain] mesh level
 };
@@ -54,12 +56,6 @@ class RefinementTables {
   DomainStencil* stencils_ = nullptr;
   std::uint8_t* level_ = nullptr;
 };
-
-/// Whether the model has Butterfly wavelets.
-[[nodiscard]] bool has_stencils(const ModelView& view) noexcept;
-
-/// Nodes that the prediction of an odd node may read.
-constexpr std::uint32_t prediction_length(bool butterfly) { return butterfly ? 8 : 2; }
 
 /// Which coefficients the forces on some columns reach.
 struct Touched {
@@ -94,12 +90,13 @@ struct ColumnForces {
 };
 
 /// The force coefficients T^-T f of forces on columns, each of which enters on its own level. touched: by the same
-/// columns; force: [domain], 0 before. For the loop; work: 3 units per visit.
+/// columns; force: [domain], 0 before. For the loop; work: Prediction::force_work per visit.
 void transform_forces(const Refinement& refinement, const ColumnForces& columns, const Touched& touched,
                       Float4* force) noexcept;
 
 /// The inverse transform of coefficients that forces reach, which is the adjoint of transform_forces, as steps in
-/// order: x[target] += the sum of weight x[source] over its terms. Targets and sources are slots of coefficients.
+/// order: x[target] += the sum of weight x[source] over its terms. Targets and sources are slots of coefficients. Where
+/// a step has blocks, as block predictions have and copies have not, each weight is times one of them, in their order.
 struct SparseInverse {
   struct Step {
     std::uint32_t target;
@@ -111,12 +108,14 @@ struct SparseInverse {
   };
 
   Step* step = nullptr;  ///< [4 slots]
-  Term* term = nullptr;  ///< [slots (prediction_length + 3)]
+  Term* term = nullptr;  ///< [slots (Prediction::length + 3)]
   std::uint32_t steps = 0;
-  std::uint32_t* settled = nullptr;  ///< [slots] steps after which a slot holds the value of its node
+  std::uint32_t* settled = nullptr;   ///< [slots] steps after which a slot holds the value of its node
+  const std::byte** block = nullptr;  ///< [2 slots] stored_block of a step's first, or null; null without predictions
+                                      ///< by blocks
 
   /// Arrays out of `arena` for so many slots; null while it counts.
-  void carve(Arena& arena, std::uint64_t slots, bool butterfly) noexcept;
+  void carve(Arena& arena, std::uint64_t slots, const Prediction& prediction) noexcept;
 };
 
 /// Columns, and the slots that hold the values of their nodes, on the columns' own levels, in the end.

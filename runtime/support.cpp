@@ -1,7 +1,8 @@
 #include "runtime/support.hpp"
 
+#include "formats/stored_blocks.hpp"
 #include "runtime/domain.hpp"
-#include "runtime/sparse_forces.hpp"
+#include "runtime/prediction.hpp"
 #include "runtime/wavelet.hpp"
 
 namespace greenloop {
@@ -16,6 +17,14 @@ bool add_if_stored(const ModelView& view, std::uint32_t node, PointSupport& supp
 // what predicts node i of M(level)
 bool add_prediction(const ModelView& view, const LevelView& at, std::uint32_t i, PointSupport& coarse) {
   bool fits = true;
+  if (at.predictions.weight != nullptr) {
+    const std::uint32_t terms = at.predictions.terms;
+    for (std::uint32_t k = 0; k < terms; ++k) {
+      const std::uint32_t place = stored_source(at.predictions, std::size_t{terms} * i + k);
+      fits = fits && coarse.add(domain_node(view, place));
+    }
+    return fits;
+  }
   for (const std::uint32_t parent : at.refinement[i].parent) {
     fits = fits && add_if_stored(view, parent, coarse);
   }
@@ -89,7 +98,10 @@ void PointSupport::clear() {
   }
 }
 
-std::uint32_t most_support(const ModelView& view) noexcept { return has_stencils(view) ? PointSupport::most : 3; }
+std::uint32_t most_support(const ModelView& view) noexcept {
+  const Prediction prediction = prediction_of(view);
+  return prediction.blocks || prediction.length > 2 ? PointSupport::most : 3;
+}
 
 bool coarsen(const ModelView& view, std::uint32_t level, const PointSupport& support, PointSupport& coarse) noexcept {
   const LevelView& at = view.level[level];
@@ -120,7 +132,7 @@ ReachBound bound_reach(const ModelView& view, std::uint32_t c, const std::uint32
   bound.visits = 1;
   for (std::uint32_t level = c; level > 0; --level) {
     constexpr std::uint32_t slots = OddNeighbours::most;
-    bound.visits += std::uint64_t{prediction_length(has_stencils(view))} * forced[level];
+    bound.visits += std::uint64_t{prediction_of(view).length} * forced[level];
     bound.visits += std::uint64_t{forced[level - 1]} * slots * ((most_neighbours[level] + slots - 1) / slots);
   }
   bound.bounded = true;

@@ -7,10 +7,14 @@
 namespace greenloop {
 
 /// The nodes of a coarser level that a node's value is interpolated from, and that a force on it is shared among: the
-/// corners of a triangle; with Butterfly wavelets the nodes within about three edges.
+/// corners of a triangle; with Butterfly wavelets the nodes within about three edges. Block predictions are from nodes
+/// near in space, wherever they are on the mesh: if those are within r edges of their level, the support is within 2 r,
+/// since every finer level adds half of what the next coarser one does. That is about 15 r^2 nodes on each sheet of the
+/// surface that is so near; the six nearest nodes of a regular mesh are within 1.4 edges.
 class PointSupport {
  public:
-  static constexpr std::uint32_t most = 192;  ///< Butterfly: vertices of 30 edges and more
+  static constexpr std::uint32_t most =
+      192;  ///< Butterfly: vertices of 30 edges and more; blocks: r of 2.5 on two sheets
 
   explicit PointSupport(std::uint32_t limit) : limit_(limit) { clear(); }
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstring>
 
+#include "formats/stored_blocks.hpp"
+
 namespace greenloop {
 namespace {
 
@@ -21,7 +23,13 @@ void undo_lifting(const LevelView& level, const ParentOffsets* parents, const Fl
   }
 }
 
-// halfway between the parents; 0 outside the domain
+// 0 outside the domain
+void clear_fixed(const LevelView& level, Float4* x) {
+  const std::uint32_t count = level.counts->domain_count;
+  std::memset(x + level.node_begin + count, 0, sizeof(Float4) * (level.counts->node_count - count));
+}
+
+// halfway between the parents
 void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   Float4* odd = x + level.node_begin;
   const ParentOffsets* of_level = parents + level.domain_begin;
@@ -41,7 +49,22 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   for (; i < count; ++i) {
     halfway(i);
   }
-  std::memset(odd + count, 0, sizeof(Float4) * (level.counts->node_count - count));
+  clear_fixed(level, x);
+}
+
+// by blocks; sources: byte offsets of the level's terms
+void predict_blocks(const LevelView& level, const std::uint32_t* sources, Float4* x) {
+  Float4* odd = x + level.node_begin;
+  const std::uint32_t terms = level.predictions.terms;
+  const std::byte* block = level.predictions.weight;
+  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+    Float4 sum{};
+    for (std::uint32_t k = 0; k < terms; ++k, block += StoredBlock<16>::bytes) {
+      sum += product(StoredBlock<16>::load(block), at_offset(x, *sources++));
+    }
+    odd[i] = xyz(splat(weight_unit) * sum);
+  }
+  clear_fixed(level, x);
 }
 
 // moves a level's details to its nodes
@@ -77,6 +100,10 @@ void visit_pairs(const ModelView& view, std::uint32_t level, Visit visit) {
       }
     }
   }
+}
+
+std::size_t term_count(const LevelView& level) {
+  return std::size_t{level.predictions.terms} * level.counts->domain_count;
 }
 
 std::uint32_t records_for(std::uint32_t neighbours) {
@@ -131,29 +158,51 @@ void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32
   });
 }
 
-void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept {
+void PredictionOffsets::carve(Arena& arena, const ModelView& view) noexcept {
+  if (!prediction_of(view).blocks) {
+    parents = arena.take<ParentOffsets>(view.domain_count);
+    return;
+  }
+  std::uint64_t terms = 0;
+  for (std::uint32_t q = 1; q < view.levels; ++q) {
+    terms += term_count(view.level[q]);
+  }
+  sources = arena.take<std::uint32_t>(terms);
+}
+
+void PredictionOffsets::fill(const ModelView& view) const noexcept {
+  constexpr std::uint32_t bytes = sizeof(Float4);
+  std::uint32_t* source = sources;
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+    for (std::size_t term = 0; source != nullptr && term < term_count(level); ++term) {
+      *source++ = domain_node(view, stored_source(level.predictions, term)) * bytes;
+    }
+    for (std::uint32_t i = 0; parents != nullptr && i < level.counts->domain_count; ++i) {
       for (std::uint32_t side = 0; side < 2; ++side) {
-        parents[level.domain_begin + i].byte_offset[side] =
-            level.refinement[i].parent[side] * static_cast<std::uint32_t>(sizeof(Float4));
+        parents[level.domain_begin + i].byte_offset[side] = level.refinement[i].parent[side] * bytes;
       }
     }
   }
 }
 
-void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
+void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, const FieldLevels& levels,
                        Float4* coefficients, Float4* x) noexcept {
   const bool lifted = layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet));
+  const std::uint32_t* sources = offsets.sources;
   std::memset(x, 0, sizeof(Float4) * view.level[0].counts->node_count);
   add_details(view.level[0], coefficients, x);
   for (std::uint32_t q = 1; q <= levels.nodes; ++q) {
     const LevelView& level = view.level[q];
     if (lifted && q <= levels.details) {
-      undo_lifting(level, parents, coefficients, x);
+      undo_lifting(level, offsets.parents, coefficients, x);
     }
-    predict(level, parents, x);
+    if (sources != nullptr) {
+      predict_blocks(level, sources, x);
+      sources += term_count(level);
+    } else {
+      predict(level, offsets.parents, x);
+    }
     if (q <= levels.details) {
       add_details(level, coefficients, x);
     }

@@ -6,6 +6,7 @@
 #include "runtime/arena.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/float4.hpp"
+#include "runtime/prediction.hpp"
 
 namespace greenloop {
 
@@ -14,6 +15,7 @@ namespace greenloop {
 //   undo lifting   x_a -= lift[0] d_m,  x_b -= lift[1] d_m    for all m
 //   predict        x_m  = d_m + (x_a + x_b) / 2               for all m
 //                  x_m += (x_c + x_d) / 8 - (x_e + x_f + x_g + x_h) / 16    for m with a Butterfly stencil
+//   or instead     x_m  = d_m + (sum of P_mk x_k)             for all m, with 3x3 blocks P_mk of the file
 // Nodes outside the domain are 0.
 
 /// Up to six odd neighbours in M(l) that are lifted into one domain node of K(l-1), in file order: lifting as a gather
@@ -53,8 +55,17 @@ struct ParentOffsets {
   std::uint32_t byte_offset[2];
 };
 
-/// Of every domain node above level 0, by its place; parents: [domain]. Start-up; linear.
-void list_parent_offsets(const ModelView& view, ParentOffsets* parents) noexcept;
+/// Where what predicts a node stands in an array of Float4 per node.
+struct PredictionOffsets {
+  ParentOffsets* parents = nullptr;  ///< [domain]; null with block predictions
+  std::uint32_t* sources = nullptr;  ///< [terms of Predictions(1), of (2) and so on] byte offsets; null with others
+
+  /// Out of `arena`; null while it counts. Start-up.
+  void carve(Arena& arena, const ModelView& view) noexcept;
+
+  /// Fills them in. Start-up; linear.
+  void fill(const ModelView& view) const noexcept;
+};
 
 /// What a field is asked for.
 struct FieldLevels {
@@ -63,16 +74,16 @@ struct FieldLevels {
 };
 
 /// The inverse transform: displacements x of the nodes of K(levels.nodes), all of which are written. Levels above
-/// levels.details are interpolated; their coefficients are not looked at. parents: [domain]; coefficients: [domain],
-/// those of levels 0..levels.details are zero afterwards. For the loop; work: inverse_transform_work.
-void inverse_transform(const ModelView& view, const ParentOffsets* parents, const FieldLevels& levels,
+/// levels.details are interpolated; their coefficients are not looked at. coefficients: [domain], those of levels
+/// 0..levels.details are zero afterwards. For the loop; work: inverse_transform_work.
+void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, const FieldLevels& levels,
                        Float4* coefficients, Float4* x) noexcept;
 
 /// Work units of inverse_transform. odd_nodes: of the domain above level 0; details: coefficients of levels up to
 /// levels.details.
 constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t details,
-                                               bool butterfly) {
-  return nodes + (butterfly ? 24 : 6) * odd_nodes + 8 * details;
+                                               const Prediction& prediction) {
+  return nodes + prediction.node_work * odd_nodes + 8 * details;
 }
 
 }  // namespace greenloop

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "formats/stored_blocks.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -32,7 +33,7 @@ struct Coefficients {
   // by file index; the coefficients are checked to be zero again
   std::vector<Float4> inverse(const PlacedBody& placed, std::uint32_t field_level) {
     std::vector<Float4> x(view.node_count, splat(1e30F));
-    inverse_transform(view, placed.body->parents, {view.levels - 1, field_level}, value.data(), x.data());
+    inverse_transform(view, placed.body->offsets, {view.levels - 1, field_level}, value.data(), x.data());
     CHECK(std::all_of(value.begin(), value.begin() + domain_up_to(view, field_level),
                       [](Float4 v) { return v[0] == 0 && v[1] == 0 && v[2] == 0 && v[3] == 0; }));
     return x;
@@ -41,12 +42,23 @@ struct Coefficients {
   std::vector<Float4> value;
 };
 
+// takes what the blocks of node i of a level predict from it
+void subtract_blocks(const ModelView& view, const LevelView& level, std::uint32_t i,
+                     std::vector<std::array<double, 3>>& d) {
+  for (std::uint32_t k = 0; k < 9 * level.predictions.terms; ++k) {
+    const std::size_t term = std::size_t{level.predictions.terms} * i + k / 9;
+    const double weight = stored_weight(level.predictions, term, k % 9) / 4096.0;
+    d[level.node_begin + i][k % 3] -= weight * d[domain_node(view, stored_source(level.predictions, term))][k % 9 / 3];
+  }
+}
+
 TEST_CASE("the inverse transform undoes the definition's forward transform") {
   layout::Wavelet kind{};
   SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
   SUBCASE("linear") { kind = layout::Wavelet::linear; }
   SUBCASE("lifted butterfly") { kind = layout::Wavelet::lifted_butterfly; }
   SUBCASE("butterfly") { kind = layout::Wavelet::butterfly; }
+  SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
   const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.95});
   const ModelView& view = model.view();
   const PlacedBody placed(view);
@@ -61,7 +73,8 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
   for (std::uint32_t q = view.levels - 1; q > 0; --q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      for (std::size_t r = 0; r < 3; ++r) {
+      subtract_blocks(view, level, i, d);
+      for (std::size_t r = 0; level.predictions.weight == nullptr && r < 3; ++r) {
         d[level.node_begin + i][r] -= 0.5 * (d[level.refinement[i].parent[0]][r] + d[level.refinement[i].parent[1]][r]);
         if (level.stencils == nullptr || level.stencils[i].wing[0] == layout::none) continue;
         for (const std::uint32_t wing : level.stencils[i].wing) d[level.node_begin + i][r] -= d[wing][r] / 8;

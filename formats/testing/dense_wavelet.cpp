@@ -51,22 +51,20 @@ Matrix3d symmetric_matrix(const float (&six)[6]) {
 
 DenseWavelet::DenseWavelet(const ModelData& model) {
   for (const LevelData& level : model.levels) {
+    std::size_t domain_node = 0;
     for (std::size_t i = 0; i < level.nodes.size(); ++i) {
       const bool domain = (level.nodes[i].flags & layout::node_domain) != 0;
       domain_index_.push_back(domain ? static_cast<Index>(odd_.size()) : -1);
       if (!domain) continue;
       Odd odd{{-1, -1}, {0, 0}, {}};
-      const auto add_term = [&](std::uint32_t node, double weight) {
-        if (domain_index_[node] >= 0) odd.prediction.emplace_back(domain_index_[node], weight);
-      };
       for (std::size_t k = 0; k < 2 && !level.refinement.empty(); ++k) {
         odd.parent[k] = domain_index_[level.refinement[i].parent[k]];
         odd.lift[k] = level.refinement[i].lift[k];
-        add_term(level.refinement[i].parent[k], 0.5);
       }
-      if (!level.stencils.empty() && level.stencils[i].wing[0] != layout::none) {
-        for (const std::uint32_t node : level.stencils[i].wing) add_term(node, 1.0 / 8);
-        for (const std::uint32_t node : level.stencils[i].outer) add_term(node, -1.0 / 16);
+      if (static_cast<layout::Wavelet>(model.info.wavelet) == layout::Wavelet::equilibrated) {
+        add_block_prediction(level.predictions, domain_node++, odd);
+      } else if (!level.refinement.empty()) {
+        add_linear_prediction(level, i, odd);
       }
       odd_.push_back(odd);
     }
@@ -74,11 +72,31 @@ DenseWavelet::DenseWavelet(const ModelData& model) {
   }
 }
 
-// at(i): what stands at domain node i, a vector of some kind
-template <class Vector>
-void DenseWavelet::step_forward(std::uint32_t q, Vector at) const {
+// linear, or by the Butterfly stencil
+void DenseWavelet::add_linear_prediction(const LevelData& level, std::size_t i, Odd& odd) const {
+  const auto add_term = [&](std::uint32_t node, double weight) {
+    if (domain_index_[node] >= 0) odd.prediction.push_back({domain_index_[node], weight * Matrix3d::Identity()});
+  };
+  for (const std::uint32_t node : level.refinement[i].parent) add_term(node, 0.5);
+  if (level.stencils.empty() || level.stencils[i].wing[0] == layout::none) return;
+  for (const std::uint32_t node : level.stencils[i].wing) add_term(node, 1.0 / 8);
+  for (const std::uint32_t node : level.stencils[i].outer) add_term(node, -1.0 / 16);
+}
+
+void DenseWavelet::add_block_prediction(const PredictionsData& predictions, std::size_t domain_node, Odd& odd) const {
+  for (std::size_t k = predictions.terms * domain_node; k < predictions.terms * (domain_node + 1); ++k) {
+    Matrix3d weight;
+    for (Index e = 0; e < 9; ++e)
+      weight(e % 3, e / 3) = predictions.weight[9 * k + static_cast<std::size_t>(e)] / 4096.0;
+    odd.prediction.push_back({static_cast<Index>(predictions.index[k]), weight});
+  }
+}
+
+// at(i): what stands at domain node i, three rows or three columns; predicted(weight, i): what a weight makes of it
+template <class Vector, class Predict>
+void DenseWavelet::step_forward(std::uint32_t q, Vector at, Predict predicted) const {
   for (Index m = begin(q); m < end(q); ++m) {
-    for (const auto& [from, weight] : odd_[m].prediction) at(m) -= weight * at(from);
+    for (const auto& [from, weight] : odd_[m].prediction) at(m) -= predicted(weight, from);
   }
   for (Index m = begin(q); m < end(q); ++m) {
     for (std::size_t k = 0; k < 2; ++k) {
@@ -87,36 +105,36 @@ void DenseWavelet::step_forward(std::uint32_t q, Vector at) const {
   }
 }
 
-template <class Vector>
-void DenseWavelet::step_inverse(std::uint32_t q, Vector at) const {
+template <class Vector, class Predict>
+void DenseWavelet::step_inverse(std::uint32_t q, Vector at, Predict predicted) const {
   for (Index m = begin(q); m < end(q); ++m) {
     for (std::size_t k = 0; k < 2; ++k) {
       if (odd_[m].parent[k] >= 0) at(odd_[m].parent[k]) -= odd_[m].lift[k] * at(m);
     }
   }
   for (Index m = begin(q); m < end(q); ++m) {
-    for (const auto& [from, weight] : odd_[m].prediction) at(m) += weight * at(from);
+    for (const auto& [from, weight] : odd_[m].prediction) at(m) += predicted(weight, from);
   }
 }
 
 void DenseWavelet::forward(std::uint32_t q, Eigen::Ref<MatrixXd> x) const {
-  for (Index j = 0; j < x.cols(); ++j) {
-    step_forward(q, [&](Index i) { return x.col(j).segment<3>(3 * i); });
-  }
+  const auto at = [&](Index i) { return x.middleRows<3>(3 * i); };
+  step_forward(q, at, [&](const Matrix3d& weight, Index i) -> MatrixXd { return weight * at(i); });
 }
 
 void DenseWavelet::inverse(std::uint32_t q, Eigen::Ref<MatrixXd> x) const {
-  for (Index j = 0; j < x.cols(); ++j) {
-    step_inverse(q, [&](Index i) { return x.col(j).segment<3>(3 * i); });
-  }
+  const auto at = [&](Index i) { return x.middleRows<3>(3 * i); };
+  step_inverse(q, at, [&](const Matrix3d& weight, Index i) -> MatrixXd { return weight * at(i); });
 }
 
 void DenseWavelet::forward_columns(std::uint32_t q, Eigen::Ref<MatrixXd> x) const {
-  step_forward(q, [&](Index i) { return x.middleCols<3>(3 * i); });
+  const auto at = [&](Index i) { return x.middleCols<3>(3 * i); };
+  step_forward(q, at, [&](const Matrix3d& weight, Index i) -> MatrixXd { return at(i) * weight.transpose(); });
 }
 
 void DenseWavelet::inverse_columns(std::uint32_t q, Eigen::Ref<MatrixXd> x) const {
-  step_inverse(q, [&](Index i) { return x.middleCols<3>(3 * i); });
+  const auto at = [&](Index i) { return x.middleCols<3>(3 * i); };
+  step_inverse(q, at, [&](const Matrix3d& weight, Index i) -> MatrixXd { return at(i) * weight.transpose(); });
 }
 
 void to_wavelet_form(const DenseWavelet& wavelet, Eigen::Ref<MatrixXd> compliance) {

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "formats/writer.hpp"
@@ -17,7 +16,7 @@ namespace greenloop {
 /// node, coarse to fine. For tests only: plain and slow, to compare others with.
 class DenseWavelet {
  public:
-  /// Of the nodes, the refinement and the stencils of `model`.
+  /// Of the nodes, the refinement, the stencils and the predictions of `model`.
   explicit DenseWavelet(const ModelData& model);
 
   /// L + 1.
@@ -39,15 +38,21 @@ class DenseWavelet {
   void inverse_columns(std::uint32_t q, Eigen::Ref<Eigen::MatrixXd> x) const;
 
  private:
+  struct Term {
+    Eigen::Index from;  // place in the domain
+    Eigen::Matrix3d weight;
+  };
   struct Odd {
     std::array<Eigen::Index, 2> parent;  // in the domain; -1 outside
     std::array<double, 2> lift;
-    std::vector<std::pair<Eigen::Index, double>> prediction;  // from the domain: place, weight
+    std::vector<Term> prediction;
   };
-  template <class Vector>
-  void step_forward(std::uint32_t q, Vector at) const;
-  template <class Vector>
-  void step_inverse(std::uint32_t q, Vector at) const;
+  void add_linear_prediction(const LevelData& level, std::size_t i, Odd& odd) const;
+  void add_block_prediction(const PredictionsData& predictions, std::size_t domain_node, Odd& odd) const;
+  template <class Vector, class Predict>
+  void step_forward(std::uint32_t q, Vector at, Predict predicted) const;
+  template <class Vector, class Predict>
+  void step_inverse(std::uint32_t q, Vector at, Predict predicted) const;
 
   std::vector<Eigen::Index> end_;
   std::vector<Eigen::Index> domain_index_;

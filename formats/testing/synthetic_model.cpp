@@ -205,6 +205,35 @@ std::vector<std::vector<std::uint32_t>> representatives(const Sphere& sphere, st
   return result;
 }
 
+// place of a node among the domain nodes
+std::uint32_t domain_place(const Sphere& sphere, std::uint32_t node) {
+  const auto domain = [&](std::uint32_t flags) { return (flags & layout::node_domain) != 0; };
+  return static_cast<std::uint32_t>(std::count_if(sphere.flags.begin(), sphere.flags.begin() + node, domain));
+}
+
+// from the two ends of the edge and the corners across it, with 3x3 weights that differ a little from numbers; what is
+// outside the domain weighs nothing
+PredictionsData make_predictions(const Sphere& sphere, std::uint32_t q) {
+  constexpr int half = 2048, spread = 401;
+  PredictionsData predictions{.terms = 4, .index = {}, .weight = {}};
+  for (std::uint32_t i = sphere.begin[q]; i < sphere.begin[q + 1]; ++i) {
+    if (!sphere.has(i, layout::node_domain)) continue;
+    const auto& [a, b] = sphere.parents[i];
+    const std::uint32_t* wing = sphere.stencils[i].wing;
+    const std::array<std::uint32_t, 4> from = {a, b, wing[0], wing[1]};
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      const bool inside = sphere.has(from[k], layout::node_domain);
+      predictions.index.push_back(inside ? domain_place(sphere, from[k]) : 0);
+      for (int e = 0; e < 9; ++e) {
+        const int weight =
+            (k < 2 && e % 4 == 0 ? half : 0) + static_cast<int>(37 * i + 11 * k) * (e + 1) % spread - spread / 2;
+        predictions.weight.push_back(static_cast<std::int16_t>(inside ? weight : 0));
+      }
+    }
+  }
+  return predictions;
+}
+
 LevelData make_level(const Sphere& sphere, std::uint32_t q, layout::Wavelet wavelet) {
   constexpr layout::StencilRecord none{{layout::none, layout::none},
                                        {layout::none, layout::none, layout::none, layout::none}};
@@ -223,6 +252,7 @@ LevelData make_level(const Sphere& sphere, std::uint32_t q, layout::Wavelet wave
     if (!butterfly || !sphere.has(i, layout::node_domain)) continue;
     level.stencils.push_back(uses_stencil(sphere, i) ? sphere.stencils[i] : none);
   }
+  if (q > 0 && wavelet == layout::Wavelet::equilibrated) level.predictions = make_predictions(sphere, q);
   return level;
 }
 

@@ -25,9 +25,9 @@ struct SyntheticOptions {
 
 /// A valid model of that body: scaled, thresholded, quantised; the compliance it stands for is positive definite too.
 /// The errors in Level are measured, but patch_force_error and Info::lambda_min stay 0. On the finest of several levels
-/// the free nodes below z = -0.02 m are outside the domain; Butterfly wavelets predict linearly below z = -0.03 m. A
-/// node is represented by the nearest touchable node. Work and memory: quadratic in the nodes. Offline only, for tests
-/// and fuzzing.
+/// the free nodes below z = -0.02 m are outside the domain; Butterfly wavelets predict linearly below z = -0.03 m, the
+/// weights of Equilibrated ones are arbitrary. A node is represented by the nearest touchable node. Work and memory:
+/// quadratic in the nodes. Offline only, for tests and fuzzing.
 [[nodiscard]] ModelData synthetic_model(const SyntheticOptions& options);
 
 /// Some valid records of patterns, by kind and contacts, all numbers different.

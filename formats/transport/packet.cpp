@@ -114,6 +114,8 @@ void PacketModel::code_section(BitCoder& coder, std::uint32_t q, PacketSection& 
     mesh_.code_refinement(coder, q, bytes);
   } else if (kind == SectionKind::stencils && holds(sizeof(layout::StencilRecord))) {
     mesh_.code_words(coder, sizeof(layout::StencilRecord) / sizeof(std::uint32_t), bytes);
+  } else if (kind == SectionKind::predictions) {
+    code_predictions(coder, bytes);
   } else if (kind == SectionKind::nodes && a == q && holds(sizeof(layout::NodeRecord))) {
     mesh_.code_nodes(coder, q, bytes);
   } else if (kind == SectionKind::representatives && a <= q && b <= q && holds(sizeof(std::uint32_t))) {
@@ -127,6 +129,16 @@ void PacketModel::code_section(BitCoder& coder, std::uint32_t q, PacketSection& 
   } else {
     bytes_.code(coder, bytes);
   }
+}
+
+void PacketModel::code_predictions(BitCoder& coder, std::span<std::byte> bytes) {
+  const std::size_t header = std::min(bytes.size(), sizeof(layout::PredictionsHeader));
+  bytes_.code(coder, bytes.first(header));
+  if (!PredictionsModel::fits(bytes)) return bytes_.code(coder, bytes.subspan(header));
+  predictions_.code(coder, bytes);
+  const auto [between, behind] = gaps_of_predictions(bytes);
+  bytes_.code(coder, between);
+  bytes_.code(coder, behind);
 }
 
 void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<PacketSection*> layers,

@@ -9,6 +9,7 @@
 #include "formats/layout.hpp"
 #include "formats/transport/adaptive_integer.hpp"
 #include "formats/transport/couplings_model.hpp"
+#include "formats/transport/predictions_model.hpp"
 #include "formats/transport/range_coder.hpp"
 #include "formats/transport/section_models.hpp"
 #include "formats/view.hpp"
@@ -40,11 +41,13 @@ class PacketModel {
  private:
   void code_table(BitCoder& coder, FileExtent extent, std::vector<PacketSection>& sections);
   void code_section(BitCoder& coder, std::uint32_t q, PacketSection& section);
+  void code_predictions(BitCoder& coder, std::span<std::byte> bytes);
   void code_couplings(BitCoder& coder, std::uint32_t q, std::span<PacketSection*> layers, const ModelView* model);
 
   AdaptiveInteger table_{8};
   ByteModel bytes_;
   MeshModel mesh_;
+  PredictionsModel predictions_;
   CouplingsModel couplings_;
 };
 

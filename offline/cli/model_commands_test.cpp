@@ -63,7 +63,7 @@ std::string convert_refusal(const ConvertArguments& arguments) {
 TEST_CASE("inspect --json: every agreed key, with the model's numbers") {
   const Folder folder("inspect_json", {.levels = 3, .coarsest_constraint_level = 1});
   const Json found = inspect_json(folder / "sphere.gloop");
-  CHECK(found["version"] == "4.0");
+  CHECK(found["version"] == "4.1");
   CHECK(found["nodes"] == 66);
   CHECK(found["domain_nodes"] == 41);
   CHECK(found["levels"] == 3);

@@ -32,29 +32,40 @@ Eigen::Matrix3d matrix(const std::vector<float>& matrices, std::size_t i) {
 
 using RowBlocks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A coefficient that forces on some nodes reach, and what all forces do to it.
+// A coefficient that forces on some nodes reach, and what all forces do to it. Weight: of a force on a node in the
+// coefficient's, a number or a matrix.
+template <class Weight>
 class FeltCoefficient {
  public:
   FeltCoefficient(const double* weights, std::size_t nodes)
       : displacement_(RowBlocks::Zero(3, static_cast<Eigen::Index>(3 * nodes))) {
+    constexpr std::size_t numbers = sizeof(Weight) / sizeof(double);
     for (std::size_t k = 0; k < nodes; ++k) {
-      if (weights[k] != 0) reach_.emplace_back(static_cast<Eigen::Index>(k), weights[k]);
+      const double* const own = weights + numbers * k;
+      if (any(own, numbers)) reach_.emplace_back(static_cast<Eigen::Index>(k), load(own, Weight()));
     }
   }
 
   // forces on `other` move this one by `block`
   void feel(const Eigen::Matrix3d& block, const FeltCoefficient& other) {
-    for (const auto& [node, weight] : other.reach_) displacement_.middleCols<3>(3 * node) += weight * block;
+    for (const auto& [node, weight] : other.reach_) displacement_.template middleCols<3>(3 * node) += block * weight;
   }
 
   // adds what it moves its nodes by
   void move(const Eigen::Matrix3d& root, RowBlocks& nodes) const {
     const RowBlocks moved = root * displacement_;
-    for (const auto& [node, weight] : reach_) nodes.middleRows<3>(3 * node) += weight * moved;
+    for (const auto& [node, weight] : reach_) nodes.middleRows<3>(3 * node) += transposed(weight) * moved;
   }
 
  private:
-  std::vector<std::pair<Eigen::Index, double>> reach_;
+  static double load(const double* weight, double) { return *weight; }
+  static Eigen::Matrix3d load(const double* weight, const Eigen::Matrix3d&) {
+    return Eigen::Map<const Eigen::Matrix3d>(weight);
+  }
+  static double transposed(double weight) { return weight; }
+  static Eigen::Matrix3d transposed(const Eigen::Matrix3d& weight) { return weight.transpose(); }
+
+  std::vector<std::pair<Eigen::Index, Weight>> reach_;
   RowBlocks displacement_;
 };
 
@@ -151,23 +162,31 @@ void CompressedCompliance::couple(std::size_t level, std::size_t to_level, std::
 }
 
 Eigen::MatrixXd CompressedCompliance::between(std::size_t level, const std::vector<std::size_t>& nodes) const {
-  const std::size_t count = rows(level), width = nodes.size();
+  return wavelet_.has_blocks() ? between<Eigen::Matrix3d>(level, nodes) : between<double>(level, nodes);
+}
+
+template <class Weight>
+Eigen::MatrixXd CompressedCompliance::between(std::size_t level, const std::vector<std::size_t>& nodes) const {
+  constexpr std::size_t numbers = sizeof(Weight) / sizeof(double);
+  const std::size_t count = rows(level), width = numbers * nodes.size();
   std::vector<double> weights(count * width, 0.0);  // [coefficient][node]
-  for (std::size_t k = 0; k < width; ++k) weights[width * nodes[k] + k] = 1;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {  // ones, or unit matrices
+    for (std::size_t e = 0; e < numbers; e += 4) weights[width * nodes[k] + numbers * k + e] = 1;
+  }
   for (std::size_t l = level; l > 0; --l) wavelet_.split_forces(l, width, weights.data());
 
-  std::vector<FeltCoefficient> felt;
+  std::vector<FeltCoefficient<Weight>> felt;
   std::vector<std::size_t> place(count, count);  // in `felt`
   for (std::size_t i = 0; i < count; ++i) {
     if (!any(weights.data() + i * width, width)) continue;
     place[i] = felt.size();
-    felt.emplace_back(weights.data() + i * width, width);
+    felt.emplace_back(weights.data() + i * width, nodes.size());
   }
 
   for (std::size_t i = 0; i < count; ++i) {
     if (place[i] == count) continue;
     const Eigen::Matrix3d root = matrix(root_, i);
-    FeltCoefficient& own = felt[place[i]];
+    FeltCoefficient<Weight>& own = felt[place[i]];
     own.feel(matrix(diagonal_, i) * root, own);
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
       const Link& link = links_[at];
@@ -177,7 +196,8 @@ Eigen::MatrixXd CompressedCompliance::between(std::size_t level, const std::vect
     }
   }
 
-  RowBlocks result = RowBlocks::Zero(static_cast<Eigen::Index>(3 * width), static_cast<Eigen::Index>(3 * width));
+  const auto size = static_cast<Eigen::Index>(3 * nodes.size());
+  RowBlocks result = RowBlocks::Zero(size, size);
   for (std::size_t i = 0; i < count; ++i) {
     if (place[i] != count) felt[place[i]].move(matrix(root_, i), result);
   }

@@ -51,6 +51,8 @@ class CompressedCompliance {
   };
   using Ends = std::pair<std::uint32_t, std::uint32_t>;  // row, column
 
+  template <class Weight>
+  [[nodiscard]] Eigen::MatrixXd between(std::size_t level, const std::vector<std::size_t>& nodes) const;
   void couple(std::size_t level, std::size_t to_level, std::size_t columns, const double* f, double* y) const;
   [[nodiscard]] std::vector<Ends> load_couplings(const ModelView& view);
   void link(const std::vector<Ends>& ends);

@@ -26,6 +26,7 @@ const test::File& file(layout::Wavelet kind) {
       test::File(test::model_of(body(), layout::wavelets[1], encoding)),
       test::File(test::model_of(body(), layout::wavelets[2], encoding)),
       test::File(test::model_of(body(), layout::wavelets[3], encoding)),
+      test::File(test::model_of(body(), layout::wavelets[4], encoding)),
   };
   return files[static_cast<std::uint32_t>(kind) - 1];
 }

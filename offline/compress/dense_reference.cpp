@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "formats/verify.hpp"
+#include "offline/compress/equilibrated_prediction.hpp"
 #include "offline/compress/model_tables.hpp"
 #include "offline/compress/wavelet_compliance.hpp"
 
@@ -31,8 +32,14 @@ Factors factors(const SurfaceWavelet& wavelet, std::size_t level, double sign) {
   result.predict.setIdentity();
   result.lift.setIdentity();
   for (const auto& odd : wavelet.odds(level)) {
-    for (const auto& [row, weight] : odd.prediction()) {
-      for (Eigen::Index k = 0; k < 3; ++k) result.predict.coeffRef(at(odd.row) + k, at(row) + k) -= sign * weight;
+    const auto add_term = [&](std::uint32_t row, const Eigen::Matrix3d& weight) {
+      for (Eigen::Index k = 0; k < 9; ++k) {
+        result.predict.coeffRef(at(odd.row) + k % 3, at(row) + k / 3) -= sign * weight(k % 3, k / 3);
+      }
+    };
+    for (const auto& [row, weight] : wavelet.block_prediction(odd)) add_term(row, weight);
+    if (!wavelet.has_blocks()) {
+      for (const auto& [row, weight] : odd.prediction()) add_term(row, weight * Eigen::Matrix3d::Identity());
     }
     for (int side = 0; side < 2; ++side) {
       if (odd.parent[side] == SurfaceWavelet::no_row) continue;
@@ -159,7 +166,7 @@ ColumnSource columns_of(const Eigen::MatrixXd& compliance) {
 }
 
 ModelData model_of(const Body& body, layout::Wavelet kind, const Encoding& encoding) {
-  const SurfaceWavelet wavelet(body.mesh, body.flags, body.area, kind);
+  const SurfaceWavelet wavelet = make_wavelet(body.mesh, body.flags, body.area, kind, columns_of(body.compliance));
   ModelData model = describe_mesh(body.mesh, body.flags, body.area, wavelet, facts());
   add_representatives(body.mesh, body.flags, model);
   encode_couplings(transform_compliance(wavelet, columns_of(body.compliance), 0.25 * encoding.threshold, {}), encoding,

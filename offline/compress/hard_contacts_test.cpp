@@ -24,9 +24,9 @@ using Eigen::VectorXd;
 
 // a body, its model as the loop opens it, and what the file stands for
 struct Case {
-  explicit Case(test::Body from)
+  explicit Case(test::Body from, layout::Wavelet wavelet = layout::Wavelet::lifted_linear)
       : body(std::move(from)),
-        bytes(encode(test::measure_model(body).built.model)),
+        bytes(encode(test::measure_model(body, wavelet).built.model)),
         model(bytes),
         compliance(test::dense_compliances(model.view())) {}
   test::Body body;
@@ -35,13 +35,14 @@ struct Case {
   std::vector<MatrixXd> compliance;  // [constraint level]
 };
 
-// a blob, and a ball with a long thin ear
+// a blob, and a ball with a long thin ear, with two wavelets
 const std::vector<Case>& cases() {
   static const std::vector<Case> all = [] {
     std::vector<Case> result;
     result.emplace_back(test::make_body(2));
     result.emplace_back(
         test::solve_body(test::eared_ball(3), [](const Eigen::Vector3d& x) { return x.z() < -0.7; }, {1e5, 0.3}));
+    result.emplace_back(result.back().body, layout::Wavelet::equilibrated);
     return result;
   }();
   return all;
@@ -212,7 +213,7 @@ TEST_CASE("the loop's single precision against double precision on the same file
   CHECK(worst.field < 9e-6);
 }
 
-TEST_CASE("all nodes in contact: forces within 8 % of the exact ones, coarser and bounded on a budget") {
+TEST_CASE("all nodes in contact: forces near the exact ones, coarser and bounded on a budget") {
   for (const auto& one : cases()) {
     auto contacts = nearest(one.body, 0, one.body.column_nodes.size());
     for (auto& contact : contacts) contact.displacement[1] = 1e-3F;
@@ -228,7 +229,9 @@ TEST_CASE("all nodes in contact: forces within 8 % of the exact ones, coarser an
     const double error = (f - exact).norm() / exact.norm();
     MESSAGE(count, " contacts: force error ", error, ", work ", report.work, " of ",
             need.worst_work[one.model.view().levels - 1], " declared");
-    CHECK(error < 0.08);
+    // 5 % were asked for patches of 64; a set three times as large sees more of what fewer blocks leave out
+    const auto wavelet = static_cast<layout::Wavelet>(one.model.view().info->wavelet);
+    CHECK(error < (wavelet == layout::Wavelet::equilibrated ? 0.12 : 0.08));
     // what least_work promises: an answer, whatever the contacts
     std::uint32_t coarsest = report.constraint_level;
     for (std::uint64_t budget = report.work - 1; budget > need.least_work; budget = budget / 2) {

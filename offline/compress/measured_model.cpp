@@ -9,7 +9,7 @@
 
 namespace greenloop::offline::test {
 
-MeasuredModel measure_model(const Body& body) {
+MeasuredModel measure_model(const Body& body, layout::Wavelet wavelet) {
   MeasuredModel result;
   result.built = build_model({body.mesh,
                               body.flags,
@@ -17,7 +17,7 @@ MeasuredModel measure_model(const Body& body) {
                               body.column_nodes,
                               columns_of(body.compliance),
                               default_accuracy,
-                              layout::Wavelet::lifted_linear,
+                              wavelet,
                               facts(),
                               "{}",
                               {}},

@@ -17,6 +17,6 @@ struct MeasuredModel {
   bool certified = false;  ///< check_certificate with the file's lambda_min
   bool definite = false;   ///< dense Cholesky factorisation of what the file stands for
 };
-[[nodiscard]] MeasuredModel measure_model(const Body& body);
+[[nodiscard]] MeasuredModel measure_model(const Body& body, layout::Wavelet wavelet = layout::Wavelet::lifted_linear);
 
 }  // namespace greenloop::offline::test

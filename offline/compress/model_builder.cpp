@@ -12,6 +12,7 @@
 #include "formats/describe.hpp"
 #include "formats/verify.hpp"
 #include "offline/compress/certificate.hpp"
+#include "offline/compress/equilibrated_prediction.hpp"
 #include "offline/compress/exact_sample.hpp"
 #include "offline/compress/field_error.hpp"
 #include "offline/compress/field_size.hpp"
@@ -179,7 +180,7 @@ class Build {
   Build(const CompressionInput& input, const Progress& progress)
       : input_(input),
         progress_(progress),
-        wavelet_(input.mesh, input.flags, input.area, input.wavelet),
+        wavelet_(make_wavelet(input.mesh, input.flags, input.area, input.wavelet, input.columns)),
         sample_(checked(input, wavelet_).mesh, wavelet_, input.area),
         contacts_(
             contact_patterns(TouchedSurface(input.mesh, input.flags, input.area, wavelet_), input.facts.max_contacts,

@@ -64,7 +64,8 @@ struct BuiltModel {
 
 /// Compresses the exact compliance into a model that meets `accuracy`, with every constraint level from
 /// facts.coarsest_constraint_level on, and measures its answers to contact_patterns on each. Streams the exact columns
-/// three times: to transform them, to gather the patterns' fields, to measure all of them. Memory: a quarter of the
+/// three times: to transform them, to gather the patterns' fields, to measure all of them; with Equilibrated wavelets
+/// those of all levels but the finest once more, before. Memory: a quarter of the
 /// dense matrix in single precision besides the result. Deterministic. Throws std::invalid_argument if the input does
 /// not fit together, std::runtime_error if the accuracy cannot be met or the result is not positive definite. Offline
 /// only.

@@ -54,6 +54,7 @@ ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint
       level.refinement = refinement_records(mesh, wavelet, q);
       const auto stencils = wavelet.stencils(q);
       level.stencils.assign(stencils.begin(), stencils.end());
+      level.predictions = wavelet.predictions(q);
     }
     model.levels.push_back(std::move(level));
   }

@@ -74,10 +74,8 @@ FieldErrors field_errors(const test::Body& body, const Answer& answer, const Eig
   return {std::sqrt(off / norm), std::sqrt(largest_off / largest)};
 }
 
-TEST_CASE("the loop answers patterns with the errors that are measured for its constraint level") {
-  const auto body = test::make_body(2);
-  const auto exact = solve(body);
-  const test::File file(test::model_of(body, layout::Wavelet::linear, {.threshold = 0.01, .quantum = 0.005}));
+void check_loop(const test::Body& body, const ExactContacts& exact, layout::Wavelet wavelet) {
+  const test::File file(test::model_of(body, wavelet, {.threshold = 0.01, .quantum = 0.005}));
   const CompressedCompliance compressed(file.view);
   const AnsweredContacts answered(file.view, compressed, exact);
   const auto opened = Model::open(file.bytes.span());
@@ -109,6 +107,15 @@ TEST_CASE("the loop answers patterns with the errors that are measured for its c
     }
   }
   CHECK(levels.size() > 1);
+}
+
+TEST_CASE("the loop answers patterns with the errors that are measured for its constraint level") {
+  const auto body = test::make_body(2);
+  const auto exact = solve(body);
+  for (const layout::Wavelet wavelet : {layout::Wavelet::linear, layout::Wavelet::equilibrated}) {
+    CAPTURE(wavelet);
+    check_loop(body, exact, wavelet);
+  }
 }
 
 }  // namespace

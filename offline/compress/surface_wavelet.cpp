@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "formats/stored_blocks.hpp"
 #include "offline/compress/butterfly_stencil.hpp"
 
 namespace greenloop::offline {
@@ -12,6 +13,13 @@ namespace {
 
 void add(double weight, const double* from, std::size_t width, double* to) {
   for (std::size_t k = 0; k < width; ++k) to[k] += weight * from[k];
+}
+
+// every vector of `to` += sign * weight * that of `from`
+void add(double sign, const Eigen::Matrix3d& weight, const double* from, std::size_t width, double* to) {
+  for (std::size_t k = 0; k < width; k += 3) {
+    Eigen::Map<Eigen::Vector3d>(to + k) += sign * weight * Eigen::Map<const Eigen::Vector3d>(from + k);
+  }
 }
 
 // parent += sign * lift * odd
@@ -25,10 +33,24 @@ void lift(std::span<const SurfaceWavelet::Odd> odds, double sign, std::size_t wi
 }
 
 // odd += sign * prediction
-void predict(std::span<const SurfaceWavelet::Odd> odds, double sign, std::size_t width, double* x) {
-  for (const auto& odd : odds) {
-    for (const auto& [row, weight] : odd.prediction()) add(sign * weight, x + width * row, width, x + width * odd.row);
+void predict(const SurfaceWavelet& wavelet, std::size_t level, double sign, std::size_t width, double* x) {
+  for (const auto& odd : wavelet.odds(level)) {
+    double* const own = x + width * odd.row;
+    if (wavelet.has_blocks()) {
+      for (const auto& [row, weight] : wavelet.block_prediction(odd)) add(sign, weight, x + width * row, width, own);
+    } else {
+      for (const auto& [row, weight] : odd.prediction()) add(sign * weight, x + width * row, width, own);
+    }
   }
+}
+
+PredictionsData load_predictions(const LevelView& level) {
+  PredictionsData data{.terms = level.predictions.terms, .index = {}, .weight = {}};
+  for (std::size_t k = 0; k < std::size_t{data.terms} * level.counts->domain_count; ++k) {
+    data.index.push_back(stored_source(level.predictions, k));
+    for (std::uint32_t e = 0; e < 9; ++e) data.weight.push_back(stored_weight(level.predictions, k, e));
+  }
+  return data;
 }
 
 template <class Nodes, class Test>
@@ -40,7 +62,13 @@ bool all_nodes(const Nodes& nodes, Test test) {
 
 SurfaceWavelet::SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
                                const std::vector<double>& area, layout::Wavelet kind)
-    : kind_(kind) {
+    : kind_(kind), predictions_(mesh.vertex_end.size()) {
+  if (has_blocks()) throw std::invalid_argument("wavelet: equilibrated prediction is given by its weights");
+  describe(mesh, flags, area);
+}
+
+void SurfaceWavelet::describe(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
+                              const std::vector<double>& area) {
   const std::size_t count = mesh.positions.size();
   if (flags.size() != count || area.size() != count || mesh.vertex_end.empty()) {
     throw std::invalid_argument("wavelet: " + std::to_string(flags.size()) + " flags and " +
@@ -48,15 +76,23 @@ SurfaceWavelet::SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<st
                                 " nodes; give one per node");
   }
   number_rows(mesh, flags, area);
-  if (layout::is_butterfly(kind)) find_stencils(mesh, flags);
+  if (layout::is_butterfly(kind_)) find_stencils(mesh, flags);
   find_parents(mesh, flags);
   integrate(area);
+}
+
+SurfaceWavelet::SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
+                               const std::vector<double>& area, std::vector<PredictionsData> predictions)
+    : kind_(layout::Wavelet::equilibrated), predictions_(std::move(predictions)) {
+  describe(mesh, flags, area);
+  decode_predictions();
 }
 
 SurfaceWavelet::SurfaceWavelet(const ModelView& view) : kind_(static_cast<layout::Wavelet>(view.info->wavelet)) {
   row_of_node_.assign(view.node_count, no_row);
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& at = view.level[level];
+    predictions_.push_back(load_predictions(at));
     if (at.stencils != nullptr) stencils_.insert(stencils_.end(), at.stencils, at.stencils + at.counts->domain_count);
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
       row_of_node_[at.node_begin + i] = static_cast<std::uint32_t>(nodes_.size());
@@ -69,6 +105,43 @@ SurfaceWavelet::SurfaceWavelet(const ModelView& view) : kind_(static_cast<layout
       std::copy_n(lift, 2, odds_.back().lift);
     }
   }
+  if (has_blocks()) decode_predictions();
+}
+
+void SurfaceWavelet::decode_predictions() {
+  if (predictions_.size() != row_end_.size()) {
+    throw std::invalid_argument("wavelet: predictions of " + std::to_string(predictions_.size()) + " levels for " +
+                                std::to_string(row_end_.size()));
+  }
+  block_begin_ = {0};
+  for (std::size_t level = 1; level <= finest(); ++level) {
+    const PredictionsData& data = predictions_[level];
+    const std::size_t terms = data.terms, nodes = row_end_[level] - row_end_[level - 1];
+    if (data.index.size() != terms * nodes || data.weight.size() != 9 * terms * nodes) {
+      throw std::invalid_argument("wavelet: predictions of level " + std::to_string(level) + " are not of its " +
+                                  std::to_string(nodes) + " domain nodes");
+    }
+    for (std::size_t k = 0; k < terms * nodes; ++k) {
+      BlockTerm term{.row = data.index[k], .weight = {}};
+      if (term.row >= row_end_[level - 1]) {
+        throw std::invalid_argument("wavelet: row " + std::to_string(term.row) + " predicts one of level " +
+                                    std::to_string(level) + " but is not of a coarser one");
+      }
+      for (Eigen::Index e = 0; e < 9; ++e) {
+        const std::int16_t weight = data.weight[9 * k + static_cast<std::size_t>(e)];
+        term.weight(e % 3, e / 3) = double{layout::prediction_unit} * weight;
+      }
+      block_terms_.push_back(term);
+      if ((k + 1) % terms == 0) block_begin_.push_back(block_terms_.size());
+    }
+    if (terms == 0) block_begin_.resize(block_begin_.size() + nodes, block_terms_.size());
+  }
+}
+
+std::span<const SurfaceWavelet::BlockTerm> SurfaceWavelet::block_prediction(const Odd& odd) const {
+  if (block_begin_.empty()) return {};
+  const std::size_t begin = block_begin_[odd.row - row_end_[0]], end = block_begin_[odd.row - row_end_[0] + 1];
+  return std::span(block_terms_).subspan(begin, end - begin);
 }
 
 void SurfaceWavelet::number_rows(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
@@ -169,18 +242,23 @@ std::span<const SurfaceWavelet::Odd> SurfaceWavelet::odds(std::size_t level) con
 }
 
 void SurfaceWavelet::split(std::size_t level, std::size_t width, double* x) const {
-  predict(odds(level), -1, width, x);
+  predict(*this, level, -1, width, x);
   lift(odds(level), 1, width, x);
 }
 
 void SurfaceWavelet::merge(std::size_t level, std::size_t width, double* x) const {
   lift(odds(level), -1, width, x);
-  predict(odds(level), 1, width, x);
+  predict(*this, level, 1, width, x);
 }
 
 void SurfaceWavelet::split_forces(std::size_t level, std::size_t width, double* f) const {
   for (const auto& odd : odds(level)) {
-    for (const auto& [row, weight] : odd.prediction()) add(weight, f + width * odd.row, width, f + width * row);
+    const double* const own = f + width * odd.row;
+    if (has_blocks()) {
+      for (const auto& [row, weight] : block_prediction(odd)) add(1, weight.transpose(), own, width, f + width * row);
+    } else {
+      for (const auto& [row, weight] : odd.prediction()) add(weight, own, width, f + width * row);
+    }
   }
   for (const auto& odd : odds(level)) {
     for (int side = 0; side < 2; ++side) {

@@ -9,13 +9,15 @@
 #include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
 #include "formats/view.hpp"
+#include "formats/writer.hpp"
 
 namespace greenloop::offline {
 
 /// The wavelet transforms on the domain nodes of a semi-regular surface (James & Pai 2003, section 4.3; Schröder &
 /// Sweldens 1995; docs/theory.md section 3): Linear or Butterfly prediction, then, if lifted, one step that gives each
-/// wavelet zero mean. Rows are the domain nodes in node order, so that K(l) is the first row_end(l) rows. Nodal arrays
-/// hold `width` numbers per row; the steps mix rows only. Offline only.
+/// wavelet zero mean; or Equilibrated prediction with 3x3 weights (docs/fields.md). Rows are the domain nodes in node
+/// order, so that K(l) is the first row_end(l) rows. Nodal arrays hold `width` numbers per row; the steps mix rows
+/// only, and with 3x3 weights the three numbers of a vector, so that `width` is then a multiple of 3. Offline only.
 class SurfaceWavelet {
  public:
   static constexpr std::uint32_t no_row = layout::none;
@@ -26,8 +28,15 @@ class SurfaceWavelet {
     double weight = 0;
   };
 
+  /// A row and its 3x3 weight in a prediction.
+  struct BlockTerm {
+    std::uint32_t row = 0;
+    Eigen::Matrix3d weight;
+  };
+
   /// One odd node: its row, its parents' rows (no_row: outside the domain, where values are 0), its lifting weights
-  /// towards them (0 towards no_row, and everywhere if unlifted), and what predicts it: the parents first.
+  /// towards them (0 towards no_row, and everywhere if unlifted), and what predicts it with numbers as weights: the
+  /// parents first. Equilibrated: that is what integrals follow from; block_prediction() predicts.
   struct Odd {
     std::uint32_t row = 0;
     std::uint32_t parent[2] = {};
@@ -40,12 +49,16 @@ class SurfaceWavelet {
 
   /// `flags` is one layout::NodeFlag set per node, closed under free parents (mark_domain); `area` the integral of each
   /// node's hat function [m^2], positive. Butterfly prediction needs every node of the stencil to be in the domain or
-  /// held; elsewhere it is Linear. A lifting weight stands only where it lies between 0 and 1, as those of Linear
-  /// wavelets do: Butterfly scaling functions may have integrals that are not positive, or tiny, next to much larger
-  /// triangles. Throws std::invalid_argument if sizes do not fit, an area is not positive or a free parent of a domain
-  /// node is outside the domain.
+  /// held; elsewhere it is Linear. Not equilibrated. A lifting weight stands only where it lies
+  /// between 0 and 1, as those of Linear wavelets do: Butterfly scaling functions may have integrals that are not
+  /// positive, or tiny, next to much larger triangles. Throws std::invalid_argument if sizes do not fit, an area is not
+  /// positive or a free parent of a domain node is outside the domain.
   SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, const std::vector<double>& area,
                  layout::Wavelet kind);
+
+  /// Of Equilibrated wavelets; predictions: of each level, none of level 0, as equilibrated_predictions makes them.
+  SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, const std::vector<double>& area,
+                 std::vector<PredictionsData> predictions);
 
   /// The transform of a verified model. Integrals are not stored there: `integrals` may not be called.
   explicit SurfaceWavelet(const ModelView& view);
@@ -60,11 +73,20 @@ class SurfaceWavelet {
   /// The stencils of M(level) by row, of nodes; empty if prediction is Linear.
   [[nodiscard]] std::span<const layout::StencilRecord> stencils(std::size_t level) const;
 
+  /// The predictions of M(level) as they are stored; none if weights are numbers.
+  [[nodiscard]] const PredictionsData& predictions(std::size_t level) const { return predictions_[level]; }
+
+  /// Whether weights are 3x3.
+  [[nodiscard]] bool has_blocks() const { return kind_ == layout::Wavelet::equilibrated; }
+
+  /// What predicts an odd node if has_blocks, else nothing.
+  [[nodiscard]] std::span<const BlockTerm> block_prediction(const Odd& odd) const;
+
   /// Integrals of the scaling functions of `level` on the domain [m^2], for the rows of K(level).
   [[nodiscard]] const std::vector<double>& integrals(std::size_t level) const { return integrals_[level]; }
 
   /// One forward step T_l in place on the rows of K(level): values to averages on K(level-1) and details on M(level).
-  /// Work: 4 (Linear) or 10 (Butterfly) * width multiply-adds per odd row, as in the two below.
+  /// Work: 4 (Linear), 10 (Butterfly) or 18 (Equilibrated) * width multiply-adds per odd row, as in the two below.
   void split(std::size_t level, std::size_t width, double* x) const;
 
   /// T_l^-1: averages and details to values.
@@ -74,6 +96,7 @@ class SurfaceWavelet {
   void split_forces(std::size_t level, std::size_t width, double* f) const;
 
  private:
+  void describe(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, const std::vector<double>& area);
   void number_rows(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
                    const std::vector<double>& area);
   void find_stencils(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags);
@@ -81,12 +104,16 @@ class SurfaceWavelet {
   [[nodiscard]] Odd make_odd(std::size_t row, std::size_t a, std::size_t b) const;
   void integrate(const std::vector<double>& area);
   void lift_level(std::size_t level, const std::vector<double>& integral);
+  void decode_predictions();
 
   layout::Wavelet kind_;
   std::vector<std::size_t> nodes_;
   std::vector<std::uint32_t> row_of_node_;
   std::vector<std::size_t> row_end_;
   std::vector<layout::StencilRecord> stencils_;  // of the rows above level 0
+  std::vector<PredictionsData> predictions_;     // by level
+  std::vector<BlockTerm> block_terms_;           // of the odd nodes, one after the other
+  std::vector<std::size_t> block_begin_;         // [odd nodes + 1]; empty if weights are numbers
   std::vector<Odd> odds_;
   std::vector<std::vector<double>> integrals_;
 };

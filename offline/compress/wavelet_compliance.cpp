@@ -56,7 +56,18 @@ Eigen::Matrix3d symmetric(const Eigen::Matrix3d& block) { return 0.5 * (block + 
 
 // x -= the prediction from the columns of even rows
 template <class Column>
-void predict(const SurfaceWavelet::Odd& odd, std::size_t count, Column column, double* x) {
+void predict(const SurfaceWavelet& wavelet, const SurfaceWavelet::Odd& odd, std::size_t count, Column column,
+             double* x) {
+  if (wavelet.has_blocks()) {
+    for (const auto& [row, weight] : wavelet.block_prediction(odd)) {
+      const float* from = column(row);
+      const Eigen::Matrix3d right = weight.transpose();
+      for (std::size_t k = 0; k < count; k += width) {
+        Eigen::Map<Eigen::Matrix3d>(x + k) -= Eigen::Map<const Eigen::Matrix3f>(from + k).cast<double>() * right;
+      }
+    }
+    return;
+  }
   for (const auto& [row, weight] : odd.prediction()) {
     const float* from = column(row);
     for (std::size_t k = 0; k < count; ++k) x[k] -= weight * static_cast<double>(from[k]);
@@ -82,7 +93,7 @@ void transform_columns(const SurfaceWavelet& wavelet, std::size_t finest, BlockM
       float* own = matrix.column(odd.row);
       std::copy_n(own, detail.size(), detail.begin());
       predict(
-          odd, detail.size(), [&](std::uint32_t row) { return matrix.column(row); }, detail.data());
+          wavelet, odd, detail.size(), [&](std::uint32_t row) { return matrix.column(row); }, detail.data());
       std::transform(detail.begin(), detail.end(), own, [](double x) { return static_cast<float>(x); });
     }
     for (const auto& odd : wavelet.odds(level)) {
@@ -148,7 +159,7 @@ class Transform {
 
   void add_finest_detail(const SurfaceWavelet::Odd& odd, Values& x) {
     predict(
-        odd, x.size(), [&](std::uint32_t row) { return even_columns_[row].data(); }, x.data());
+        *wavelet_, odd, x.size(), [&](std::uint32_t row) { return even_columns_[row].data(); }, x.data());
     lift(odd, x.data(), result_.coarse);
     add_column(wavelet_->finest(), odd.row, [&](std::size_t i) { return block_of(x.data(), i); });
   }
@@ -221,10 +232,11 @@ std::vector<double> exact_column(const SurfaceWavelet& wavelet, const WaveletCom
   for (std::size_t c = 0; c < 3; ++c) f[width * j + 4 * c] = 1;
   for (std::size_t l = level; l > 0; --l) wavelet.split_forces(l, width, f.data());
   for (std::size_t i = 0; i < wavelet.row_end(level); ++i) {
-    const double weight = f[width * i];  // of the unit matrix
-    if (weight == 0) continue;
-    const float* column = compliance.coarse.column(i);
-    for (std::size_t k = 0; k < size; ++k) x[k] += weight * static_cast<double>(column[k]);
+    const Eigen::Matrix3d force = block_of(f.data(), i);
+    if (force.isZero(0)) continue;
+    for (std::size_t row = 0; row < wavelet.row_end(level); ++row) {
+      Eigen::Map<Eigen::Matrix3d>(x.data() + width * row) += compliance.coarse.block(row, i) * force;
+    }
   }
   for (std::size_t l = 1; l <= level; ++l) wavelet.merge(l, width, x.data());
   return x;

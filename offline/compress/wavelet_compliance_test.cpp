@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "offline/compress/dense_reference.hpp"
+#include "offline/compress/equilibrated_prediction.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -18,7 +19,9 @@ const test::Body& body() {
   return value;
 }
 
-SurfaceWavelet wavelet_of(const test::Body& b, layout::Wavelet kind) { return {b.mesh, b.flags, b.area, kind}; }
+SurfaceWavelet wavelet_of(const test::Body& b, layout::Wavelet kind) {
+  return make_wavelet(b.mesh, b.flags, b.area, kind, test::columns_of(b.compliance));
+}
 
 WaveletCompliance transformed(layout::Wavelet kind, double floor) {
   return transform_compliance(wavelet_of(body(), kind), test::columns_of(body().compliance), floor, {});

@@ -111,7 +111,7 @@ TransformFigures measure_transform(const Model& model, const GreenStore& store, 
     for (std::size_t i = 0; i < at_once; ++i) {
       value = sums;
       sum += time_of(1, [&] {
-        inverse_transform(view, body.parents, {patch.level, patch.level}, value.data(), x.data());
+        inverse_transform(view, body.offsets, {patch.level, patch.level}, value.data(), x.data());
       });
     }
     transform.push_back(sum / static_cast<double>(at_once));

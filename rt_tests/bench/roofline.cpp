@@ -17,7 +17,8 @@ constexpr std::size_t at_once = 20;  // calls of a small kernel between two look
 
 class RooflineRun {
  public:
-  RooflineRun(const Model& model, std::size_t rounds) : view_(&model.view()), rounds_(rounds) {
+  RooflineRun(const Model& model, std::size_t rounds)
+      : view_(&model.view()), prediction_(prediction_of(model.view())), rounds_(rounds) {
     for (const std::size_t bytes : stream_bytes) {
       streams_.emplace_back(bytes);
     }
@@ -107,15 +108,15 @@ class RooflineRun {
     const auto odd = static_cast<double>(view_->domain_count - view_->level[0].counts->domain_count);
     add({.kernel = "inverse transform",
          .contacts = patch.set.size(),
-         .bytes = view_->node_count * 2.0 * sizeof(Float4) + odd * sizeof(ParentOffsets) +
+         .bytes = view_->node_count * 2.0 * sizeof(Float4) + odd * prediction_bytes() +
                   moved * (2 * sizeof(Float4) + (lifted ? sizeof(layout::RefinementRecord) : 0)),
-         .flops = odd * (has_stencils(*view_) ? 33 : 6) + moved * (lifted ? 15 : 3)},
+         .flops = odd * prediction_flops() + moved * (lifted ? 15 : 3)},
         [&] {
           double us = 0;
           for (std::size_t i = 0; i < at_once; ++i) {
             sum();
             us += time_once([&] {
-              inverse_transform(*view_, body.parents, {patch.level, patch.level}, body.field_sums.of_blocks, x.data());
+              inverse_transform(*view_, body.offsets, {patch.level, patch.level}, body.field_sums.of_blocks, x.data());
             });
           }
           return us / at_once;
@@ -156,6 +157,15 @@ class RooflineRun {
             cholesky_solve(patch.order(), patch.stride(), factor.data(), solution.data());
           });
         });
+  }
+
+  // of predicting an odd node in the inverse transform, and what is read for it beside the field
+  [[nodiscard]] double prediction_flops() const {
+    return prediction_.blocks ? 18.0 * prediction_.length + 3 : prediction_.length > 2 ? 33 : 6;
+  }
+  [[nodiscard]] double prediction_bytes() const {
+    constexpr double of_block = sizeof(std::uint32_t) + StoredBlock<16>::bytes;
+    return prediction_.blocks ? of_block * prediction_.length : double{sizeof(ParentOffsets)};
   }
 
   // of all couplings of touched coefficients, of tiles with what they lack
@@ -218,14 +228,18 @@ class RooflineRun {
     return static_cast<double>(bytes);
   }
 
+  // of a block times a weight of T^-1
+  [[nodiscard]] std::uint64_t weight_operations() const { return prediction_.blocks ? 27 : 9; }
+
   // of scaling a block between two slots and adding it in both directions
-  static std::uint64_t block_operations(const PartialCapacitance& batch, const CapacitanceScratch& scratch,
-                                        std::uint32_t slot, std::uint32_t other) {
+  [[nodiscard]] std::uint64_t block_operations(const PartialCapacitance& batch, const CapacitanceScratch& scratch,
+                                               std::uint32_t slot, std::uint32_t other) const {
     if (batch.panel) {
       return 54 + 18;
     }
-    const auto rows = [&](std::uint32_t s) { return scratch.slot_begin[s + 1] - scratch.slot_begin[s]; };
-    return std::min(slot, other) < batch.own ? 54 + 9 * std::uint64_t{rows(slot) + rows(other)} : 0;
+    const std::uint32_t* begin = scratch.functionals.slot_begin;
+    const auto rows = [&](std::uint32_t s) { return begin[s + 1] - begin[s]; };
+    return std::min(slot, other) < batch.own ? 54 + weight_operations() * (rows(slot) + rows(other)) : 0;
   }
 
   std::uint64_t couplings_operations(const PartialCapacitance& batch, const CapacitanceScratch& scratch,
@@ -262,13 +276,14 @@ class RooflineRun {
       const SparseInverse& inverse = scratch.inverse;
       const std::uint64_t terms = inverse.steps > 0 ? inverse.step[inverse.steps - 1].end : 0;
       operations += couplings_operations(batch, scratch, body);
-      operations += 9 * terms * (batch.computed + (panel ? slots : 0));
+      operations += weight_operations() * terms * (batch.computed + (panel ? slots : 0));
       release_capacitance(batch, scratch);
     }
     return 2.0 * static_cast<double>(operations);
   }
 
   const ModelView* view_;
+  Prediction prediction_;
   std::size_t rounds_;
   double clock_us_ = 0;
   std::vector<ReadStream> streams_;

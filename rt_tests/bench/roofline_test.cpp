@@ -12,7 +12,10 @@ namespace greenloop::bench {
 namespace {
 
 TEST_CASE("every kernel has a point, with the bytes and flops that its order takes") {
-  const TestModel model({.levels = 4});
+  layout::Wavelet kind{};
+  SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
+  const TestModel model({.levels = 4, .wavelet = kind});
   const Roofline roofline = measure_roofline(model.model(), {1, 4}, 3);
   CHECK(roofline.gflops > 0);
   CHECK(std::all_of(roofline.gb_per_s.begin(), roofline.gb_per_s.end(), [](double speed) { return speed > 0; }));

@@ -1,6 +1,6 @@
 // write_recorded_model FILE.h WAVELET: a model of the recorded script as a C array, FILE.h and FILE.c; WAVELET is
-// lifted-linear, lifted-butterfly or butterfly. It is the synthetic sphere's mesh with arbitrary numbers on it: bits
-// that no mathematical library has a part in.
+// lifted-linear, lifted-butterfly, butterfly or equilibrated. It is the synthetic sphere's mesh with arbitrary numbers
+// on it: bits that no mathematical library has a part in.
 #include <exception>
 #include <iostream>
 #include <map>
@@ -50,6 +50,14 @@ void fill_scales(std::mt19937_64& random, std::vector<layout::Scale>& scales) {
   }
 }
 
+// about 1/2 on the diagonal of the first two blocks of a node, and small numbers beside
+void fill_weights(std::mt19937_64& random, PredictionsData& predictions) {
+  for (std::size_t k = 0; k < predictions.weight.size(); ++k) {
+    const bool diagonal = k / 9 % predictions.terms < 2 && k % 9 % 4 == 0;
+    predictions.weight[k] = static_cast<std::int16_t>((diagonal ? 2048 : 0) + static_cast<int>(random() % 801) - 400);
+  }
+}
+
 std::size_t domain(const LevelData& level) {
   std::size_t count = 0;
   for (const layout::NodeRecord& node : level.nodes) {
@@ -73,6 +81,7 @@ ModelData arbitrary_model(layout::Wavelet wavelet) {
         lift = lift == 0 ? 0 : uniform(random) / 4;
       }
     }
+    fill_weights(random, level.predictions);
     fill_scales(random, level.scales);
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       fill_couplings(random, domain(level), before, layer, level.couplings[layer]);
@@ -93,10 +102,11 @@ int main(int argc, char** argv) {
   using greenloop::layout::Wavelet;
   const std::map<std::string, Wavelet> wavelets = {{"lifted-linear", Wavelet::lifted_linear},
                                                    {"lifted-butterfly", Wavelet::lifted_butterfly},
-                                                   {"butterfly", Wavelet::butterfly}};
+                                                   {"butterfly", Wavelet::butterfly},
+                                                   {"equilibrated", Wavelet::equilibrated}};
   const auto wavelet = wavelets.find(argc == 3 ? argv[2] : "");
   if (wavelet == wavelets.end()) {
-    std::cerr << "usage: write_recorded_model FILE.h lifted-linear|lifted-butterfly|butterfly\n";
+    std::cerr << "usage: write_recorded_model FILE.h lifted-linear|lifted-butterfly|butterfly|equilibrated\n";
     return 2;
   }
   try {

@@ -72,7 +72,21 @@ class Walk {
     const std::uint32_t stencils = level.stencils == nullptr ? 0 : level.counts->domain_count;
     if (!array(level.stencils, stencils) || !all(level.stencils, stencils, known)) return false;
     return all(level.nodes, count(q), [](const auto& node) { return std::isfinite(node.position[2] + node.area); }) &&
-           (q == 0 || all(level.refinement, count(q), coarser)) && scales(q) && all_couplings(q) && patterns(q);
+           (q == 0 || all(level.refinement, count(q), coarser)) && predictions(q) && scales(q) && all_couplings(q) &&
+           patterns(q);
+  }
+
+  bool predictions(std::uint32_t q) const {
+    const PredictionsView& view = view_.level[q].predictions;
+    const std::uint64_t terms = std::uint64_t{domain(q)} * view.terms;
+    if (view.terms == 0) return true;
+    const auto coarser = [&](std::uint32_t place) { return place < view_.level[q].domain_begin; };
+    const auto* two = static_cast<const std::uint16_t*>(view.index);
+    const auto* four = static_cast<const std::uint32_t*>(view.index);
+    const bool known = view.index_bytes == 2 ? array(two, terms) && all(two, terms, coarser)
+                                             : array(four, terms) && all(four, terms, coarser);
+    return known && view.terms <= layout::most_prediction_terms &&
+           values(reinterpret_cast<const std::int16_t*>(view.weight), terms);
   }
 
   bool patterns(std::uint32_t q) const {

@@ -65,10 +65,13 @@ TEST_CASE("instructions are counted exactly, and a branch on data is seen") {
 }
 
 TEST_CASE("kernels take the same instructions whatever the numbers") {
+  layout::Wavelet kind{};
+  SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
   if (!instruction_counter::install()) {
     return;
   }
-  const TestModel model({.levels = 2});
+  const TestModel model({.levels = 2, .wavelet = kind});
   const ModelView& view = model.view();
   const PlacedBody placed(view);
   Body& body = *placed.body;

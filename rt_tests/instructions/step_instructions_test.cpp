@@ -137,7 +137,9 @@ TEST_CASE("on every way of the planner a step takes the same instructions whatev
   }
   // a patch so large that changing a factor is less work than a fresh one
   const std::pair<SyntheticOptions, std::uint32_t> patches[] = {
-      {{.levels = 2}, 4}, {{.levels = 3, .wavelet = layout::Wavelet::butterfly}, 6}};
+      {{.levels = 2}, 4},
+      {{.levels = 3, .wavelet = layout::Wavelet::butterfly}, 6},
+      {{.levels = 3, .wavelet = layout::Wavelet::equilibrated}, 6}};
   for (const auto& [synthetic, contacts] : patches) {
     const TestModel model(synthetic);
     Steps steps(model, {.max_contacts = contacts, .cached_factors = 2});
@@ -157,10 +159,11 @@ TEST_CASE("a step that cuts the field takes the same instructions whatever the d
   compare({"coarsest, field cut", {}, {model.touchable().back()}, steps.requirement().least_work, true}, model, steps);
 }
 
-// the same structure with other numbers in the couplings
-TestModel with_couplings(std::int16_t value) {
-  ModelData data = synthetic_model({.levels = 2});
+// the same structure with other numbers in the couplings and predictions
+TestModel with_numbers(const SyntheticOptions& synthetic, std::int16_t value) {
+  ModelData data = synthetic_model(synthetic);
   for (LevelData& level : data.levels) {
+    std::fill(level.predictions.weight.begin(), level.predictions.weight.end(), value);
     for (CouplingsData& couplings : level.couplings) {
       std::fill(couplings.value.begin(), couplings.value.end(), value);
     }
@@ -172,24 +175,28 @@ TEST_CASE("forces take the same instructions whatever the numbers in the model")
   if (!instruction_counter::install()) {
     return;
   }
-  const TestModel models[] = {with_couplings(0), with_couplings(1), with_couplings(-1)};
-  std::vector<std::vector<std::uint64_t>> counts(3);
-  for (const TestModel& model : models) {
-    Steps steps(model, {.max_contacts = 4, .cached_factors = 2});
-    const auto patch = nodes_of(model, 0, 4), moved = nodes_of(model, 1, 4);
-    const Way of_forces[] = {{"cached", patch, patch, any_budget, false},
-                             {"changed", patch, moved, any_budget, false},
-                             {"fresh", {}, patch, any_budget, false}};
-    for (std::size_t i = 0; i < std::size(of_forces); ++i) {
-      CAPTURE(of_forces[i].name);
-      const Outcome outcome = take(of_forces[i], steps, {1e-3F});
-      check_way(of_forces[i], outcome.report, model.model().level_count() - 1);
-      counts[i].push_back(outcome.instructions[0]);
+  const std::pair<SyntheticOptions, std::uint32_t> patches[] = {
+      {{.levels = 2}, 4}, {{.levels = 3, .wavelet = layout::Wavelet::equilibrated}, 6}};
+  for (const auto& [synthetic, contacts] : patches) {
+    std::vector<std::vector<std::uint64_t>> counts(3);
+    for (const std::int16_t value : std::initializer_list<std::int16_t>{0, 1, -1}) {
+      const TestModel model = with_numbers(synthetic, value);
+      Steps steps(model, {.max_contacts = contacts, .cached_factors = 2});
+      const auto patch = nodes_of(model, 0, contacts), moved = nodes_of(model, 1, contacts);
+      const Way of_forces[] = {{"cached", patch, patch, any_budget, false},
+                               {"changed", patch, moved, any_budget, false},
+                               {"fresh", {}, patch, any_budget, false}};
+      for (std::size_t i = 0; i < std::size(of_forces); ++i) {
+        CAPTURE(of_forces[i].name);
+        const Outcome outcome = take(of_forces[i], steps, {1e-3F});
+        check_way(of_forces[i], outcome.report, model.model().level_count() - 1);
+        counts[i].push_back(outcome.instructions[0]);
+      }
     }
-  }
-  for (const auto& of_way : counts) {
-    CHECK(all_equal(of_way));
-    CHECK(of_way[0] > 100);
+    for (const auto& of_way : counts) {
+      CHECK(all_equal(of_way));
+      CHECK(of_way[0] > 100);
+    }
   }
 }
 

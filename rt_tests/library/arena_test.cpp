@@ -21,6 +21,7 @@ TEST_CASE("arenas are not larger than recorded") {
       {{.levels = 5}, {.max_contacts = 16, .cached_factors = 8}, 1280384},
       {{.levels = 5}, {.max_contacts = 64, .cached_factors = 8}, 2626880},
       {{.levels = 5, .wavelet = layout::Wavelet::lifted_butterfly}, {.max_contacts = 16, .cached_factors = 8}, 1344448},
+      {{.levels = 5, .wavelet = layout::Wavelet::equilibrated}, {.max_contacts = 16, .cached_factors = 8}, 1777088},
   };
   for (const Recorded& recorded : all) {
     const TestModel model(recorded.model);

@@ -31,7 +31,8 @@ constexpr int cycles = 2000;
 // contact sets of every kind a loop meets, refused ones among them, made before the loop
 class Scripted {
  public:
-  Scripted() : model_({.levels = 4}), body_(model_, {.max_contacts = 16, .cached_factors = 4}) {
+  explicit Scripted(layout::Wavelet wavelet = layout::Wavelet::lifted_linear)
+      : model_({.levels = 4, .wavelet = wavelet}), body_(model_, {.max_contacts = 16, .cached_factors = 4}) {
     std::mt19937_64 random(12);
     const auto nodes = model_.touchable();
     for (int k = 0; k < 40; ++k) {
@@ -125,7 +126,10 @@ TEST_CASE("the mutex guard trips on every other kind of lock") {
 }
 
 TEST_CASE("no allocation and no lock in the loop") {
-  Scripted scripted;
+  layout::Wavelet kind{};
+  SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
+  SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
+  Scripted scripted(kind);
   const std::uint64_t allocations = allocation_guard::count();
   const std::uint64_t locks = mutex_guard::count();
   int refused = 0;

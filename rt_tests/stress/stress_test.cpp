@@ -25,7 +25,8 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
                                      {.levels = 4, .coarsest_constraint_level = 2, .touchable_above = 0.6},
                                      {.levels = 5, .touchable_above = 0.5},
                                      {.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly},
-                                     {.levels = 4, .wavelet = layout::Wavelet::butterfly}};
+                                     {.levels = 4, .wavelet = layout::Wavelet::butterfly},
+                                     {.levels = 4, .wavelet = layout::Wavelet::equilibrated}};
   const Limits limits[] = {{.max_contacts = 1, .cached_factors = 1},
                            {.max_contacts = 16, .cached_factors = 3},
                            {.max_contacts = 33, .cached_factors = 8}};

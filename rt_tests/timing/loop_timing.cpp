@@ -101,7 +101,7 @@ void time_kernels(const TestModel& model) {
                          body.force, 48, matrix.data());
   });
   const double transform = median_nanoseconds(20, [&](int) {
-    inverse_transform(view, body.parents, {c, c}, body.field_sums.of_blocks, x.data());
+    inverse_transform(view, body.offsets, {c, c}, body.field_sums.of_blocks, x.data());
   });
   std::printf("%u nodes, %u in the domain; 16 contacts touch %llu coefficients, %.0f blocks of the field\n",
               view.node_count, view.domain_count, static_cast<unsigned long long>(counts.coefficients), blocks);

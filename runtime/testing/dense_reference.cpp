@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "formats/stored_blocks.hpp"
 #include "runtime/column.hpp"
 #include "runtime/domain.hpp"
 
@@ -13,6 +14,16 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+
+// by blocks of node i of a level
+void add_blocks(const LevelView& level, std::uint32_t i, std::vector<Eigen::Triplet<double>>& predict) {
+  const Index odd = level.domain_begin + i;
+  for (std::uint32_t k = 0; k < 9 * level.predictions.terms; ++k) {
+    const std::size_t term = std::size_t{level.predictions.terms} * i + k / 9;
+    const Index from = Index{3} * stored_source(level.predictions, term);
+    predict.emplace_back(3 * odd + k % 3, from + k % 9 / 3, stored_weight(level.predictions, term, k % 9) / 4096.0);
+  }
+}
 
 }  // namespace
 
@@ -23,6 +34,10 @@ Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q)
   std::vector<Eigen::Triplet<double>> predict;
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     const Index odd = level.domain_begin + i;
+    if (level.predictions.weight != nullptr) {
+      add_blocks(level, i, predict);
+      continue;
+    }
     const auto add_prediction = [&](std::uint32_t node, double weight) {
       for (Index r = 0; node != layout::none && in_domain(view, node) && r < 3; ++r) {
         predict.emplace_back(3 * odd + r, Index{3} * domain_place(view, node) + r, weight);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "recorded_butterfly.h"
+#include "recorded_equilibrated.h"
 #include "recorded_lifted_butterfly.h"
 #include "recorded_model.h"
 #include "rt_tests/determinism/recorded_script.hpp"
@@ -59,6 +60,7 @@ const Recorded recorded[] = {
     {"lifted Butterfly", std::as_bytes(std::span(recorded_lifted_butterfly)),
      greenloop::recorded_lifted_butterfly_digest},
     {"Butterfly", std::as_bytes(std::span(recorded_butterfly)), greenloop::recorded_butterfly_digest},
+    {"Equilibrated", std::as_bytes(std::span(recorded_equilibrated)), greenloop::recorded_equilibrated_digest},
 };
 
 void print(const Recorded& of, const greenloop::RecordedRun& run) {

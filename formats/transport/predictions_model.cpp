@@ -1,0 +1,101 @@
+#include "formats/transport/predictions_model.hpp"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+namespace greenloop::transport {
+namespace {
+
+constexpr std::uint32_t elements = 9;
+constexpr std::int64_t one = 4096;  // in units of layout::prediction_unit
+static_assert(one * layout::prediction_unit == 1);
+
+// Where the arrays stand. No overflow: nodes are below 2^32, terms at most 8 where it is used.
+struct Extent {
+  std::uint64_t index, index_end, weight, weight_end;
+
+  explicit Extent(const layout::PredictionsHeader& header) : index(sizeof(header)) {
+    const std::uint64_t blocks = std::uint64_t{header.nodes} * header.terms;
+    index_end = index + blocks * header.index_bytes;
+    weight = (index_end + layout::alignment - 1) / layout::alignment * layout::alignment;
+    weight_end = weight + blocks * elements * sizeof(std::int16_t);
+  }
+};
+
+layout::PredictionsHeader header_of(std::span<const std::byte> section) {
+  layout::PredictionsHeader header;
+  std::memcpy(&header, section.data(), sizeof(header));
+  return header;
+}
+
+template <class Number>
+Number number_at(std::span<const std::byte> section, std::uint64_t offset) {
+  Number number = 0;
+  std::memcpy(&number, section.data() + offset, sizeof(number));
+  return number;
+}
+
+// codes the difference of a number in place from a prediction
+template <class Number>
+std::int64_t code_number(BitCoder& coder, AdaptiveInteger& model, std::uint32_t context, std::span<std::byte> section,
+                         std::uint64_t offset, std::int64_t predicted) {
+  const std::int64_t difference = number_at<Number>(section, offset) - predicted;
+  const std::int64_t value = predicted + restore_sign(model.code(coder, interleave_sign(difference), context));
+  const auto number = static_cast<Number>(value);
+  if (number != value) throw DamagedPacket("a prediction beyond its range");
+  std::memcpy(section.data() + offset, &number, sizeof(number));
+  return value;
+}
+
+template <class Index>
+void code_index(BitCoder& coder, AdaptiveInteger& model, const layout::PredictionsHeader& header,
+                std::span<std::byte> section) {
+  std::array<std::int64_t, layout::most_prediction_terms> before{};
+  std::uint64_t offset = sizeof(header);
+  for (std::uint32_t node = 0; node < header.nodes; ++node) {
+    for (std::uint32_t k = 0; k < header.terms; ++k, offset += sizeof(Index)) {
+      before[k] = code_number<Index>(coder, model, k, section, offset, before[k]);
+    }
+  }
+}
+
+}  // namespace
+
+bool PredictionsModel::fits(std::span<const std::byte> section) {
+  if (section.size() < sizeof(layout::PredictionsHeader)) return false;
+  const auto header = header_of(section);
+  if (header.terms > layout::most_prediction_terms || (header.index_bytes != 2 && header.index_bytes != 4)) {
+    return false;
+  }
+  const Extent extent(header);
+  return header.index_offset == extent.index && header.weight_offset == extent.weight &&
+         section.size() >= extent.weight_end;
+}
+
+void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section) {
+  const auto header = header_of(section);
+  if (header.index_bytes == 2) {
+    code_index<std::uint16_t>(coder, index_, header, section);
+  } else {
+    code_index<std::uint32_t>(coder, index_, header, section);
+  }
+  std::uint64_t offset = Extent(header).weight;
+  for (std::uint32_t node = 0; node < header.nodes; ++node) {
+    std::array<std::int64_t, elements> left{one, 0, 0, 0, one, 0, 0, 0, one};
+    for (std::uint32_t k = 0; k < header.terms; ++k) {
+      const bool last = k + 1 == header.terms;
+      for (std::uint32_t e = 0; e < elements; ++e, offset += sizeof(std::int16_t)) {
+        const std::uint32_t context = elements * (last ? layout::most_prediction_terms : k) + e;
+        left[e] -= code_number<std::int16_t>(coder, weight_, context, section, offset, last ? left[e] : 0);
+      }
+    }
+  }
+}
+
+PredictionsGaps gaps_of_predictions(std::span<std::byte> section) {
+  const Extent extent(header_of(section));
+  return {section.subspan(extent.index_end, extent.weight - extent.index_end), section.subspan(extent.weight_end)};
+}
+
+}  // namespace greenloop::transport

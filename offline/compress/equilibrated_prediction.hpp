@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/writer.hpp"
+#include "offline/compress/column_source.hpp"
+#include "offline/compress/surface_wavelet.hpp"
+
+namespace greenloop::offline {
+
+/// What predicts the domain nodes of each level in Equilibrated wavelets (docs/fields.md, "Thin bodies"), none on level
+/// 0: 3x3 weights, from some of the nodes of the coarser level that are nearest in space, such that the force pattern
+/// of a detail has neither a net force nor a net moment. Kriging with the exact compliance as covariance, U_mN U_NN^-1,
+/// and the six rigid motions as a drift of large variance. Weights are whole multiples of layout::prediction_unit. A
+/// node whose weights do not fit is predicted from the middle of its parents. linear: wavelets on the same domain.
+/// Reads the exact columns of all levels but the finest once. Memory: 25 kB a node above level 0. Throws
+/// std::invalid_argument if columns are not finite or have not 3 rows a node. Offline only.
+[[nodiscard]] std::vector<PredictionsData> equilibrated_predictions(const SemiRegularMesh& mesh,
+                                                                    const SurfaceWavelet& linear,
+                                                                    const ColumnSource& columns);
+
+/// Wavelets of any kind for an exact compliance, which only Equilibrated ones follow from. Throws as SurfaceWavelet and
+/// equilibrated_predictions do. Offline only.
+[[nodiscard]] SurfaceWavelet make_wavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
+                                          const std::vector<double>& area, layout::Wavelet kind,
+                                          const ColumnSource& columns);
+
+}  // namespace greenloop::offline
