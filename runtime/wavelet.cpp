@@ -52,21 +52,6 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
   clear_fixed(level, x);
 }
 
-// by blocks; sources: byte offsets of the level's terms
-void predict_blocks(const LevelView& level, const std::uint32_t* sources, Float4* x) {
-  Float4* odd = x + level.node_begin;
-  const std::uint32_t terms = level.predictions.terms;
-  const std::byte* block = level.predictions.weight;
-  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-    Float4 sum{};
-    for (std::uint32_t k = 0; k < terms; ++k, block += StoredBlock<16>::bytes) {
-      sum += product(StoredBlock<16>::load(block), at_offset(x, *sources++));
-    }
-    odd[i] = xyz(splat(weight_unit) * sum);
-  }
-  clear_fixed(level, x);
-}
-
 // moves a level's details to its nodes
 void add_details(const LevelView& level, Float4* coefficients, Float4* x) {
   Float4* node = x + level.node_begin;
@@ -170,7 +155,8 @@ void PredictionOffsets::carve(Arena& arena, const ModelView& view) noexcept {
   sources = arena.take<std::uint32_t>(terms);
 }
 
-void PredictionOffsets::fill(const ModelView& view) const noexcept {
+void PredictionOffsets::fill(const ModelView& view) noexcept {
+  predict_blocks = fastest_predict_blocks();
   constexpr std::uint32_t bytes = sizeof(Float4);
   std::uint32_t* source = sources;
   for (std::uint32_t q = 1; q < view.levels; ++q) {
@@ -198,7 +184,8 @@ void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, 
       undo_lifting(level, offsets.parents, coefficients, x);
     }
     if (sources != nullptr) {
-      predict_blocks(level, sources, x);
+      offsets.predict_blocks(level, sources, x);
+      clear_fixed(level, x);
       sources += term_count(level);
     } else {
       predict(level, offsets.parents, x);

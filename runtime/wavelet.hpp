@@ -4,6 +4,7 @@
 
 #include "formats/view.hpp"
 #include "runtime/arena.hpp"
+#include "runtime/block_predictions.hpp"
 #include "runtime/domain.hpp"
 #include "runtime/float4.hpp"
 #include "runtime/prediction.hpp"
@@ -59,12 +60,13 @@ struct ParentOffsets {
 struct PredictionOffsets {
   ParentOffsets* parents = nullptr;  ///< [domain]; null with block predictions
   std::uint32_t* sources = nullptr;  ///< [terms of Predictions(1), of (2) and so on] byte offsets; null with others
+  PredictBlocks predict_blocks = greenloop::predict_blocks;
 
   /// Out of `arena`; null while it counts. Start-up.
   void carve(Arena& arena, const ModelView& view) noexcept;
 
-  /// Fills them in. Start-up; linear.
-  void fill(const ModelView& view) const noexcept;
+  /// Fills them in and chooses the fastest prediction. Start-up; linear.
+  void fill(const ModelView& view) noexcept;
 };
 
 /// What a field is asked for.

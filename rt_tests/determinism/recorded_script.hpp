@@ -82,7 +82,7 @@ struct ScriptOutcome {
 inline constexpr std::uint64_t recorded_digest = 0xedd51eb3146ab249;  ///< lifted Linear wavelets
 inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xa398c99615c64c55;
 inline constexpr std::uint64_t recorded_butterfly_digest = 0xa0339b07d556c417;
-inline constexpr std::uint64_t recorded_equilibrated_digest = 0xe6fa1d7b7984e807;
+inline constexpr std::uint64_t recorded_equilibrated_digest = 0x6ff40a022aafac57;
 
 /// A body that ran the whole script, or why it did not.
 struct RecordedRun {
