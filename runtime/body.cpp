@@ -212,6 +212,7 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
 
 void prepare_fields(const ModelView& view, Tables& tables, Body& body) {
   tables.offsets.fill(view);
+  body.offsets = tables.offsets;
   mark_read(body.refinement, body.touched, tables.read);
   body.base = tables.base.make(view);
   body.mirrored = tables.mirrored.make(view, body.base, tables.read);
@@ -239,7 +240,6 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
     body.cost.level[q] = tables.cost[q];
   }
   body.refinement = tables.refinement.refinement(view, body.lifting);
-  body.offsets = tables.offsets;
   fill_tables(view, tables, body);
   if (!body.counts.forces_only) {
     prepare_fields(view, tables, body);

@@ -103,6 +103,12 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
   }
 }
 
+TEST_CASE("a body predicts with blocks in the fastest form") {
+  const TestModel model({.levels = 3, .wavelet = layout::Wavelet::equilibrated});
+  const PlacedBody placed(model.view());
+  CHECK((placed.body->offsets.predict_blocks == fastest_predict_blocks()));
+}
+
 TEST_CASE("details above the field level are interpolated") {
   const TestModel model({.levels = 4, .touchable_above = 0.95});
   const ModelView& view = model.view();
