@@ -51,7 +51,7 @@ double transform_growth(const ModelView& view, const Prediction& prediction, con
       most = larger(most, sum);
     }
     // values of the level before, its averages, and the details
-    growth = prediction_sum(view, prediction, level) * (growth + 2 * most) + 2;
+    growth = larger(growth, prediction_sum(view, prediction, level) * (growth + 2 * most)) + 2;
   }
   return 2 * growth / (prediction.blocks ? double{weight_unit} : 1);
 }

@@ -13,7 +13,8 @@
 namespace greenloop {
 namespace {
 
-static_assert(GREENLOOP_MAX_LEVELS == layout::max_levels && GREENLOOP_ALIGNMENT == layout::alignment);
+static_assert(GREENLOOP_MAX_LEVELS == layout::max_levels && GREENLOOP_ALIGNMENT == layout::alignment &&
+              GREENLOOP_NO_CONTACT == StepReport::no_contact);
 
 template <class C, class Cpp>
 constexpr bool same(C c, Cpp cpp) {
@@ -82,7 +83,7 @@ constexpr const char* create_error_texts[] = {
     "the arena is too small: give it as many bytes as were requested",
     "the arena is not 64-byte aligned",
     "the limits are out of range: 1..4096 contacts, 1..1024 cached factors, at most 256 cycles of a glide",
-    "the model is not one of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks",
+    "the model is not one of a subdivided triangulation, or a force reaches too much of it, or it is too large",
 };
 
 constexpr const char* status_texts[] = {
@@ -156,6 +157,15 @@ Limits limits_of(greenloop_limits limits) {
 
 }  // namespace
 
+greenloop_intent greenloop_intended(const greenloop_model* model) {
+  const Intent intent = Elastostatic::intended(model_in(model));
+  const Limits& limits = intent.limits;
+  return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.glide_cycles,
+           limits.refining_work},
+          intent.budget.work,
+          intent.rate};
+}
+
 greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits) {
   const Requirement need = Elastostatic::required(model_in(model), limits_of(limits));
   greenloop_requirement requirement = {need.bytes, need.least_work, {}};
@@ -177,6 +187,7 @@ greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* c
   const StepReport report = std::bit_cast<Elastostatic>(in_arena).step(
       {reinterpret_cast<const Contact*>(contacts), count}, {work}, {{force, 3 * count}, {displacement, floats}});
   return {static_cast<greenloop_status>(report.status),
+          report.refused,
           report.constraint_level,
           report.finer_level,
           report.finer_contacts,

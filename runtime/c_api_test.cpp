@@ -86,6 +86,7 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
                                        with_field ? c.field() : nullptr, with_field ? nodes : 0);
     const StepReport expected = body.step(to_cpp(contacts), work, with_field);
     REQUIRE(static_cast<int>(report.status) == static_cast<int>(expected.status));
+    CHECK(report.refused == expected.refused);
     CHECK(report.constraint_level == expected.constraint_level);
     CHECK(report.finer_level == expected.finer_level);
     CHECK(report.finer_contacts == expected.finer_contacts);
@@ -148,6 +149,23 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
   CHECK(greenloop_create(&c.model, {0, 1, 0, 1, 0}, arena.data(), c.need.bytes).error == GREENLOOP_CREATE_BAD_LIMITS);
+}
+
+TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps to it") {
+  CBody body;
+  const greenloop_intent intent = greenloop_intended(&body.model);
+  const auto opened = Model::open(body.bytes());
+  const Intent same = Elastostatic::intended(opened.model);
+  CHECK(intent.limits.max_contacts == opened.model.view().info->max_contacts);
+  CHECK(intent.limits.max_contacts == same.limits.max_contacts);
+  CHECK(intent.limits.cached_factors == same.limits.cached_factors);
+  CHECK(intent.limits.forces_only == 0);
+  CHECK(intent.limits.glide_cycles == same.limits.glide_cycles);
+  CHECK(intent.limits.refining_work == same.limits.refining_work);
+  CHECK(intent.work == opened.model.view().info->step_work);
+  CHECK(intent.work == same.budget.work);
+  CHECK(intent.rate == opened.model.view().info->rate);
+  CHECK(greenloop_required(&body.model, intent.limits).least_work <= intent.work);
 }
 
 TEST_CASE("no cycles of a glide stand for the default") {

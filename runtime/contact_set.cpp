@@ -38,12 +38,13 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
   }
 }
 
-Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept {
-  Status status = Status::ok;
+CheckedContacts check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept {
+  CheckedContacts result;
   std::size_t checked = 0;
   for (; checked < contacts.size(); ++checked) {
-    status = check_contact(contacts[checked], node_count, facts);
-    if (status != Status::ok) {
+    result.status = check_contact(contacts[checked], node_count, facts);
+    if (result.status != Status::ok) {
+      result.refused = static_cast<std::uint32_t>(checked);
       break;
     }
     facts[contacts[checked].node].marked = true;
@@ -51,7 +52,7 @@ Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_coun
   for (std::size_t i = 0; i < checked; ++i) {
     facts[contacts[i].node].marked = false;
   }
-  return status;
+  return result;
 }
 
 std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node,

@@ -22,11 +22,17 @@ struct NodeFacts {
 /// Facts of every node; facts: [node_count]. Start-up; linear in nodes.
 void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept;
 
+/// What check_contacts finds: the first fault and the contact that has it, by its place among them.
+struct CheckedContacts {
+  Status status = Status::ok;
+  std::uint32_t refused = StepReport::no_contact;
+};
+
 /// Work units of check_contacts.
 constexpr std::uint64_t check_contacts_work(std::uint64_t contacts) { return 4 * contacts; }
 
 /// Refuses contacts that are out of range, not touchable, not finite or named twice; the first at fault decides.
-Status check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept;
+CheckedContacts check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept;
 
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;

@@ -46,7 +46,7 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
       contacts.push_back({nodes[i], {static_cast<float>(i), 1.0F, -2.0F}});
     }
     Memory memory(view, contacts.size());
-    REQUIRE(check_contacts(contacts, view.node_count, memory.facts.data()) == Status::ok);
+    REQUIRE(check_contacts(contacts, view.node_count, memory.facts.data()).status == Status::ok);
     for (std::uint32_t c = 0; c < 4; ++c) {
       resolve_contacts(contacts, view, memory.facts.data(), {c}, memory.set);
       const ContactSet& set = memory.set;
@@ -89,9 +89,10 @@ TEST_CASE("each fault of a contact has its name, and the check leaves no trace")
   const ModelView& view = model.view();
   Memory memory(view, 4);
   const auto check = [&](std::vector<Contact> contacts) {
-    const Status status = check_contacts(contacts, view.node_count, memory.facts.data());
+    const CheckedContacts checked = check_contacts(contacts, view.node_count, memory.facts.data());
     CHECK(std::all_of(memory.facts.begin(), memory.facts.end(), [](const NodeFacts& f) { return !f.marked; }));
-    return status;
+    CHECK((checked.refused == StepReport::no_contact) == (checked.status == Status::ok));
+    return checked.status;
   };
   const auto nodes = model.touchable();
   std::uint32_t untouchable = 0;

@@ -228,6 +228,11 @@ StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& pla
 
 }  // namespace
 
+Intent Elastostatic::intended(const Model& model) noexcept {
+  const layout::Info& info = *model.view().info;
+  return {.limits = {.max_contacts = info.max_contacts}, .budget = {info.step_work}, .rate = info.rate};
+}
+
 Requirement Elastostatic::required(const Model& model, const Limits& limits) noexcept {
   BodySizes sizes;
   Requirement requirement;
@@ -280,9 +285,11 @@ StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, 
   }
   StepReport report;
   report.work = check_contacts_work(contacts.size());
-  const Status checked = check_contacts(contacts, body.view->node_count, body.facts);
+  const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
   if (checked != Status::ok) {
-    return held(checked, report.work);
+    report.status = checked;
+    report.refused = refused;
+    return report;
   }
   if (contacts.empty()) {
     body.glide.release();

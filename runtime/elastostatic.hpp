@@ -24,6 +24,13 @@ struct Budget {
   std::uint64_t work = 0;
 };
 
+/// The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md).
+struct Intent {
+  Limits limits;   ///< the scene's contacts, the rest by default: what `budget` was computed for
+  Budget budget;   ///< the scene's work per step, or what the build chose: enough for the finest level
+  float rate = 0;  ///< Hz, steps per second
+};
+
 /// A node held at a prescribed displacement.
 struct Contact {
   std::uint32_t node = 0;      ///< file index of a touchable node
@@ -53,15 +60,18 @@ struct Response {
 };
 
 struct StepReport {
+  static constexpr std::uint32_t no_contact = layout::none;
+
   Status status = Status::ok;
+  bool cached_factor = false;          ///< the capacitance factor came from the cache, unchanged
+  std::uint32_t refused = no_contact;  ///< the first contact, by its place among them, that `status` is about
   std::uint32_t constraint_level = 0;  ///< level at which the contacts were resolved, of a mixed set the coarser one
   std::uint32_t finer_level = 0;       ///< of a mixed set the finer one, else the same
   std::uint32_t finer_contacts = 0;    ///< contacts that were resolved at finer_level
   std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
   float error = 0;                     ///< Level::field_error of that constraint level, as measured offline
-  std::uint64_t work = 0;              ///< units spent, never more than the budget
-  bool cached_factor = false;          ///< the capacitance factor came from the cache, unchanged
   std::uint32_t changed_nodes = 0;     ///< nodes put into a cached factor and taken out of it, to make this one
+  std::uint64_t work = 0;              ///< units spent, never more than the budget
   float glide = 1;                     ///< share of constraint_level in the forces; the rest is of the level before it
   float level_difference = 0;  ///< N, largest component of the older level's forces minus the newer one's; 0: no glide
   double switch_work = 0;      ///< J, elastic energy that this step's change of `glide` put into the body
@@ -81,7 +91,8 @@ enum class CreateError : std::uint8_t {
   arena_too_small,
   arena_misaligned,
   bad_limits,
-  unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has 2^28 nodes or 2^30 blocks
+  unsupported_model,  ///< its refinement is not that of a subdivided triangulation, a force on a node reaches more than
+                      ///< 192 nodes of a coarser level, or it has 2^28 nodes or 2^30 blocks
 };
 
 /// Contact with a linear elastic body by the capacitance matrix algorithm on wavelet-compressed Green's functions
@@ -89,6 +100,9 @@ enum class CreateError : std::uint8_t {
 class Elastostatic {
  public:
   struct Created;
+
+  /// What the scene asked for. Start-up; work: constant.
+  [[nodiscard]] static Intent intended(const Model& model) noexcept;
 
   /// Bytes and worst-case work for `limits`. Start-up; linear in nodes times levels, in blocks, and, for every 512
   /// nodes, in nodes. Zero bytes if `create` would refuse for another reason than memory.

@@ -271,15 +271,18 @@ struct Held {
     field.assign(body.field().begin(), body.field().end());
   }
   // refused with `status`, nothing written, and the next good step is answered as before
-  void refuses(std::span<const Contact> bad, Status status, std::uint64_t work = any_budget) {
+  void refuses(std::span<const Contact> bad, Status status, std::uint32_t refused, std::uint64_t work = any_budget) {
     const StepReport report = body.step(bad, work);
     CHECK(report.status == status);
+    CHECK(report.refused == refused);
     CHECK(report.work <= body.requirement().worst_work[2]);
     CHECK(std::equal(field.begin(), field.end(), body.field().begin()));
     if (bad.size() == contacts.size()) {
       CHECK(std::equal(force.begin(), force.end(), body.force().begin()));
     }
-    CHECK(body.step(contacts, any_budget).status == Status::ok);
+    const StepReport good = body.step(contacts, any_budget);
+    CHECK(good.status == Status::ok);
+    CHECK(good.refused == StepReport::no_contact);
     CHECK(std::equal(field.begin(), field.end(), body.field().begin()));
   }
   TestBody body;
@@ -292,21 +295,21 @@ TEST_CASE("refusals have a name, write nothing and leave the body usable") {
   Held held(model);
   auto bad = held.contacts;
   bad[3].displacement[1] = std::numeric_limits<float>::quiet_NaN();
-  held.refuses(bad, Status::held_not_finite);
+  held.refuses(bad, Status::held_not_finite, 3);
   bad = held.contacts;
   bad[3].node = model.view().node_count;
-  held.refuses(bad, Status::held_out_of_range);
+  held.refuses(bad, Status::held_out_of_range, 3);
   bad = held.contacts;
   bad[0].node = bad[3].node;
-  held.refuses(bad, Status::held_duplicate);
+  held.refuses(bad, Status::held_duplicate, 3);
   bad = held.contacts;
   bad[2].node = model.view().node_count - 1;
-  held.refuses(bad, Status::held_not_touchable);
+  held.refuses(bad, Status::held_not_touchable, 2);
   bad = held.contacts;
   bad[1].displacement[2] = std::numeric_limits<float>::max();
-  held.refuses(bad, Status::held_overflow);
-  held.refuses(held.contacts, Status::held_over_budget, held.body.requirement().least_work - 1);
-  held.refuses(held.contacts, Status::held_over_budget, 0);
+  held.refuses(bad, Status::held_overflow, StepReport::no_contact);
+  held.refuses(held.contacts, Status::held_over_budget, StepReport::no_contact, held.body.requirement().least_work - 1);
+  held.refuses(held.contacts, Status::held_over_budget, StepReport::no_contact, 0);
   bad = held.contacts;
   const auto nodes = model.touchable();
   bad.push_back({*std::find_if(nodes.begin(), nodes.end(),
@@ -315,7 +318,7 @@ TEST_CASE("refusals have a name, write nothing and leave the body usable") {
                                                      [node](const Contact& c) { return c.node == node; });
                                }),
                  {}});
-  held.refuses(bad, Status::held_out_of_range);
+  held.refuses(bad, Status::held_out_of_range, StepReport::no_contact);  // more than the limits allow
 }
 
 TEST_CASE("the nodes of coarser levels, asked for alone, stand where the whole field has them, for less work") {

@@ -71,13 +71,13 @@ double averages_error(const Body& body, const Eigen::VectorXd& averages, const s
 // what the coarser levels say of node i of a level by blocks
 float by_blocks(const ModelView& view, const LevelView& level, std::uint32_t i, const std::vector<Float4>& x) {
   const PredictionsView& at = level.predictions;
-  float sum = 0;
+  float sums[2] = {};  // of terms of even and of odd number
   for (std::size_t term = std::size_t{at.terms} * i; term < std::size_t{at.terms} * (i + 1); ++term) {
     const Float4 from = x[domain_node(view, stored_source(at, term))];
     const auto weight = [&](std::uint32_t k) { return 65536 * static_cast<float>(stored_weight(at, term, k)); };
-    sum += (weight(1) * from[0] + weight(4) * from[1]) + weight(7) * from[2];
+    sums[(term - std::size_t{at.terms} * i) % 2] += (weight(1) * from[0] + weight(4) * from[1]) + weight(7) * from[2];
   }
-  return 0x1p-28F * sum;
+  return 0x1p-28F * (sums[0] + sums[1]);
 }
 
 // what the coarser levels say of node i of a level

@@ -20,6 +20,7 @@ extern "C" {
 
 enum { GREENLOOP_ALIGNMENT = 64 };  /* of a model's bytes and of an arena */
 enum { GREENLOOP_MAX_LEVELS = 12 }; /* of a model */
+#define GREENLOOP_NO_CONTACT 0xffffffffU
 
 /* Rules of the verifier that a model file can break. */
 typedef enum greenloop_rule {
@@ -104,6 +105,13 @@ typedef struct greenloop_limits {
   uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
 } greenloop_limits;
 
+/* The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md). */
+typedef struct greenloop_intent {
+  greenloop_limits limits; /* the scene's contacts, the rest by default: what `work` was computed for */
+  uint64_t work;           /* units per step: the scene's, or what the build chose, enough for the finest level */
+  float rate;              /* Hz, steps per second */
+} greenloop_intent;
+
 /* What those limits cost. Work is counted in units: see docs/runtime.md. */
 typedef struct greenloop_requirement {
   size_t bytes;                              /* of the arena; 0: greenloop_create would refuse */
@@ -125,6 +133,7 @@ typedef struct greenloop_contact {
 
 typedef struct greenloop_report {
   greenloop_status status;
+  uint32_t refused;          /* first contact, by its place among them, that `status` is about; GREENLOOP_NO_CONTACT */
   uint32_t constraint_level; /* level at which the contacts were resolved, of a mixed set the coarser one */
   uint32_t finer_level;      /* of a mixed set the finer one, else the same */
   uint32_t finer_contacts;   /* contacts that were resolved at finer_level */
@@ -154,11 +163,13 @@ int greenloop_is_touchable(const greenloop_model* model, uint32_t node);
 /* Writes a node's place at rest, 3 floats [m]; 0 if the model does not have the node. */
 int greenloop_position(const greenloop_model* model, uint32_t node, float* position);
 
+/* What the scene asked for. Start-up. */
+greenloop_intent greenloop_intended(const greenloop_model* model);
+
 /* Bytes and worst-case work in closed form. Start-up. */
 greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits);
 
-/* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up; makes the columns that fields are sums of, which can
- * take seconds: see Elastostatic::create for the work. */
+/* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up; linear in the model's bytes. */
 greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes);
 
 /* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of the first

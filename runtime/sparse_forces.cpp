@@ -240,8 +240,9 @@ void transform_forces(const Refinement& refinement, const ColumnForces& columns,
 
 void SparseInverse::carve(Arena& arena, std::uint64_t slots, const Prediction& prediction) noexcept {
   // a slot is predicted once, lifted into two unless with blocks, and may be copied from another
-  step = arena.take<Step>(4 * slots);
-  term = arena.take<Term>(slots * (prediction.length + std::uint64_t{3}));
+  const std::uint64_t lifts = prediction.blocks ? 0 : 2;
+  step = arena.take<Step>((2 + lifts) * slots);
+  term = arena.take<Term>(slots * (prediction.length + 1 + lifts));
   settled = arena.take<std::uint32_t>(slots);
   if (prediction.blocks) {
     block = arena.take<const std::byte*>(2 * slots);

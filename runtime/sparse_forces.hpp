@@ -107,8 +107,8 @@ struct SparseInverse {
     float weight;
   };
 
-  Step* step = nullptr;  ///< [4 slots]
-  Term* term = nullptr;  ///< [slots (Prediction::length + 3)]
+  Step* step = nullptr;  ///< [4 slots], with blocks [2 slots]
+  Term* term = nullptr;  ///< [slots (Prediction::length + 3)], with blocks [slots (length + 1)]
   std::uint32_t steps = 0;
   std::uint32_t* settled = nullptr;   ///< [slots] steps after which a slot holds the value of its node
   const std::byte** block = nullptr;  ///< [2 slots] stored_block of a step's first, or null; null without predictions

@@ -38,7 +38,7 @@ class PointSupport {
 [[nodiscard]] std::uint32_t most_support(const ModelView& view) noexcept;
 
 /// Fills `coarse` with the domain nodes that predict the nodes of M(level) in `support`, and the other nodes in it.
-/// False if that are more than its limit, which no subdivided triangulation does.
+/// False if that are more than its limit: no subdivided triangulation does that with numbers as weights.
 [[nodiscard]] bool coarsen(const ModelView& view, std::uint32_t level, const PointSupport& support,
                            PointSupport& coarse) noexcept;
 

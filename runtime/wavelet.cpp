@@ -161,10 +161,13 @@ void PredictionOffsets::fill(const ModelView& view) noexcept {
   std::uint32_t* source = sources;
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
-    for (std::size_t term = 0; source != nullptr && term < term_count(level); ++term) {
-      *source++ = domain_node(view, stored_source(level.predictions, term)) * bytes;
+    if (source != nullptr) {
+      for (std::size_t term = 0; term < term_count(level); ++term) {
+        *source++ = domain_node(view, stored_source(level.predictions, term)) * bytes;
+      }
+      continue;
     }
-    for (std::uint32_t i = 0; parents != nullptr && i < level.counts->domain_count; ++i) {
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
       for (std::uint32_t side = 0; side < 2; ++side) {
         parents[level.domain_begin + i].byte_offset[side] = level.refinement[i].parent[side] * bytes;
       }

@@ -114,7 +114,7 @@ void PacketModel::code_section(BitCoder& coder, std::uint32_t q, PacketSection& 
     mesh_.code_refinement(coder, q, bytes);
   } else if (kind == SectionKind::stencils && holds(sizeof(layout::StencilRecord))) {
     mesh_.code_words(coder, sizeof(layout::StencilRecord) / sizeof(std::uint32_t), bytes);
-  } else if (kind == SectionKind::predictions) {
+  } else if (kind == SectionKind::predictions && a == q) {
     code_predictions(coder, bytes);
   } else if (kind == SectionKind::nodes && a == q && holds(sizeof(layout::NodeRecord))) {
     mesh_.code_nodes(coder, q, bytes);

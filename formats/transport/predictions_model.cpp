@@ -1,5 +1,6 @@
 #include "formats/transport/predictions_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -40,8 +41,10 @@ Number number_at(std::span<const std::byte> section, std::uint64_t offset) {
 template <class Number>
 std::int64_t code_number(BitCoder& coder, AdaptiveInteger& model, std::uint32_t context, std::span<std::byte> section,
                          std::uint64_t offset, std::int64_t predicted) {
-  const std::int64_t difference = number_at<Number>(section, offset) - predicted;
-  const std::int64_t value = predicted + restore_sign(model.code(coder, interleave_sign(difference), context));
+  constexpr std::int64_t most_difference = std::int64_t{1} << 33;
+  const std::int64_t given = number_at<Number>(section, offset) - predicted;
+  const std::int64_t difference = restore_sign(model.code(coder, interleave_sign(given), context));
+  const std::int64_t value = predicted + std::clamp(difference, -most_difference, most_difference);
   const auto number = static_cast<Number>(value);
   if (number != value) throw DamagedPacket("a prediction beyond its range");
   std::memcpy(section.data() + offset, &number, sizeof(number));
@@ -65,7 +68,9 @@ void code_index(BitCoder& coder, AdaptiveInteger& model, const layout::Predictio
 bool PredictionsModel::fits(std::span<const std::byte> section) {
   if (section.size() < sizeof(layout::PredictionsHeader)) return false;
   const auto header = header_of(section);
-  if (header.terms > layout::most_prediction_terms || (header.index_bytes != 2 && header.index_bytes != 4)) {
+  // with no terms a length says nothing of the nodes
+  if (header.terms == 0 || header.terms > layout::most_prediction_terms ||
+      (header.index_bytes != 2 && header.index_bytes != 4)) {
     return false;
   }
   const Extent extent(header);

@@ -13,7 +13,7 @@ namespace greenloop::transport {
 /// reproduces translations.
 class PredictionsModel {
  public:
-  /// Whether `section` is as long as its header says and has its arrays where they belong.
+  /// Whether `section` has terms, is as long as its header says and has its arrays where they belong.
   [[nodiscard]] static bool fits(std::span<const std::byte> section);
 
   /// Of a section that fits: an encoder codes the arrays, a decoder fills them; neither touches what lies between them.

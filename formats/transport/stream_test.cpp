@@ -13,6 +13,7 @@
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/transport/predictions_model.hpp"
 #include "formats/transport/stream.hpp"
 #include "formats/writer.hpp"
 
@@ -271,6 +272,21 @@ TEST_CASE("transport: changed bytes with checksums made right are refused or giv
     }
   }
   CHECK(refused > 200);
+}
+
+TEST_CASE("transport: predictions from nothing come back; a header without terms bounds no work") {
+  ModelData data = synthetic_model({.levels = 3, .wavelet = layout::Wavelet::equilibrated});
+  data.levels[1].predictions = {};
+  const Bytes model = encode(data);
+  UnpackedModel unpacked;
+  CHECK(unpack(pack(model), unpacked).ok());
+  CHECK(unpacked.model == model);
+
+  layout::PredictionsHeader header{};
+  header.nodes = layout::none;
+  header.index_bytes = 2;
+  header.index_offset = header.weight_offset = sizeof(header);
+  CHECK_FALSE(transport::PredictionsModel::fits(std::as_bytes(std::span(&header, 1))));
 }
 
 TEST_CASE("transport: each fault by name") {

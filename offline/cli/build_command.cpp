@@ -26,7 +26,7 @@ void print_outcome(const BuildArguments& arguments, const nlohmann::json& record
     fmt::print("{} is up to date\n", model.string());
     return;
   }
-  fmt::print("{}: {} bytes, {:.0f} times smaller than the dense matrix\n", model.string(),
+  fmt::print("{}: {} bytes, {:.3g} times as small as the dense matrix\n", model.string(),
              record["bytes"].get<std::size_t>(),
              record["compression"]["dense_bytes"].get<double>() / record["bytes"].get<double>());
 }

@@ -155,6 +155,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                            ratio(found["dense_bytes"], found["bytes"]), bytes_text(found["dense_bytes"])));
   row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
+  row("wavelet", found["wavelet"].get<std::string>());
   row("field", fmt::format("{} RMS, {} in the worst column; summed of {} blocks, at most {} by a force on one node",
                            percent(found["field_rms_error"]), percent(found["field_column_error"]),
                            found["field_blocks"].dump(), found["longest_field_column"].dump()));

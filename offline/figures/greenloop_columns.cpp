@@ -37,7 +37,8 @@ layout::Wavelet wavelet_of(const std::string& name) {
   for (const WaveletKind& kind : wavelet_kinds) {
     if (kind.name == name) return kind.wavelet;
   }
-  throw std::invalid_argument("--wavelet " + name + ": there is no such wavelet");
+  throw std::invalid_argument("--wavelet " + name + ": there is no such wavelet for columns by themselves; there are " +
+                              "linear, butterfly, lifted butterfly and lifted linear");
 }
 
 // A body whose Green's functions are solved, measured and forgotten.
@@ -144,6 +145,7 @@ void print_table(const Arguments& arguments, const StreamedBody& body) {
 }
 
 int run(const Arguments& arguments) {
+  (void)wavelet_of(arguments.wavelet);  // before the body is made
   ProgressBar progress(arguments.json);
   StreamedBody body(arguments, progress);
   body.measure();

@@ -164,12 +164,12 @@ json compression_record(const CompressionReport& report, std::uint32_t contacts)
 }
 
 /// Work units of a step resolved at each level: all contacts of the scene, with a fresh factor and the whole field.
-std::vector<std::uint64_t> worst_step_work(std::span<const std::byte> bytes, std::uint32_t contacts) {
+std::vector<std::uint64_t> worst_step_work(std::span<const std::byte> bytes) {
   const auto opened = Model::open(bytes);
   if (!opened) {
     throw std::logic_error("compression: an encoded model does not open");
   }
-  const auto need = Elastostatic::required(opened.model, {.max_contacts = contacts});
+  const auto need = Elastostatic::required(opened.model, Elastostatic::intended(opened.model).limits);
   return {need.worst_work, need.worst_work + opened.model.level_count()};
 }
 
@@ -209,10 +209,7 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, const json& sol
                                .wavelet = scene.wavelet.value_or(layout::Wavelet::lifted_linear),
                                .facts = scene_facts(scene, solve),
                                .provenance = provenance,
-                               .step_work =
-                                   [&](std::span<const std::byte> bytes) {
-                                     return worst_step_work(bytes, static_cast<std::uint32_t>(scene.budget.contacts));
-                                   }};
+                               .step_work = worst_step_work};
   const Progress update = [&](double fraction, std::string_view stage) { progress.update(fraction, stage); };
   auto built = scene.wavelet ? build_model(input, update) : build_with_best_wavelet(input, update);
   const auto& finest = built.report.levels.back();
@@ -231,7 +228,7 @@ void settle_step_work(const Scene& scene, ModelData& model) {
   if (!opened) {
     throw std::runtime_error("the model just written does not verify; this is a defect of greenloop itself");
   }
-  const auto need = Elastostatic::required(opened.model, {.max_contacts = model.info.max_contacts});
+  const auto need = Elastostatic::required(opened.model, Elastostatic::intended(opened.model).limits);
   if (!scene.budget.work) {
     model.info.step_work = need.worst_work[opened.model.level_count() - 1];
   } else if (model.info.step_work < need.least_work) {

@@ -10,6 +10,9 @@ rm -rf "$work" && mkdir -p "$work"
 for language in cpp c; do
   awk "/^\`\`\`$language\$/ {inside = 1; next} /^\`\`\`\$/ {inside = 0} inside" "$source_dir/README.md" >"$work/readme_example.$language"
   test -s "$work/readme_example.$language" || { echo "README.md has no $language block"; exit 1; }
+  # the same with room for the fields of small models alone
+  sed 's/field\[4 \* 4096\]/field[4 * 16]/' "$work/readme_example.$language" >"$work/readme_example_small.$language"
+  grep -q 'field\[4 \* 16\]' "$work/readme_example_small.$language"
 done
 
 cmake --install "$build" --prefix "$work/prefix" --component runtime >/dev/null
@@ -32,6 +35,10 @@ cmake --build "$work/build"
 "$work/build/c_consumer" "$model" >"$work/forces.c.txt"
 test "$(wc -l <"$work/forces.c.txt")" -eq 100
 cmp "$work/forces.cpp.txt" "$work/forces.c.txt"
+for program in consumer_small c_consumer_small; do
+  if "$work/build/$program" "$model" 2>"$work/$program.txt" >/dev/null; then exit 1; fi
+  grep -q '^status 3 after 0 cycles' "$work/$program.txt"
+done
 if [ "$via" = pkg-config ]; then
   # a C compiler alone links it, without a C++ standard library
   export PKG_CONFIG_PATH

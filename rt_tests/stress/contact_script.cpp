@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <limits>
+#include <stdexcept>
 
 #include "runtime/domain.hpp"
 
@@ -35,6 +36,11 @@ ContactScript::ContactScript(const ModelView& view, const Limits& limits, const 
     : view_(&view), limits_(limits), requirement_(requirement), script_(kind), random_(generator(kind, seed)) {
   worst_work_ = *std::max_element(std::begin(requirement.worst_work), std::end(requirement.worst_work));
   list_touchable();
+  if (touchable_.empty()) {
+    throw std::runtime_error(
+        "no node of the model's levels is touchable; keep more levels, or name a place in the "
+        "scene's [[touched]]");
+  }
   shuffled_ = touchable_;
   list_short_edges();
   most_ = std::min<std::size_t>(limits.max_contacts, touchable_.size());

@@ -52,7 +52,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_flag("--instructions,!--no-instructions", arguments.count_instructions,
-               "count those of the heaviest kind of step; microseconds each");
+               "count those of the heaviest kind of step, of which each takes microseconds: a minute or more");
   app.add_flag("--json", arguments.json, "machine-readable result");
   const std::map<std::string, InjectedFault> faults = {{"allocation", InjectedFault::allocation},
                                                        {"lock", InjectedFault::lock},

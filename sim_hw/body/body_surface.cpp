@@ -79,7 +79,8 @@ BodySurface body_surface(const ModelView& model) {
   BodySurface surface;
   read_nodes(model, surface);
   if (std::find(surface.touchable.begin(), surface.touchable.end(), true) == surface.touchable.end()) {
-    throw std::runtime_error("model: no node is touchable; name some in the scene's [touch] and build it anew");
+    throw std::runtime_error(
+        "model: no node of its levels is touchable; keep more levels, or name a place in the scene's [[touched]]");
   }
   surface.triangles = finest_triangles(model);
   measure(surface);

@@ -18,12 +18,13 @@ namespace {
 
 Limits limits_of(const Model& model) {
   constexpr std::uint32_t most = messages::loop_command::max_contacts;
-  const std::uint32_t wanted = model.view().info->max_contacts;
-  return {.max_contacts = wanted == 0 ? Limits{}.max_contacts : std::min(wanted, most)};
+  Limits limits = Elastostatic::intended(model).limits;
+  limits.max_contacts = std::min(limits.max_contacts, most);
+  return limits;
 }
 
 Budget budget_of(const SessionOptions& options, const Model& model, const Requirement& need) {
-  const std::uint64_t own = model.view().info->step_work;
+  const std::uint64_t own = Elastostatic::intended(model).budget.work;
   const std::uint64_t finest = need.worst_work[model.level_count() - 1];
   const std::uint64_t whole = options.budget != 0 ? options.budget : own != 0 ? own : finest;
   const Budget budget{static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve))};
