@@ -34,6 +34,15 @@ class SectionCheck {
     return right || refuse(rule, field, index, value, limit);
   }
 
+  /// An offset that its own header states.
+  bool require_offset(const char* field, std::uint64_t offset, std::uint64_t expected) {
+    return require(offset == expected, VerifyRule::inconsistent, field, 0, static_cast<double>(offset),
+                   static_cast<double>(expected));
+  }
+
+  /// Bytes begin..end-1 of the section.
+  bool require_zero(std::uint64_t begin, std::uint64_t end);
+
  private:
   const Section& section_;
   VerifyResult& result_;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/section_extent.hpp"
 #include "formats/verify_sections.hpp"
 
 namespace greenloop {
@@ -11,10 +12,6 @@ using layout::CouplingsHeader;
 
 constexpr std::uint64_t values_per_block = 9;
 constexpr std::uint64_t tail_bytes = 16;  // a wide load of the last block stays inside the section
-
-constexpr std::uint64_t align(std::uint64_t offset) {
-  return (offset + layout::alignment - 1) / layout::alignment * layout::alignment;
-}
 
 constexpr std::uint64_t bytes_per_block(std::uint32_t value_bits) {
   return value_bits == 4 ? 5 : values_per_block * value_bits / 8;
@@ -26,9 +23,9 @@ struct Extent {
 
   Extent(const CouplingsHeader& header, std::uint32_t value_bits)
       : begin_end(sizeof(CouplingsHeader) + (std::uint64_t{header.columns} + 1) * sizeof(std::uint32_t)),
-        index(align(begin_end)),
+        index(aligned(begin_end)),
         index_end(index + header.block_count * header.index_bytes),
-        value(align(index_end)),
+        value(aligned(index_end)),
         value_end(value + header.block_count * bytes_per_block(value_bits)) {}
 };
 
@@ -65,24 +62,16 @@ bool verify_header(SectionCheck& check, const CouplingsHeader& header, const Exp
 }
 
 bool verify_extent(SectionCheck& check, const Section& section, const CouplingsHeader& header, const Extent& extent) {
-  const auto at = [&](const char* field, std::uint64_t offset, std::uint64_t expected) {
-    return check.require(offset == expected, VerifyRule::inconsistent, field, 0, static_cast<double>(offset),
-                         static_cast<double>(expected));
-  };
-  return at("begin_offset", header.begin_offset, sizeof(CouplingsHeader)) &&
-         at("index_offset", header.index_offset, extent.index) &&
-         at("value_offset", header.value_offset, extent.value) &&
+  return check.require_offset("begin_offset", header.begin_offset, sizeof(CouplingsHeader)) &&
+         check.require_offset("index_offset", header.index_offset, extent.index) &&
+         check.require_offset("value_offset", header.value_offset, extent.value) &&
          check.require(section.bytes >= extent.value_end + tail_bytes, VerifyRule::section_size, "bytes", 0,
                        static_cast<double>(section.bytes), static_cast<double>(extent.value_end + tail_bytes));
 }
 
 bool verify_gaps(SectionCheck& check, const Section& section, const Extent& extent) {
-  const auto zero = [&](std::uint64_t begin, std::uint64_t end) {
-    const std::span gap(section.data + begin, static_cast<std::size_t>(end - begin));
-    return check.require(all_zero(gap), VerifyRule::padding_not_zero, "padding", begin, 1, 0);
-  };
-  return zero(extent.begin_end, extent.index) && zero(extent.index_end, extent.value) &&
-         zero(extent.value_end, section.bytes);
+  return check.require_zero(extent.begin_end, extent.index) && check.require_zero(extent.index_end, extent.value) &&
+         check.require_zero(extent.value_end, section.bytes);
 }
 
 bool verify_begin(SectionCheck& check, const CouplingsHeader& header, const Expected& expected,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "formats/section_extent.hpp"
 #include "formats/verify_sections.hpp"
 
 namespace greenloop {
@@ -10,22 +11,7 @@ using layout::PredictionsHeader;
 
 constexpr std::uint64_t tail_bytes = 16;  // a wide load of the last block stays inside the section
 
-constexpr std::uint64_t align(std::uint64_t offset) {
-  return (offset + layout::alignment - 1) / layout::alignment * layout::alignment;
-}
-
 std::uint64_t blocks(const PredictionsHeader& header) { return std::uint64_t{header.nodes} * header.terms; }
-
-// Where the arrays must stand. No overflow: nodes are below 2^32, terms at most 8.
-struct Extent {
-  std::uint64_t index, index_end, weight, weight_end;
-
-  explicit Extent(const PredictionsHeader& header)
-      : index(sizeof(PredictionsHeader)),
-        index_end(index + blocks(header) * header.index_bytes),
-        weight(align(index_end)),
-        weight_end(weight + blocks(header) * 9 * sizeof(std::int16_t)) {}
-};
 
 bool verify_header(SectionCheck& check, const PredictionsHeader& header, std::uint32_t nodes, std::uint32_t rows) {
   return check.require(header.nodes == nodes, VerifyRule::inconsistent, "nodes", 0, header.nodes, nodes) &&
@@ -38,23 +24,13 @@ bool verify_header(SectionCheck& check, const PredictionsHeader& header, std::ui
                        4);
 }
 
-bool verify_extent(SectionCheck& check, const Section& section, const PredictionsHeader& header, const Extent& extent) {
-  const auto at = [&](const char* field, std::uint64_t offset, std::uint64_t expected) {
-    return check.require(offset == expected, VerifyRule::inconsistent, field, 0, static_cast<double>(offset),
-                         static_cast<double>(expected));
-  };
-  return at("index_offset", header.index_offset, extent.index) &&
-         at("weight_offset", header.weight_offset, extent.weight) &&
+bool verify_extent(SectionCheck& check, const Section& section, const PredictionsHeader& header,
+                   const PredictionsExtent& extent) {
+  return check.require_offset("index_offset", header.index_offset, extent.index) &&
+         check.require_offset("weight_offset", header.weight_offset, extent.weight) &&
          check.require(section.bytes >= extent.weight_end + tail_bytes, VerifyRule::section_size, "bytes", 0,
-                       static_cast<double>(section.bytes), static_cast<double>(extent.weight_end + tail_bytes));
-}
-
-bool verify_gaps(SectionCheck& check, const Section& section, const Extent& extent) {
-  const auto zero = [&](std::uint64_t begin, std::uint64_t end) {
-    const std::span gap(section.data + begin, static_cast<std::size_t>(end - begin));
-    return check.require(all_zero(gap), VerifyRule::padding_not_zero, "padding", begin, 1, 0);
-  };
-  return zero(extent.index_end, extent.weight) && zero(extent.weight_end, section.bytes);
+                       static_cast<double>(section.bytes), static_cast<double>(extent.weight_end + tail_bytes)) &&
+         check.require_zero(extent.index_end, extent.weight) && check.require_zero(extent.weight_end, section.bytes);
 }
 
 template <class Index>
@@ -91,8 +67,8 @@ bool verify_predictions(const Section& section, VerifyContext& context) {
                      VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
     return false;
   }
-  const Extent extent(header);
-  if (!verify_extent(check, section, header, extent) || !verify_gaps(check, section, extent)) return false;
+  const PredictionsExtent extent(header);
+  if (!verify_extent(check, section, header, extent)) return false;
   const std::byte* const index = section.data + extent.index;
   const bool indices_right = header.index_bytes == 2
                                  ? verify_index(check, header, reinterpret_cast<const std::uint16_t*>(index))

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "formats/crc32c.hpp"
+#include "formats/section_extent.hpp"
 #include "formats/transport/coupling_blocks.hpp"
 
 namespace greenloop::transport {
@@ -13,10 +14,6 @@ namespace {
 
 using layout::SectionEntry;
 using layout::SectionKind;
-
-constexpr std::uint64_t aligned(std::uint64_t offset) {
-  return (offset + layout::alignment - 1) / layout::alignment * layout::alignment;
-}
 
 bool is(const PacketSection& section, SectionKind kind) {
   return section.entry.kind == static_cast<std::uint32_t>(kind);

@@ -5,24 +5,14 @@
 #include <cstdint>
 #include <cstring>
 
+#include "formats/section_extent.hpp"
+
 namespace greenloop::transport {
 namespace {
 
 constexpr std::uint32_t elements = 9;
 constexpr std::int64_t one = 4096;  // in units of layout::prediction_unit
 static_assert(one * layout::prediction_unit == 1);
-
-// Where the arrays stand. No overflow: nodes are below 2^32, terms at most 8 where it is used.
-struct Extent {
-  std::uint64_t index, index_end, weight, weight_end;
-
-  explicit Extent(const layout::PredictionsHeader& header) : index(sizeof(header)) {
-    const std::uint64_t blocks = std::uint64_t{header.nodes} * header.terms;
-    index_end = index + blocks * header.index_bytes;
-    weight = (index_end + layout::alignment - 1) / layout::alignment * layout::alignment;
-    weight_end = weight + blocks * elements * sizeof(std::int16_t);
-  }
-};
 
 layout::PredictionsHeader header_of(std::span<const std::byte> section) {
   layout::PredictionsHeader header;
@@ -73,7 +63,7 @@ bool PredictionsModel::fits(std::span<const std::byte> section) {
       (header.index_bytes != 2 && header.index_bytes != 4)) {
     return false;
   }
-  const Extent extent(header);
+  const PredictionsExtent extent(header);
   return header.index_offset == extent.index && header.weight_offset == extent.weight &&
          section.size() >= extent.weight_end;
 }
@@ -85,7 +75,7 @@ void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section) {
   } else {
     code_index<std::uint32_t>(coder, index_, header, section);
   }
-  std::uint64_t offset = Extent(header).weight;
+  std::uint64_t offset = PredictionsExtent(header).weight;
   for (std::uint32_t node = 0; node < header.nodes; ++node) {
     std::array<std::int64_t, elements> left{one, 0, 0, 0, one, 0, 0, 0, one};
     for (std::uint32_t k = 0; k < header.terms; ++k) {
@@ -99,7 +89,7 @@ void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section) {
 }
 
 PredictionsGaps gaps_of_predictions(std::span<std::byte> section) {
-  const Extent extent(header_of(section));
+  const PredictionsExtent extent(header_of(section));
   return {section.subspan(extent.index_end, extent.weight - extent.index_end), section.subspan(extent.weight_end)};
 }
 
