@@ -97,8 +97,6 @@ std::uint32_t add_block(const Block& block, std::uint32_t from, std::uint32_t to
   return end - begin;
 }
 
-bool has_block_weights(const CapacitanceScratch& scratch) { return scratch.functionals.block != nullptr; }
-
 void set_diagonal(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch) {
   for (std::uint32_t s = 0; s < partial.own; ++s) {
     const std::uint32_t coefficient = scratch.coefficient[s];
@@ -110,7 +108,7 @@ void set_diagonal(const Refinement& refinement, const PartialCapacitance& partia
     const Block diagonal = product(scratch.root[s], product(scale, scratch.root[s]));
     if (partial.panel) {
       panel_at(scratch, partial, s, s) = transposed(diagonal);
-    } else if (has_block_weights(scratch)) {
+    } else if (refinement.prediction.blocks) {
       add_block<true>(diagonal, s, s, scratch);
     } else {
       add_block<false>(diagonal, s, s, scratch);
@@ -177,7 +175,7 @@ std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitan
   if (partial.panel) {
     add_to_panel(partial, loaded, scratch);
   } else {
-    added = has_block_weights(scratch) ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
+    added = refinement.prediction.blocks ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
   }
   return 4 * std::uint64_t{column_length(couplings, column)} + 84 * std::uint64_t{loaded.count} +
          refinement.prediction.weight_work * added;

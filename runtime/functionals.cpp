@@ -84,11 +84,11 @@ void list_functionals(const Refinement& refinement, const SlottedColumns& column
     const std::uint32_t column = columns.column[i];
     const std::uint32_t begin = functionals.begin[i];
     touch(refinement, &column, 1, touched);
-    if (functionals.block == nullptr) {
-      write_numbers(refinement, column, columns.slot, touched, force, functionals.coefficients + begin);
-    } else {
+    if (refinement.prediction.blocks) {
       write_blocks(refinement, column, columns.slot, touched, force, functionals.coefficients + begin,
                    functionals.block + begin);
+    } else {
+      write_numbers(refinement, column, columns.slot, touched, force, functionals.coefficients + begin);
     }
     functionals.begin[i + 1] = begin + static_cast<std::uint32_t>(touched.coefficients());
     clear(touched);

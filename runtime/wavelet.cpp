@@ -158,10 +158,11 @@ void PredictionOffsets::carve(Arena& arena, const ModelView& view) noexcept {
 void PredictionOffsets::fill(const ModelView& view) noexcept {
   predict_blocks = fastest_predict_blocks();
   constexpr std::uint32_t bytes = sizeof(Float4);
+  const bool blocks = prediction_of(view).blocks;
   std::uint32_t* source = sources;
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
-    if (source != nullptr) {
+    if (blocks) {
       for (std::size_t term = 0; term < term_count(level); ++term) {
         *source++ = domain_node(view, stored_source(level.predictions, term)) * bytes;
       }
@@ -177,7 +178,8 @@ void PredictionOffsets::fill(const ModelView& view) noexcept {
 
 void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, const FieldLevels& levels,
                        Float4* coefficients, Float4* x) noexcept {
-  const bool lifted = layout::is_lifted(static_cast<layout::Wavelet>(view.info->wavelet));
+  const auto wavelet = static_cast<layout::Wavelet>(view.info->wavelet);
+  const bool lifted = layout::is_lifted(wavelet);
   const std::uint32_t* sources = offsets.sources;
   std::memset(x, 0, sizeof(Float4) * view.level[0].counts->node_count);
   add_details(view.level[0], coefficients, x);
@@ -186,7 +188,7 @@ void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, 
     if (lifted && q <= levels.details) {
       undo_lifting(level, offsets.parents, coefficients, x);
     }
-    if (sources != nullptr) {
+    if (wavelet == layout::Wavelet::equilibrated) {
       offsets.predict_blocks(level, sources, x);
       clear_fixed(level, x);
       sources += term_count(level);
