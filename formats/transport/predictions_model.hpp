@@ -17,6 +17,7 @@ class PredictionsModel {
   [[nodiscard]] static bool fits(std::span<const std::byte> section);
 
   /// Of a section that fits: an encoder codes the arrays, a decoder fills them; neither touches what lies between them.
+  /// Throws DamagedPacket if a number read does not fit. Work: linear in the section.
   void code(BitCoder& coder, std::span<std::byte> section);
 
  private:

@@ -49,14 +49,15 @@ class SurfaceWavelet {
 
   /// `flags` is one layout::NodeFlag set per node, closed under free parents (mark_domain); `area` the integral of each
   /// node's hat function [m^2], positive. Butterfly prediction needs every node of the stencil to be in the domain or
-  /// held; elsewhere it is Linear. Not equilibrated. A lifting weight stands only where it lies
+  /// held; elsewhere it is Linear. kind: not equilibrated. A lifting weight stands only where it lies
   /// between 0 and 1, as those of Linear wavelets do: Butterfly scaling functions may have integrals that are not
   /// positive, or tiny, next to much larger triangles. Throws std::invalid_argument if sizes do not fit, an area is not
-  /// positive or a free parent of a domain node is outside the domain.
+  /// positive, a free parent of a domain node is outside the domain, or the kind is equilibrated.
   SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, const std::vector<double>& area,
                  layout::Wavelet kind);
 
   /// Of Equilibrated wavelets; predictions: of each level, none of level 0, as equilibrated_predictions makes them.
+  /// Throws as above, and std::invalid_argument if they are not of the mesh's levels and nodes.
   SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, const std::vector<double>& area,
                  std::vector<PredictionsData> predictions);
 
