@@ -1,5 +1,7 @@
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -8,16 +10,41 @@
 
 namespace greenloop {
 
-/// Instructions that `work` takes, by the counter, which must be installed.
+// one copy of it for each kind of work: what is inlined there counts as well
 template <class Work>
-std::uint64_t count_instructions(Work work) {
+[[gnu::noinline]] std::uint64_t count_once(Work& work) {
   instruction_counter::start();
   work();
   return instruction_counter::stop();
 }
 
+/// Instructions that `work` takes after `prepare`, by the counter, which must be installed. They are counted until two
+/// counts in a row agree, four times at most: a virtual machine may lose a trap where it is interrupted.
+template <class Prepare, class Work>
+std::uint64_t count_instructions(Prepare prepare, Work work) {
+  std::uint64_t count = 0, last = 0;
+  for (int attempt = 0; attempt < 4 && (attempt == 0 || count != last); ++attempt) {
+    last = count;
+    prepare();
+    count = count_once(work);
+  }
+  return count;
+}
+
+template <class Work>
+std::uint64_t count_instructions(Work work) {
+  return count_instructions([] {}, work);
+}
+
+/// Says what the counts were where they differ.
 inline bool all_equal(const std::vector<std::uint64_t>& counts) {
-  return std::all_of(counts.begin(), counts.end(), [&](std::uint64_t c) { return c == counts[0]; });
+  const auto other = [&](std::uint64_t count) { return count != counts[0]; };
+  const auto found = std::find_if(counts.begin(), counts.end(), other);
+  if (found != counts.end()) {
+    MESSAGE("the first takes " << counts[0] << " instructions, number " << found - counts.begin() << " takes "
+                               << *found);
+  }
+  return found == counts.end();
 }
 
 }  // namespace greenloop
