@@ -5,10 +5,10 @@
 #include <type_traits>
 
 #include "formats/rule_text.hpp"
-#include "runtime/body.hpp"
-#include "runtime/domain.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/elastostatic/body.hpp"
 #include "runtime/greenloop.h"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "runtime/arena.hpp"
-#include "runtime/body.hpp"
-#include "runtime/cholesky.hpp"
-#include "runtime/field.hpp"
-#include "runtime/planner.hpp"
+#include "runtime/algebra/cholesky.hpp"
+#include "runtime/compliance/field.hpp"
+#include "runtime/elastostatic/body.hpp"
+#include "runtime/elastostatic/planner.hpp"
+#include "runtime/memory/arena.hpp"
 
 namespace greenloop {
 

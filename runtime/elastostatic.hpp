@@ -8,7 +8,7 @@
 
 namespace greenloop {
 
-struct Body;  // what a body keeps in its arena: runtime/body.hpp
+struct Body;  // what a body keeps in its arena: runtime/elastostatic/body.hpp
 
 /// What a body must be able to do, fixed before the loop starts.
 struct Limits {

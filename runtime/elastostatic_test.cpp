@@ -10,9 +10,9 @@
 #include <limits>
 #include <random>
 
-#include "runtime/domain.hpp"
 #include "runtime/testing/dense_reference.hpp"
 #include "runtime/testing/test_body.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {

@@ -1,6 +1,6 @@
 #include "runtime/model.hpp"
 
-#include "runtime/domain.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 

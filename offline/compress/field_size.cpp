@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "runtime/column.hpp"
-#include "runtime/field.hpp"
-#include "runtime/plan.hpp"
+#include "runtime/compliance/field.hpp"
+#include "runtime/elastostatic/step_work.hpp"
+#include "runtime/wavelet/column.hpp"
 
 namespace greenloop::offline {
 

@@ -5,8 +5,8 @@
 
 #include "formats/aligned_bytes.hpp"
 #include "formats/view.hpp"
-#include "runtime/mirrored_couplings.hpp"
-#include "runtime/sparse_forces.hpp"
+#include "runtime/compliance/mirrored_couplings.hpp"
+#include "runtime/wavelet/sparse_forces.hpp"
 
 namespace greenloop::offline {
 

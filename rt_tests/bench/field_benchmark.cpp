@@ -11,9 +11,9 @@
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/stepper.hpp"
 #include "rt_tests/bench/thread_time.hpp"
-#include "runtime/domain.hpp"
-#include "runtime/field.hpp"
+#include "runtime/compliance/field.hpp"
 #include "runtime/testing/placed_body.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop::bench {
 namespace {

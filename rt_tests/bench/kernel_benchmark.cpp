@@ -11,8 +11,8 @@
 #include "rt_tests/bench/patch.hpp"
 #include "rt_tests/bench/stepper.hpp"
 #include "rt_tests/bench/thread_time.hpp"
-#include "runtime/cholesky.hpp"
-#include "runtime/field.hpp"
+#include "runtime/algebra/cholesky.hpp"
+#include "runtime/compliance/field.hpp"
 
 namespace greenloop::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "runtime/float4.hpp"
+#include "runtime/algebra/float4.hpp"
 
 namespace greenloop::bench {
 

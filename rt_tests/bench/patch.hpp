@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rt_tests/bench/contact_sets.hpp"
-#include "runtime/body.hpp"
+#include "runtime/elastostatic/body.hpp"
 #include "runtime/testing/placed_body.hpp"
 
 namespace greenloop::bench {

@@ -6,9 +6,9 @@
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/patch.hpp"
 #include "rt_tests/bench/thread_time.hpp"
-#include "runtime/cholesky.hpp"
-#include "runtime/couplings.hpp"
-#include "runtime/field.hpp"
+#include "runtime/algebra/cholesky.hpp"
+#include "runtime/compliance/couplings.hpp"
+#include "runtime/compliance/field.hpp"
 
 namespace greenloop::bench {
 namespace {

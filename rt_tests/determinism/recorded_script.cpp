@@ -5,7 +5,7 @@
 #include <cfloat>
 #include <limits>
 
-#include "runtime/domain.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "rt_tests/instructions/counted.hpp"
 #include "rt_tests/stress/heaviest_step.hpp"
-#include "runtime/cholesky.hpp"
-#include "runtime/domain.hpp"
-#include "runtime/field.hpp"
+#include "runtime/algebra/cholesky.hpp"
+#include "runtime/compliance/field.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {

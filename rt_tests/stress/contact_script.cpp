@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "runtime/domain.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "formats/model_file.hpp"
-#include "runtime/body.hpp"
-#include "runtime/field.hpp"
+#include "runtime/compliance/field.hpp"
+#include "runtime/elastostatic/body.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
 

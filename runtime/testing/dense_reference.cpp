@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "formats/stored_blocks.hpp"
-#include "runtime/column.hpp"
-#include "runtime/domain.hpp"
+#include "runtime/wavelet/column.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {

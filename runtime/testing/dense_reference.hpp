@@ -7,9 +7,9 @@
 
 #include "formats/testing/dense_wavelet.hpp"
 #include "formats/view.hpp"
-#include "runtime/body.hpp"
-#include "runtime/contact_set.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/elastostatic/body.hpp"
+#include "runtime/elastostatic/contact_set.hpp"
 
 namespace greenloop {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "formats/aligned_bytes.hpp"
-#include "runtime/body.hpp"
+#include "runtime/elastostatic/body.hpp"
 
 namespace greenloop {
 

@@ -1,0 +1,200 @@
+#include "runtime/compliance/column_blocks.hpp"
+
+#include <cstddef>
+#include <cstring>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "runtime/algebra/processor.hpp"
+
+namespace greenloop {
+namespace {
+
+#if defined(__SSE2__) || defined(__ARM_NEON)
+// stored blocks of `bits` a value times one force
+template <unsigned bits>
+class Product {
+ public:
+  explicit Product(Float4 force) : force_{splat3(force[0]), splat3(force[1]), splat3(force[2])} {}
+
+  void add(const std::byte* value, Float4& sum) const { sum += product(StoredBlock<bits>::load(value), force_); }
+
+ private:
+  Float4 force_[3];
+};
+#else
+// the elements of a stored block, in quanta
+template <unsigned bits>
+class Elements {
+ public:
+  explicit Elements(const std::byte* value) {
+    if constexpr (bits == 4) {
+      std::memcpy(&word_, value, sizeof word_);
+      last_ = std::to_integer<std::uint32_t>(value[4]);
+    } else {
+      value_ = value;
+    }
+  }
+  float operator[](std::uint32_t k) const {
+    if constexpr (bits == 4) {  // one instruction takes bits out with their sign
+      const std::uint32_t on_top = k < 8 ? word_ << (28 - 4 * k) : last_ << 28;
+      return static_cast<float>(static_cast<std::int32_t>(on_top) >> 28);
+    } else if constexpr (bits == 8) {
+      return static_cast<float>(static_cast<std::int8_t>(value_[k]));
+    } else {
+      std::int16_t two;
+      std::memcpy(&two, value_ + std::size_t{2} * k, sizeof two);
+      return static_cast<float>(two);
+    }
+  }
+
+ private:
+  std::uint32_t word_ = 0;
+  std::uint32_t last_ = 0;
+  const std::byte* value_ = nullptr;
+};
+
+// the same on a processor without vectors: three lanes; the powers of two of the stored values are in the force
+template <unsigned bits>
+class Product {
+ public:
+  explicit Product(Float4 force)
+      : force_{force[0] / StoredBlock<bits>::widening, force[1] / StoredBlock<bits>::widening,
+               force[2] / StoredBlock<bits>::widening} {}
+
+  void add(const std::byte* value, Float4& sum) const {
+    const Elements<bits> at(value);
+    auto* const x = reinterpret_cast<float*>(&sum);
+    x[0] += (at[0] * force_[0] + at[3] * force_[1]) + at[6] * force_[2];
+    x[1] += (at[1] * force_[0] + at[4] * force_[1]) + at[7] * force_[2];
+    x[2] += (at[2] * force_[0] + at[5] * force_[1]) + at[8] * force_[2];
+  }
+
+ private:
+  float force_[3];
+};
+#endif
+
+template <unsigned bits, class Index>
+void add_each(const CouplingsView& couplings, std::uint32_t begin, std::uint32_t end, Float4 force, Float4* sums) {
+  const Product<bits> product_with_force(force);
+  const auto* const row = static_cast<const Index*>(couplings.index);
+  const std::byte* value = couplings.value + StoredBlock<bits>::bytes * std::size_t{begin};
+  for (std::uint32_t at = begin; at < end; ++at, value += StoredBlock<bits>::bytes) {
+    product_with_force.add(value, sums[row[at]]);
+  }
+}
+
+template <unsigned bits>
+void add_blocks(const BlockRange& range, Float4 force, Float4* sums) noexcept {
+  if (range.couplings->index_bytes == 2) {
+    add_each<bits, std::uint16_t>(*range.couplings, range.begin, range.end, force, sums);
+  } else {
+    add_each<bits, std::uint32_t>(*range.couplings, range.begin, range.end, force, sums);
+  }
+}
+
+#if defined(__x86_64__)
+// where the values of a block stand: by column and lane, the byte that goes on top and how far it moves up
+template <unsigned bits>
+struct Spread {
+  std::int8_t byte[3][16] = {};
+  std::int32_t shift[3][4] = {};
+
+  constexpr Spread() {
+    for (int column = 0; column < 3; ++column) {
+      for (int at = 0; at < 16; ++at) {
+        const int row = at / 4;
+        const int k = 3 * column + row;
+        byte[column][at] = static_cast<std::int8_t>(at % 4 != 3 || row == 3 ? -1 : bits == 4 ? k / 2 : k);
+      }
+      for (int row = 0; row < 3; ++row) {
+        shift[column][row] = bits == 4 && (3 * column + row) % 2 == 0 ? 4 : 0;
+      }
+    }
+  }
+};
+
+// a column of each of two blocks of 4 or 8 bits a value, as StoredBlock has it; fourth lanes 0
+template <unsigned bits>
+class TwoColumns {
+ public:
+  [[gnu::target("avx2")]] TwoColumns(const Spread<bits>& spread, int column)
+      : byte_(_mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(spread.byte[column])))),
+        shift_(_mm256_broadcastsi128_si256(_mm_loadu_si128(reinterpret_cast<const __m128i*>(spread.shift[column])))) {}
+
+  [[gnu::target("avx2")]] __m256 of(__m256i two) const {
+    __m256i value = _mm256_shuffle_epi8(two, byte_);
+    if constexpr (bits == 4) {
+      value = _mm256_and_si256(_mm256_sllv_epi32(value, shift_), _mm256_set1_epi32(static_cast<int>(0xf0000000)));
+    }
+    return _mm256_cvtepi32_ps(value);
+  }
+
+ private:
+  __m256i byte_;
+  __m256i shift_;
+};
+
+[[gnu::target("avx2")]] inline void add_to(Float4& sum, __m128 moved) {
+  auto* const at = reinterpret_cast<float*>(&sum);
+  _mm_store_ps(at, _mm_add_ps(_mm_load_ps(at), moved));
+}
+
+// two blocks in one operation, each lane as add_each has it
+template <unsigned bits, class Index>
+[[gnu::target("avx2")]] void add_pairs(const CouplingsView& couplings, std::uint32_t begin, std::uint32_t end,
+                                       Float4 force, Float4* sums) {
+  constexpr std::size_t bytes = StoredBlock<bits>::bytes;
+  static constexpr Spread<bits> spread;
+  const TwoColumns<bits> first(spread, 0);
+  const TwoColumns<bits> second(spread, 1);
+  const TwoColumns<bits> third(spread, 2);
+  const __m256 f0 = _mm256_set1_ps(force[0]);
+  const __m256 f1 = _mm256_set1_ps(force[1]);
+  const __m256 f2 = _mm256_set1_ps(force[2]);
+  const auto* const row = static_cast<const Index*>(couplings.index);
+  const std::byte* value = couplings.value + bytes * std::size_t{begin};
+  std::uint32_t at = begin;
+  for (; end - at >= 2; at += 2, value += 2 * bytes) {
+    const __m256i two =
+        _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(value + bytes), reinterpret_cast<const __m128i*>(value));
+    const __m256 moved =
+        _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(first.of(two), f0), _mm256_mul_ps(second.of(two), f1)),
+                      _mm256_mul_ps(third.of(two), f2));
+    add_to(sums[row[at]], _mm256_castps256_ps128(moved));
+    add_to(sums[row[at + 1]], _mm256_extractf128_ps(moved, 1));
+  }
+  _mm256_zeroupper();  // gcc 12 leaves it out before a call in the end, and all that follows would be slow
+  add_each<bits, Index>(couplings, at, end, force, sums);
+}
+
+template <unsigned bits>
+[[gnu::target("avx2")]] void add_blocks_avx2(const BlockRange& range, Float4 force, Float4* sums) noexcept {
+  if (range.couplings->index_bytes == 2) {
+    add_pairs<bits, std::uint16_t>(*range.couplings, range.begin, range.end, force, sums);
+  } else {
+    add_pairs<bits, std::uint32_t>(*range.couplings, range.begin, range.end, force, sums);
+  }
+}
+#endif
+
+}  // namespace
+
+BlockSums portable_block_sums() noexcept {
+  static_assert(layout::layers == 4 && layout::value_bits[0] == 16 && layout::value_bits[1] == 16 &&
+                layout::value_bits[2] == 8 && layout::value_bits[3] == 4);
+  return {{add_blocks<16>, add_blocks<16>, add_blocks<8>, add_blocks<4>}};
+}
+
+BlockSums fastest_block_sums() noexcept {
+#if defined(__x86_64__)
+  if (has_avx2()) {
+    return {{add_blocks<16>, add_blocks<16>, add_blocks_avx2<8>, add_blocks_avx2<4>}};
+  }
+#endif
+  return portable_block_sums();
+}
+
+}  // namespace greenloop

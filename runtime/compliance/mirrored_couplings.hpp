@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+
+#include "formats/view.hpp"
+#include "runtime/compliance/base_columns.hpp"
+#include "runtime/memory/arena.hpp"
+#include "runtime/wavelet/sparse_forces.hpp"
+
+namespace greenloop {
+
+/// The half of the couplings that a file leaves out, but for what BaseColumns hold. It stores the blocks of a
+/// coefficient with those before it; these are the blocks with those after it, transposed, in the same layers and the
+/// same stored values: `layer[...]` has a column for every domain node, whose rows are coefficients of larger places,
+/// increasing.
+struct MirroredCouplings {
+  CouplingsView layer[layout::layers];
+};
+
+/// Where they are made.
+class MirroredCouplingsMaker {
+ public:
+  /// Arrays out of `arena`; null while it counts. base: what need not be held. Start-up; linear in the blocks.
+  void carve(Arena& arena, const ModelView& view, const BaseColumns& base) noexcept;
+
+  /// Makes them, without the blocks that move coefficients whose byte in `read` is 0. read: [domain]. Start-up; linear
+  /// in the blocks.
+  [[nodiscard]] MirroredCouplings make(const ModelView& view, const BaseColumns& base,
+                                       const std::uint8_t* read) noexcept;
+
+ private:
+  std::uint32_t* begin_[layout::layers] = {};
+  void* index_[layout::layers] = {};
+  std::byte* value_[layout::layers] = {};
+};
+
+/// Marks with 1 the coefficients that the displacement of a node with layout::node_read depends on, the others with 0.
+/// read: [domain]; touched: clear, and so again afterwards. Start-up; linear in what such nodes reach.
+void mark_read(const Refinement& refinement, Touched& touched, std::uint8_t* read) noexcept;
+
+}  // namespace greenloop

@@ -1,0 +1,252 @@
+#include "runtime/elastostatic/body.hpp"
+
+#include <cfloat>
+#include <cstring>
+#include <new>
+
+#include "formats/stored_blocks.hpp"
+#include "runtime/algebra/cholesky.hpp"
+#include "runtime/compliance/couplings.hpp"
+#include "runtime/wavelet/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+double magnitude(double value) { return value < 0 ? -value : value; }
+
+double larger(double a, double b) { return a > b ? a : b; }
+
+// largest sum of the magnitudes of what one component of a node of a level is predicted with, which is also what one of
+// a force on it is shared with
+double prediction_sum(const ModelView& view, const Prediction& prediction, std::uint32_t level) {
+  if (!prediction.blocks) {
+    return prediction.length > 2 ? 1.5 : 1;
+  }
+  const LevelView& at = view.level[level];
+  double most = 0;
+  for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
+    double sum[3] = {};
+    for (std::uint32_t k = 0; k < 9 * at.predictions.terms; ++k) {
+      const std::size_t term = std::size_t{at.predictions.terms} * i + k / 9;
+      sum[k % 3] += magnitude(double{layout::prediction_unit} * stored_weight(at.predictions, term, k % 9));
+    }
+    most = larger(most, larger(sum[0], larger(sum[1], sum[2])));
+  }
+  return most;
+}
+
+// largest factor between coefficients and node values, intermediate sums included
+double transform_growth(const ModelView& view, const Prediction& prediction, const Lifting& lifting) {
+  double growth = 1;
+  for (std::uint32_t level = 1; level < view.levels; ++level) {
+    const std::uint32_t* begin = lifting.begin[level];
+    double most = 0;
+    for (std::uint32_t e = 0; e < domain_up_to(view, level - 1); ++e) {
+      double sum = 0;
+      for (std::uint32_t n = begin[e]; n < begin[e + 1]; ++n) {
+        for (const float lift : lifting.neighbours[level][n].lift) {
+          sum += magnitude(double{lift});
+        }
+      }
+      most = larger(most, sum);
+    }
+    // values of the level before, its averages, and the details
+    growth = larger(growth, prediction_sum(view, prediction, level) * (growth + 2 * most)) + 2;
+  }
+  return 2 * growth / (prediction.blocks ? double{weight_unit} : 1);
+}
+
+// largest factor between the sum of nodal forces and force coefficients
+double force_growth(const ModelView& view, const Prediction& prediction) {
+  double most = 0;
+  double sum = 1;
+  for (std::uint32_t level = 1; level < view.levels; ++level) {
+    sum *= larger(1, prediction_sum(view, prediction, level));
+    for (std::uint32_t i = 0; i < view.level[level].counts->domain_count; ++i) {
+      const float* lift = view.level[level].refinement[i].lift;
+      most = larger(most, magnitude(double{lift[0]}) + magnitude(double{lift[1]}));
+    }
+  }
+  return sum * (1 + most);
+}
+
+// magnitudes within a part of the scales
+template <class Part>
+double largest_scale(const ModelView& view, Part part) {
+  double largest = 1;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    for (std::uint32_t i = 0; i < view.level[q].counts->domain_count; ++i) {
+      for (const float value : view.level[q].scales[i].*part) {
+        largest = larger(largest, magnitude(double{value}));
+      }
+    }
+  }
+  return largest;
+}
+
+// largest sum of the couplings' values, and the diagonal's, between two coefficients
+double largest_value(const ModelView& view) {
+  double sum = largest_scale(view, &layout::Scale::diagonal);
+  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+    sum += double{view.info->quantum[layer]} * (1U << (layout::value_bits[layer] - 1));
+  }
+  return sum;
+}
+
+float largest_force_sum(const ModelView& view, const Lifting& lifting) {
+  const double root = 3 * largest_scale(view, &layout::Scale::root);
+  const double sums = 3.0 * view.domain_count * largest_value(view);
+  const Prediction prediction = prediction_of(view);
+  const double per_newton =
+      transform_growth(view, prediction, lifting) * root * sums * root * force_growth(view, prediction);
+  return static_cast<float>(FLT_MAX / 4.0 / per_newton);
+}
+
+// what is written once, at the start
+struct Tables {
+  RefinementTables refinement;
+  ColumnCost* cost[layout::max_levels] = {};
+  PredictionOffsets offsets;
+  BaseColumnsMaker base;
+  MirroredCouplingsMaker mirrored;
+  std::uint8_t* read = nullptr;
+  std::uint32_t* field_blocks = nullptr;
+};
+
+void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
+  tables.refinement.carve(arena, view);
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    tables.cost[c] = arena.take<ColumnCost>(domain_up_to(view, c));
+  }
+  if (sizes.counts.forces_only) {
+    return;
+  }
+  tables.offsets.carve(arena, view);
+  tables.base.carve(arena, view);
+  tables.mirrored.carve(arena, view, tables.base.columns());
+  tables.read = arena.take<std::uint8_t>(view.domain_count);
+  tables.field_blocks = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels);
+}
+
+void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, ContactSet& set) {
+  set.column = arena.take<std::uint32_t>(contacts);
+  set.sorting = arena.take<std::uint32_t>(contacts);
+  set.members = arena.take<std::uint32_t>(contacts);
+  set.place = arena.take<std::uint32_t>(contacts);
+  set.index_of_place = arena.take<std::uint32_t>(view.domain_count);
+}
+
+void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch& scratch) {
+  scratch.touched.carve(arena, view);
+  const std::uint64_t entries = sizes.set_columns * sizes.functional;
+  scratch.room = sizes.counts.capacitance_room;
+  scratch.sorted = arena.take<std::uint32_t>(sizes.set_columns);
+  scratch.sorting = arena.take<std::uint32_t>(sizes.set_columns);
+  scratch.answer = arena.take<std::uint32_t>(sizes.set_columns);
+  scratch.functionals.carve(arena, sizes.set_columns, entries, sizes.slots, sizes.counts.prediction);
+  scratch.slot = arena.take<std::uint32_t>(view.domain_count);
+  scratch.coefficient = arena.take<std::uint32_t>(sizes.slots);
+  scratch.root = arena.take<Block>(sizes.slots);
+  scratch.inverse.carve(arena, sizes.slots, sizes.counts.prediction);
+  scratch.sum = arena.take<BlockPair>(scratch.room);
+  scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
+  scratch.blocks = arena.take<Block>(sizes.longest_column + std::uint64_t{1});
+}
+
+void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
+  carve_tables(arena, view, sizes, tables);
+  if (!sizes.counts.forces_only) {
+    const std::uint32_t tiles = tables.base.columns().tiles;
+    const std::uint64_t places = std::uint64_t{BaseColumns::width} * tiles_of(view.domain_count);
+    body.field_sums.of_blocks = arena.take_zeroed<Float4>(places);
+    body.field_sums.of_tiles = tiles > 0 ? arena.take_zeroed<TileSums>(tiles) : nullptr;
+  }
+  body.stored = arena.take<std::uint32_t>(view.domain_count);
+  body.facts = arena.take<NodeFacts>(view.node_count);
+  carve_set(arena, view, sizes.counts.max_contacts, body.set);
+  body.touched.carve(arena, view);
+  carve_capacitance(arena, view, sizes, body.capacitance);
+  body.update.carve(arena, sizes.set_columns);
+  body.column_force = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
+  body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
+  body.force = arena.take_zeroed<Float4>(view.domain_count);
+  body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
+  body.pending.carve(arena, view, sizes.set_columns);
+  body.mixture.carve(arena, sizes.counts.max_contacts);
+  body.glide.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.glide_cycles);
+}
+
+void count_stored(const ModelView& view, std::uint32_t* stored) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+      stored[level.domain_begin + i] = 0;
+      for (const CouplingsView& couplings : level.couplings) {
+        stored[level.domain_begin + i] += column_length(couplings, i);
+      }
+    }
+  }
+}
+
+// degree: [domain] scratch
+void fill_costs(const ModelView& view, const Tables& tables, std::uint32_t* degree, Body& body) {
+  std::memset(degree, 0, sizeof(std::uint32_t) * view.domain_count);
+  for (std::uint32_t c = 0; c < view.levels; ++c) {
+    add_degrees(view, c, degree);
+    for (std::uint32_t place = 0; tables.cost[c] != nullptr && place < domain_up_to(view, c); ++place) {
+      tables.cost[c][place] = column_cost(body.refinement, make_column(c, place), degree, body.touched);
+    }
+  }
+}
+
+void fill_tables(const ModelView& view, Tables& tables, Body& body) {
+  tables.refinement.fill(view);
+  list_node_facts(view, body.facts);
+  count_stored(view, body.stored);
+  fill_costs(view, tables, body.set.index_of_place, body);
+  for (std::uint32_t j = 0; j < view.domain_count; ++j) {
+    body.set.index_of_place[j] = layout::none;
+    body.capacitance.slot[j] = layout::none;
+  }
+}
+
+void prepare_fields(const ModelView& view, Tables& tables, Body& body) {
+  tables.offsets.fill(view);
+  body.offsets = tables.offsets;
+  mark_read(body.refinement, body.touched, tables.read);
+  body.base = tables.base.make(view);
+  body.mirrored = tables.mirrored.make(view, body.base, tables.read);
+  count_field_blocks(view, body.mirrored, body.base, tables.field_blocks);
+  body.field_blocks = {view.levels, tables.field_blocks};
+  body.block_sums = fastest_block_sums();
+  body.add_tiles = fastest_add_tiles();
+}
+
+}  // namespace
+
+Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept {
+  Tables tables;
+  auto* memory = arena.take<Body>(1);
+  if (memory == nullptr) {
+    Body counted;
+    carve(arena, view, sizes, counted, tables);
+    return nullptr;
+  }
+  Body& body = *new (memory) Body;
+  carve(arena, view, sizes, body, tables);
+  body.view = &view;
+  body.counts = sizes.counts;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    body.cost.level[q] = tables.cost[q];
+  }
+  body.refinement = tables.refinement.refinement(view, body.lifting);
+  fill_tables(view, tables, body);
+  if (!body.counts.forces_only) {
+    prepare_fields(view, tables, body);
+  }
+  body.force_limit = largest_force_sum(view, body.lifting);
+  body.last_red_zone = arena.last_red_zone();
+  return &body;
+}
+
+}  // namespace greenloop

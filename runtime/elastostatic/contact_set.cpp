@@ -1,0 +1,122 @@
+#include "runtime/elastostatic/contact_set.hpp"
+
+#include <cmath>
+
+#include "runtime/algebra/merge_sort.hpp"
+#include "runtime/wavelet/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+bool finite(const Contact& contact) {
+  return std::isfinite(contact.displacement[0]) && std::isfinite(contact.displacement[1]) &&
+         std::isfinite(contact.displacement[2]);
+}
+
+Status check_contact(const Contact& contact, std::uint32_t node_count, const NodeFacts* facts) {
+  if (contact.node >= node_count) {
+    return Status::held_out_of_range;
+  }
+  if (!facts[contact.node].touchable) {
+    return Status::held_not_touchable;
+  }
+  if (!finite(contact)) {
+    return Status::held_not_finite;
+  }
+  return facts[contact.node].marked ? Status::held_duplicate : Status::ok;
+}
+
+}  // namespace
+
+void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+      const bool touchable = (level.nodes[i].flags & layout::node_touchable) != 0;
+      facts[level.node_begin + i] = NodeFacts{static_cast<std::uint8_t>(q), touchable, false};
+    }
+  }
+}
+
+CheckedContacts check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept {
+  CheckedContacts result;
+  std::size_t checked = 0;
+  for (; checked < contacts.size(); ++checked) {
+    result.status = check_contact(contacts[checked], node_count, facts);
+    if (result.status != Status::ok) {
+      result.refused = static_cast<std::uint32_t>(checked);
+      break;
+    }
+    facts[contacts[checked].node].marked = true;
+  }
+  for (std::size_t i = 0; i < checked; ++i) {
+    facts[contacts[i].node].marked = false;
+  }
+  return result;
+}
+
+std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node,
+                        std::uint32_t level) noexcept {
+  const std::uint32_t mesh_level = facts[node].mesh_level;
+  const std::uint32_t representative =
+      view.representatives[level][mesh_level][node - view.level[mesh_level].node_begin];
+  return make_column(level, domain_place(view, facts[representative].mesh_level, representative));
+}
+
+void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
+                      const Resolution& resolution, ContactSet& set) noexcept {
+  set.columns = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const bool fine = resolution.fine != nullptr && resolution.fine[i];
+    const std::uint32_t column = column_of(view, facts, contacts[i].node, fine ? view.levels - 1 : resolution.level);
+    set.place[i] = column_place(column);
+    std::uint32_t& index = set.index_of_place[column_place(column)];
+    if (index == layout::none) {
+      index = 0;
+      set.column[set.columns++] = column;
+    }
+  }
+  merge_sort(set.columns, set.column, set.sorting, [](std::uint32_t a, std::uint32_t b) { return a < b; });
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    set.index_of_place[column_place(set.column[k])] = k;
+    set.members[k] = 0;
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    set.place[i] = set.index_of_place[set.place[i]];
+    ++set.members[set.place[i]];
+  }
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    set.index_of_place[column_place(set.column[k])] = layout::none;
+  }
+}
+
+void average_displacements(std::span<const Contact> contacts, const ContactSet& set, float* displacement) noexcept {
+  for (std::uint32_t k = 0; k < 3 * set.columns; ++k) {
+    displacement[k] = 0;
+  }
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    float* sum = displacement + std::size_t{3} * set.place[i];
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      sum[r] += contacts[i].displacement[r];
+    }
+  }
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    const auto members = static_cast<float>(set.members[k]);
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      displacement[3 * k + r] = without_denormals(displacement[3 * k + r] / members);
+    }
+  }
+}
+
+void share_forces(const float* column_force, std::size_t contacts, const ContactSet& set,
+                  float* contact_force) noexcept {
+  for (std::size_t i = 0; i < contacts; ++i) {
+    const std::uint32_t k = set.place[i];
+    const auto members = static_cast<float>(set.members[k]);
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      contact_force[3 * i + r] = column_force[3 * k + r] / members;
+    }
+  }
+}
+
+}  // namespace greenloop

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+
+#include "formats/view.hpp"
+#include "runtime/algebra/merge_sort.hpp"
+#include "runtime/elastostatic.hpp"
+#include "runtime/wavelet/column.hpp"
+
+namespace greenloop {
+
+/// What the loop looks up about a node.
+struct NodeFacts {
+  std::uint8_t mesh_level = 0;
+  bool touchable = false;  ///< a node of every constraint level stands for it
+  bool marked = false;     ///< by check_contacts, while it looks for duplicates
+  bool fine = false;       ///< by Mixture: in the last choice
+};
+
+/// Facts of every node; facts: [node_count]. Start-up; linear in nodes.
+void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept;
+
+/// What check_contacts finds: the first fault and the contact that has it, by its place among them.
+struct CheckedContacts {
+  Status status = Status::ok;
+  std::uint32_t refused = StepReport::no_contact;
+};
+
+/// Work units of check_contacts.
+constexpr std::uint64_t check_contacts_work(std::uint64_t contacts) { return 4 * contacts; }
+
+/// Refuses contacts that are out of range, not touchable, not finite or named twice; the first at fault decides.
+CheckedContacts check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept;
+
+/// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
+inline constexpr float least_displacement = 0x1p-80F;
+constexpr float without_denormals(float displacement) {
+  // no branch on data: the same instructions for every number
+  const std::uint32_t tiny = static_cast<std::uint32_t>(displacement < least_displacement) &
+                             static_cast<std::uint32_t>(displacement > -least_displacement);
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(displacement) & (tiny - 1));
+}
+
+/// The constraint levels that contacts are resolved at.
+struct Resolution {
+  std::uint32_t level = 0;
+  const bool* fine = nullptr;  ///< [contacts] resolved at the finest level instead; null: none of them
+};
+
+/// The contacts of a step as columns: the nodes, of one constraint level or of two, that stand for them. Contacts that
+/// share a column are merged.
+struct ContactSet {
+  std::uint32_t columns = 0;                ///< columns that hold them
+  std::uint32_t* column = nullptr;          ///< [columns] increasing, of distinct places
+  std::uint32_t* place = nullptr;           ///< [contacts] of each contact's column in `column`
+  std::uint32_t* members = nullptr;         ///< [columns] contacts merged into it
+  std::uint32_t* sorting = nullptr;         ///< [contacts] scratch
+  std::uint32_t* index_of_place = nullptr;  ///< [domain] scratch, `layout::none` between calls
+
+  /// Constraint levels of its columns; of a set that has some.
+  [[nodiscard]] std::uint32_t coarsest() const noexcept { return column_level(column[0]); }
+  [[nodiscard]] std::uint32_t finest() const noexcept { return column_level(column[columns - 1]); }
+};
+
+/// Bound of the work units of resolve_contacts: linear but for a merge sort.
+constexpr std::uint64_t resolve_contacts_work(std::uint64_t contacts) {
+  return 4 * contacts + merge_sort_work(contacts);
+}
+
+/// The column that stands for a touchable node on a constraint level. For the loop; work: constant.
+[[nodiscard]] std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node,
+                                      std::uint32_t level) noexcept;
+
+/// Resolves checked contacts at levels that have representatives. Of contacts that share a representative all or none
+/// are fine: then no place has two columns, since a node that can be held stands for itself on every level of its own.
+void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
+                      const Resolution& resolution, ContactSet& set) noexcept;
+
+/// Work units of average_displacements and of share_forces.
+constexpr std::uint64_t merge_work(std::uint64_t contacts, std::uint64_t columns) { return 6 * (contacts + columns); }
+
+/// displacement[3 * columns]: mean over each column's contacts.
+void average_displacements(std::span<const Contact> contacts, const ContactSet& set, float* displacement) noexcept;
+
+/// contact_force[3 * contacts]: each column's force in equal parts, so that the total is kept.
+void share_forces(const float* column_force, std::size_t contacts, const ContactSet& set,
+                  float* contact_force) noexcept;
+
+}  // namespace greenloop

@@ -1,0 +1,136 @@
+#include "runtime/elastostatic/step_work.hpp"
+
+#include "runtime/algebra/cholesky.hpp"
+#include "runtime/elastostatic/glide.hpp"
+#include "runtime/factor/factor_cache.hpp"
+#include "runtime/wavelet/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
+
+// most coefficients of level q that forces on `nodes` nodes of K(c) touch
+std::uint64_t most_touched(const ModelView& view, const ReachBound& reach, std::uint32_t q, std::uint64_t nodes) {
+  return smaller(view.level[q].counts->domain_count, nodes * reach.coefficients[q]);
+}
+
+// most blocks that some coefficients have with a level
+std::uint64_t most_blocks(const LevelPair& pair, std::uint64_t coefficients) {
+  return smaller(pair.all, coefficients * pair.most);
+}
+
+}  // namespace
+
+std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept {
+  return resolve_contacts_work(set.contacts) + 4 * set.columns +
+         FactorCache::find_work(model.cached_factors, set.columns);
+}
+
+std::uint64_t touch_work(const SetCounts& set) noexcept {
+  return 2 * set.visits + 8 * set.coefficients + count_field_work(set);
+}
+
+CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
+  return {.prediction = model.prediction,
+          .columns = set.columns,
+          .rows = set.columns,
+          .slots = set.slots,
+          .set_visits = set.visits,
+          .stored = set.stored,
+          .visits = set.column.visits,
+          .coefficients = set.column.coefficients,
+          .blocks = set.column.blocks,
+          .room = model.capacitance_room,
+          .bounds = set.bounds};
+}
+
+std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
+  const auto order = static_cast<std::uint32_t>(3 * set.columns);
+  return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
+         assemble_capacitance_work(capacitance_counts(model, set)) + cholesky_factor_work(order);
+}
+
+std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept {
+  return resolve_contacts_work(contacts) + FactorCache::find_work(model.cached_factors, contacts) +
+         solve_work(contacts, contacts);
+}
+
+std::uint64_t solve_work(std::uint64_t contacts, std::uint64_t columns) noexcept {
+  return merge_work(contacts, columns) + 6 * columns + cholesky_solve_work(static_cast<std::uint32_t>(3 * columns));
+}
+
+std::uint64_t force_work(const SetCounts& set) noexcept {
+  return solve_work(set.contacts, set.columns) + Glide::blend_work(set.contacts);
+}
+
+std::uint64_t count_field_work(const SetCounts& set) noexcept { return set.coefficients; }
+
+std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
+                         std::uint64_t blocks) noexcept {
+  constexpr std::uint64_t coefficient_work = 60;  // its scale, and where its blocks stand
+  constexpr std::uint64_t scale_work = 14;
+  const std::uint64_t details = model.rows[levels.details];
+  return 4 * set.columns + model.prediction.force_work * set.visits + coefficient_work * set.coefficients +
+         block_work * blocks + scale_work * details +
+         inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details,
+                                model.prediction) +
+         4 * set.contacts;
+}
+
+void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
+                  SetCounts& counts) noexcept {
+  counts.coefficients = touched.coefficients();
+  counts.visits = touched.visits;
+  counts.slots = count_slots({set.columns, set.column}, touched);
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    counts.column.add(cost.of(set.column[k]));
+  }
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      counts.stored += stored[touched.list[q][k]];
+    }
+  }
+}
+
+std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touched,
+                                 std::uint32_t field_level) noexcept {
+  std::uint64_t sum = 0;
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      sum += blocks.count(touched.list[q][k], field_level);
+    }
+  }
+  return sum;
+}
+
+MostCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
+                       std::uint32_t max_contacts, const ReachBound& reach, const BaseColumns& base) noexcept {
+  MostCounts most;
+  SetCounts& counts = most.set;
+  counts.bounds = true;
+  counts.contacts = max_contacts;
+  counts.columns = smaller(domain_up_to(view, c), max_contacts);
+  counts.visits = counts.columns * reach.visits;
+  counts.column.visits = counts.visits;
+  for (std::uint32_t q = 0; q <= c; ++q) {
+    const std::uint64_t of_set = most_touched(view, reach, q, counts.columns);
+    const std::uint64_t of_column = most_touched(view, reach, q, 1);
+    counts.coefficients += of_set;
+    counts.column.coefficients += counts.columns * of_column;
+    for (std::uint32_t other = 0; other <= c; ++other) {
+      counts.stored += other <= q ? most_blocks(couplings.stored[q][other], of_set) : 0;
+      counts.column.blocks += counts.columns * most_blocks(couplings.stored[q][other], of_column);
+    }
+    std::uint64_t blocks = of_set;  // on the diagonal
+    for (std::uint32_t other = 0; other < view.levels; ++other) {
+      const std::uint64_t tiles = q == 0 && base.columns > 0 ? tiles_of(domain_up_to(view, other)) : 0;
+      blocks += most_blocks(couplings.stored[q][other], of_set);
+      most.field_blocks[other] += blocks + of_set * tiles * FieldBlocks::of_tile;
+    }
+  }
+  counts.slots = counts.coefficients;
+  return most;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,82 @@
+#include "runtime/factor/factor_cache.hpp"
+
+#include <cstring>
+
+#include "runtime/algebra/cholesky.hpp"
+
+namespace greenloop {
+namespace {
+
+// FNV-1a over whole words, never 0
+std::uint64_t key_of(const ContactSet& set) {
+  constexpr std::uint64_t prime = 0x100000001b3;
+  std::uint64_t key = 0xcbf29ce484222325;
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    key = (key ^ set.column[k]) * prime;
+    key ^= key >> 29;
+  }
+  return key == 0 ? 1 : key;
+}
+
+bool belongs_to(const Factor& factor, const ContactSet& set) {
+  return factor.columns == set.columns &&
+         std::memcmp(factor.column, set.column, sizeof(std::uint32_t) * set.columns) == 0;
+}
+
+}  // namespace
+
+void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
+  const std::uint64_t stride = padded_order(3 * columns_of_a_set);
+  column = arena.take<std::uint32_t>(columns_of_a_set);
+  node = arena.take<std::uint32_t>(columns_of_a_set);
+  position = arena.take<std::uint32_t>(columns_of_a_set);
+  matrix = arena.take<Float4>(stride * stride / 4);
+}
+
+void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept {
+  stride_ = padded_order(3 * columns);
+  factors_ = factors;
+  factor_ = arena.take_zeroed<Factor>(factors);
+  for (std::uint32_t i = 0; i < factors; ++i) {
+    Factor factor;
+    factor.carve(arena, columns);
+    if (factor_ != nullptr) {
+      factor_[i] = factor;
+    }
+  }
+}
+
+Factor* FactorCache::find(const ContactSet& set) const noexcept {
+  const std::uint64_t key = key_of(set);
+  for (std::uint32_t i = 0; i < factors_; ++i) {
+    if (factor_[i].key == key) {
+      // keys are unique: a set with the same key replaces the other one
+      return belongs_to(factor_[i], set) ? factor_ + i : nullptr;
+    }
+  }
+  return nullptr;
+}
+
+Factor& FactorCache::make_room(const ContactSet& set) noexcept {
+  const std::uint64_t key = key_of(set);
+  Factor* oldest = factor_;
+  for (std::uint32_t i = 0; i < factors_; ++i) {
+    if (factor_[i].key == key) {
+      oldest = factor_ + i;
+      break;
+    }
+    oldest = factor_[i].used < oldest->used ? factor_ + i : oldest;
+  }
+  oldest->key = 0;
+  oldest->used = 0;
+  return *oldest;
+}
+
+void FactorCache::keep(Factor& factor, const ContactSet& set) noexcept {
+  factor.key = key_of(set);
+  use(factor);
+  factor.columns = set.columns;
+  std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.columns);
+}
+
+}  // namespace greenloop

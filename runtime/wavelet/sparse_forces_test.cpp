@@ -1,0 +1,99 @@
+#include "runtime/wavelet/sparse_forces.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "runtime/testing/dense_reference.hpp"
+#include "runtime/testing/placed_body.hpp"
+#include "runtime/testing/test_body.hpp"
+#include "runtime/wavelet/domain.hpp"
+#include "runtime/wavelet/point_support.hpp"
+
+namespace greenloop {
+namespace {
+
+// coefficients of nodal forces of level c, by T_l^-T as dense matrices
+std::vector<double> dense_coefficients(const ModelView& view, const std::vector<Eigen::SparseMatrix<double>>& inverse,
+                                       std::uint32_t c, Eigen::VectorXd f) {
+  std::vector<double> result(std::size_t{3} * view.domain_count);
+  for (std::uint32_t level = c; level > 0; --level) {
+    f.head(3 * domain_up_to(view, level)) =
+        Eigen::VectorXd(inverse[level].transpose() * f.head(3 * domain_up_to(view, level)));
+  }
+  std::copy(f.begin(), f.end(), result.begin());
+  return result;
+}
+
+TEST_CASE("sparse forces reach the coefficients that the dense transform finds, and no other") {
+  for (const layout::Wavelet kind : layout::wavelets) {
+    const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.8});
+    const ModelView& view = model.view();
+    PlacedBody placed(view, 16);
+    Body& body = *placed.body;
+    std::uint32_t most_neighbours[layout::max_levels] = {};
+    std::vector<Eigen::SparseMatrix<double>> inverse(view.levels);
+    for (std::uint32_t q = 1; q < view.levels; ++q) {
+      inverse[q] = inverse_step(view, q);
+      most_neighbours[q] = count_lifting(view, q).most_neighbours;
+      // an octahedron's corners have four edges
+      CHECK(most_neighbours[q] == (!layout::is_lifted(kind) ? 0 : q == 1 ? 4 : 6));
+    }
+    std::mt19937_64 random(3);
+    for (std::uint32_t c = 0; c < view.levels; ++c) {
+      const ReachBound reach = bound_reach(view, c, most_neighbours);
+      REQUIRE(reach.bounded);
+      for (int trial = 0; trial < 30; ++trial) {
+        std::vector<std::uint32_t> places(domain_up_to(view, c));
+        for (std::uint32_t i = 0; i < places.size(); ++i) {
+          places[i] = i;
+        }
+        std::shuffle(places.begin(), places.end(), random);
+        places.resize(std::min<std::size_t>(places.size(), trial < 15 ? 1 : 16));
+        Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * domain_up_to(view, c));
+        std::vector<std::uint32_t> columns;
+        std::vector<float> forces;
+        for (const std::uint32_t place : places) {
+          columns.push_back(make_column(c, place));
+        }
+        touch(body.refinement, columns.data(), static_cast<std::uint32_t>(columns.size()), body.touched);
+        for (const std::uint32_t place : places) {
+          for (Eigen::Index r = 0; r < 3; ++r) {
+            forces.push_back(static_cast<float>(random() >> 40) * 0x1p-24F);
+            f(Eigen::Index{3} * place + r) = forces.back();
+          }
+        }
+        transform_forces(body.refinement, {static_cast<std::uint32_t>(columns.size()), columns.data(), forces.data()},
+                         body.touched, body.force);
+        const auto dense = dense_coefficients(view, inverse, c, f);
+        std::vector<int> times(view.domain_count);
+        for (std::uint32_t q = 0; q < view.levels; ++q) {
+          const LevelView& level = view.level[q];
+          for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
+            CHECK(body.touched.list[q][k] - level.domain_begin < level.counts->domain_count);
+            ++times[body.touched.list[q][k]];
+          }
+          CHECK(body.touched.count[q] <= (q <= c ? places.size() * reach.coefficients[q] : 0));
+        }
+        CHECK(body.touched.visits <= places.size() * reach.visits);
+        for (std::size_t i = 0; i < dense.size(); ++i) {
+          CHECK(times[i / 3] <= 1);
+          CHECK(std::abs(double{body.force[i / 3][i % 3]} - dense[i]) <= 1e-5);
+          CHECK((times[i / 3] == 1 || dense[i] == 0));
+          CHECK(float{body.force[i / 3][3]} == 0);
+        }
+        clear_forces(body.touched, body.force);
+        clear(body.touched);
+        CHECK(std::none_of(body.touched.mark, body.touched.mark + view.domain_count, [](bool m) { return m; }));
+        CHECK(std::all_of(body.force, body.force + view.domain_count,
+                          [](Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0 && x[3] == 0; }));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace greenloop
