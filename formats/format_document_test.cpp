@@ -8,10 +8,10 @@
 #include <sstream>
 #include <string>
 
-#include "formats/describe.hpp"
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/transport/stream.hpp"
+#include "formats/write/describe.hpp"
 
 namespace greenloop {
 namespace {

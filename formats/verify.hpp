@@ -36,7 +36,7 @@ enum class VerifyRule : std::uint8_t {
   inconsistent,
 };
 
-/// The verdict of verify. Text for people is made from it by describe (formats/describe.hpp), outside the loop.
+/// The verdict of verify. Text for people is made from it by describe (formats/write/describe.hpp), outside the loop.
 struct VerifyResult {
   VerifyRule rule = VerifyRule::ok;
   layout::SectionKind kind = {};  ///< section at fault; 0 for the header and the table

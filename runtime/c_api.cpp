@@ -4,7 +4,7 @@
 #include <new>
 #include <type_traits>
 
-#include "formats/rule_text.hpp"
+#include "formats/verify/rule_text.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/elastostatic/body.hpp"
 #include "runtime/greenloop.h"

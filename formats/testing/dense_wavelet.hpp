@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop {
 

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "formats/describe.hpp"
+#include "formats/write/describe.hpp"
 
 namespace greenloop {
 namespace {

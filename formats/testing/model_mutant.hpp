@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/testing/reseal.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/verify.hpp"
+#include "formats/write/aligned_bytes.hpp"
 
 namespace greenloop {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "formats/describe.hpp"
 #include "formats/testing/model_mutant.hpp"
+#include "formats/write/describe.hpp"
 
 namespace greenloop {
 

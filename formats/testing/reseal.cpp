@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "formats/crc32c.hpp"
 #include "formats/layout.hpp"
+#include "formats/verify/crc32c.hpp"
 
 namespace greenloop {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop {
 

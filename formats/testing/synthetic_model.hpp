@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop {
 

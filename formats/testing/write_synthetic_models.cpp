@@ -7,10 +7,10 @@
 #include <iostream>
 #include <string>
 
-#include "formats/c_array.hpp"
-#include "formats/describe.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/write/c_array.hpp"
+#include "formats/write/describe.hpp"
 
 namespace greenloop {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/view.hpp"
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop::transport {
 

@@ -2,11 +2,11 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "formats/aligned_bytes.hpp"
-#include "formats/crc32c.hpp"
-#include "formats/describe.hpp"
 #include "formats/transport/packet.hpp"
 #include "formats/transport/stream.hpp"
+#include "formats/verify/crc32c.hpp"
+#include "formats/write/aligned_bytes.hpp"
+#include "formats/write/describe.hpp"
 
 namespace greenloop::transport {
 namespace {

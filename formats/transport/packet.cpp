@@ -5,9 +5,9 @@
 #include <tuple>
 #include <utility>
 
-#include "formats/crc32c.hpp"
-#include "formats/section_extent.hpp"
 #include "formats/transport/coupling_blocks.hpp"
+#include "formats/verify/crc32c.hpp"
+#include "formats/verify/section_extent.hpp"
 
 namespace greenloop::transport {
 namespace {

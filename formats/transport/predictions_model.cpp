@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "formats/section_extent.hpp"
+#include "formats/verify/section_extent.hpp"
 
 namespace greenloop::transport {
 namespace {

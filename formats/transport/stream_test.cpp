@@ -9,13 +9,13 @@
 #include <random>
 #include <stdexcept>
 
-#include "formats/crc32c.hpp"
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/transport/predictions_model.hpp"
 #include "formats/transport/stream.hpp"
-#include "formats/writer.hpp"
+#include "formats/verify/crc32c.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop::transport {
 namespace {

@@ -6,11 +6,11 @@
 #include <optional>
 #include <utility>
 
-#include "formats/aligned_bytes.hpp"
-#include "formats/crc32c.hpp"
-#include "formats/describe.hpp"
 #include "formats/transport/packet.hpp"
 #include "formats/transport/stream.hpp"
+#include "formats/verify/crc32c.hpp"
+#include "formats/write/aligned_bytes.hpp"
+#include "formats/write/describe.hpp"
 
 namespace greenloop::transport {
 namespace {

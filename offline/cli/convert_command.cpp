@@ -11,13 +11,13 @@
 #include <stdexcept>
 #include <string>
 
-#include "formats/c_array.hpp"
-#include "formats/exchange/surface_io.hpp"
-#include "formats/exchange/volume_io.hpp"
-#include "formats/model_file.hpp"
-#include "formats/model_surface.hpp"
+#include "formats/mesh/model_surface.hpp"
+#include "formats/mesh/surface_io.hpp"
+#include "formats/mesh/volume_io.hpp"
 #include "formats/transport/stream.hpp"
-#include "formats/writer.hpp"
+#include "formats/write/c_array.hpp"
+#include "formats/write/model_file.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
-#include "formats/describe.hpp"
-#include "formats/model_file.hpp"
 #include "formats/stored_blocks.hpp"
+#include "formats/write/describe.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/cli/inspect_patterns.hpp"
 #include "offline/compress/field_size.hpp"
 

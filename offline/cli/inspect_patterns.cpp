@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/describe.hpp"
+#include "formats/write/describe.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -10,11 +10,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "formats/exchange/surface_io.hpp"
-#include "formats/exchange/volume_io.hpp"
-#include "formats/model_file.hpp"
+#include "formats/mesh/surface_io.hpp"
+#include "formats/mesh/volume_io.hpp"
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/cli/convert_command.hpp"
 #include "offline/cli/inspect_command.hpp"
 #include "offline/cli/verify_command.hpp"

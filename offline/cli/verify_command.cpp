@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "formats/describe.hpp"
-#include "formats/model_file.hpp"
+#include "formats/write/describe.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/compress/certificate.hpp"
 
 namespace greenloop::offline {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 
 namespace greenloop::offline {
 

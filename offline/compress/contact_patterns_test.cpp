@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "formats/describe.hpp"
+#include "formats/write/describe.hpp"
 #include "offline/compress/node_order.hpp"
 #include "offline/compress/point_choice.hpp"
 #include "offline/compress/test_body.hpp"

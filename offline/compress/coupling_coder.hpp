@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/compress/wavelet_compliance.hpp"
 
 namespace greenloop::offline {

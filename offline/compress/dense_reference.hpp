@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/view.hpp"
-#include "formats/writer.hpp"
+#include "formats/write/aligned_bytes.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/compress/column_source.hpp"
 #include "offline/compress/coupling_coder.hpp"
 #include "offline/compress/surface_wavelet.hpp"

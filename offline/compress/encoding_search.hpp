@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/view.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "offline/compress/column_source.hpp"
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/coupling_coder.hpp"

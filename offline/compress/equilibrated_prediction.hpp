@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
-#include "formats/writer.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/compress/column_source.hpp"
 #include "offline/compress/surface_wavelet.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/encoding_search.hpp"
 #include "offline/compress/surface_wavelet.hpp"

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/view.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "runtime/compliance/mirrored_couplings.hpp"
 #include "runtime/wavelet/sparse_forces.hpp"
 

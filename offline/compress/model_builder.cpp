@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "formats/describe.hpp"
 #include "formats/verify.hpp"
+#include "formats/write/describe.hpp"
 #include "offline/compress/certificate.hpp"
 #include "offline/compress/equilibrated_prediction.hpp"
 #include "offline/compress/exact_sample.hpp"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
-#include "formats/writer.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/compress/encoding_search.hpp"
 #include "offline/compress/field_size.hpp"
 #include "offline/compress/pattern_errors.hpp"

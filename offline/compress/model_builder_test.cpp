@@ -9,8 +9,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "formats/describe.hpp"
 #include "formats/verify.hpp"
+#include "formats/write/describe.hpp"
 #include "offline/compress/contact_patches.hpp"
 #include "offline/compress/dense_reference.hpp"
 #include "offline/compress/exact_sample.hpp"

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
-#include "formats/writer.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/compress/surface_wavelet.hpp"
 
 namespace greenloop::offline {

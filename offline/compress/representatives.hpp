@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 
 namespace greenloop::offline {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "formats/layout.hpp"
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/compress/model_tables.hpp"
 #include "offline/compress/test_body.hpp"
 

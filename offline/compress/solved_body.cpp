@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "formats/exchange/green_store.hpp"
 #include "formats/layout.hpp"
+#include "formats/store/green_store.hpp"
 #include "offline/compress/node_order.hpp"
 #include "offline/solve/boundary_interpolation.hpp"
 #include "offline/solve/elasticity.hpp"

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "formats/exchange/material.hpp"
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/store/material.hpp"
 #include "offline/compress/test_body.hpp"
 
 namespace greenloop::offline::test {

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
 #include "formats/layout.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/view.hpp"
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop::offline {
 

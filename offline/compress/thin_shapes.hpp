@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 
 namespace greenloop::offline::test {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 #include "offline/compress/surface_wavelet.hpp"
 
 namespace greenloop::offline {

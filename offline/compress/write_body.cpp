@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
 #include "offline/compress/test_body.hpp"
 #include "offline/compress/thin_shapes.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 
 namespace greenloop::offline {
 

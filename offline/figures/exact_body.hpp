@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 #include "offline/compress/column_source.hpp"
 
 namespace greenloop::offline {

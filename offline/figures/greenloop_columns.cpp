@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 #include "offline/compress/exact_sample.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/column_records.hpp"

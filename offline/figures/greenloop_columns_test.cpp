@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
 #include "offline/compress/test_body.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/exact_body.hpp"

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "formats/writer.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/figures/rate_curve.hpp"
 
 namespace greenloop::offline {

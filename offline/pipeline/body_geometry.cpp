@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "formats/exchange/surface_io.hpp"
-#include "formats/exchange/volume_io.hpp"
 #include "formats/layout.hpp"
+#include "formats/mesh/surface_io.hpp"
+#include "formats/mesh/volume_io.hpp"
 #include "offline/compress/node_order.hpp"
 #include "offline/remesh/remesh.hpp"
 #include "offline/solve/boundary_interpolation.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
-#include "formats/exchange/tetrahedral_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
 #include "offline/pipeline/progress_bar.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/solve/boundary_interpolation.hpp"

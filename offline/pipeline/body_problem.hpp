@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/pipeline/progress_bar.hpp"
 #include "offline/scene/scene.hpp"

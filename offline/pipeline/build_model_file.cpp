@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "formats/describe.hpp"
-#include "formats/exchange/green_store.hpp"
 #include "formats/layout.hpp"
-#include "formats/model_file.hpp"
-#include "formats/writer.hpp"
+#include "formats/store/green_store.hpp"
+#include "formats/write/describe.hpp"
+#include "formats/write/model_file.hpp"
+#include "formats/write/writer.hpp"
 #include "offline/compress/model_builder.hpp"
 #include "offline/compress/wavelet_choice.hpp"
 #include "offline/pipeline/body_geometry.hpp"

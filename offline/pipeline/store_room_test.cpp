@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
 #include "offline/pipeline/build_model_file.hpp"
 #include "offline/solve/testing/shapes.hpp"
 

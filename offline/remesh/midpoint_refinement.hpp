@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 #include "offline/remesh/surface.hpp"
 
 namespace greenloop::offline {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 
 namespace greenloop::offline {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string_view>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 #include "offline/remesh/quality.hpp"
 
 namespace greenloop::offline {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
 
 namespace greenloop::offline {
 namespace {

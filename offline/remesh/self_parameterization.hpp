@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 #include "offline/remesh/patch_flattening.hpp"
 #include "offline/remesh/quadric.hpp"
 #include "offline/remesh/surface.hpp"

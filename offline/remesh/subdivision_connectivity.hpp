@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 
 namespace greenloop::offline {
 

@@ -15,7 +15,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
 #include "offline/remesh/midpoint_refinement.hpp"
 
 namespace greenloop::offline {

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 #include "offline/remesh/surface.hpp"
 
 namespace greenloop::offline {

@@ -9,8 +9,8 @@
 #include <map>
 #include <span>
 
-#include "formats/describe.hpp"
 #include "formats/stored_blocks.hpp"
+#include "formats/write/describe.hpp"
 #include "offline/compress/field_size.hpp"
 #include "offline/report/axis.hpp"
 

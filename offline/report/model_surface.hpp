@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/view.hpp"
 #include "offline/report/camera.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/describe.hpp"
+#include "formats/write/describe.hpp"
 #include "offline/report/svg_plot.hpp"
 #include "offline/report/theme.hpp"
 

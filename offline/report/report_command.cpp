@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "formats/model_file.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/report.hpp"
 

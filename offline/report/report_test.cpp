@@ -9,8 +9,8 @@
 #include <iterator>
 #include <string>
 
-#include "formats/model_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/compress/field_size.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"

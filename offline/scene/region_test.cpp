@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
 #include "offline/scene/scene.hpp"
 
 using namespace greenloop::offline;

@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/exchange/material.hpp"
 #include "formats/layout.hpp"
+#include "formats/store/material.hpp"
 #include "offline/scene/region.hpp"
 
 namespace greenloop::offline {

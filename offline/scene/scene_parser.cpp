@@ -4,7 +4,7 @@
 #include <fstream>
 #include <utility>
 
-#include "formats/describe.hpp"
+#include "formats/write/describe.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/scene/toml_table.hpp"
 

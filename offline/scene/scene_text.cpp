@@ -2,7 +2,7 @@
 #include <charconv>
 #include <string>
 
-#include "formats/describe.hpp"
+#include "formats/write/describe.hpp"
 #include "offline/scene/scene.hpp"
 
 namespace greenloop::offline {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/exchange/tetrahedral_mesh.hpp"
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 
 namespace greenloop::offline {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 #include "offline/solve/elasticity.hpp"
 #include "offline/solve/factorization.hpp"
 

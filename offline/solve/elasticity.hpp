@@ -4,9 +4,9 @@
 #include <Eigen/SparseCore>
 #include <vector>
 
-#include "formats/exchange/material.hpp"
-#include "formats/exchange/tetrahedral_mesh.hpp"
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
+#include "formats/store/material.hpp"
 
 namespace greenloop::offline {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 
 namespace greenloop::offline {
 

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <string>
 
-#include "formats/exchange/green_store.hpp"
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
+#include "formats/store/green_store.hpp"
 #include "offline/remesh/remesh.hpp"
 #include "offline/solve/boundary_interpolation.hpp"
 #include "offline/solve/elasticity.hpp"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/exchange/tetrahedral_mesh.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
 
 namespace greenloop::offline {
 

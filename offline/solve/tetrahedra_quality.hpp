@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "formats/exchange/tetrahedral_mesh.hpp"
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 
 namespace greenloop::offline {
 

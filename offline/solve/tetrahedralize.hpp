@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "formats/exchange/semi_regular_mesh.hpp"
-#include "formats/exchange/tetrahedral_mesh.hpp"
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 #include "offline/solve/tetrahedra_quality.hpp"
 
 namespace greenloop::offline {

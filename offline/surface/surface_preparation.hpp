@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 #include "offline/surface/surface_report.hpp"
 
 namespace greenloop::offline {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 
 namespace greenloop::offline {
 

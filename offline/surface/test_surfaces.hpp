@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "formats/exchange/surface_io.hpp"
+#include "formats/mesh/surface_io.hpp"
 
 namespace greenloop::offline {
 

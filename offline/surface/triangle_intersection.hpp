@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "formats/exchange/triangle_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 
 namespace greenloop::offline {
 

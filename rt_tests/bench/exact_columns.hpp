@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::bench {

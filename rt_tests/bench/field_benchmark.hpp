@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 #include "runtime/model.hpp"
 
 namespace greenloop::bench {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "formats/model_file.hpp"
+#include "formats/write/model_file.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
 #include "rt_tests/bench/kernel_benchmark.hpp"

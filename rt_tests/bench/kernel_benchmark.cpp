@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <random>
 
-#include "formats/exchange/green_store.hpp"
+#include "formats/store/green_store.hpp"
 #include "rt_tests/bench/contact_sets.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/median.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::bench {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/c_array.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/write/c_array.hpp"
 
 namespace greenloop {
 namespace {

@@ -8,8 +8,8 @@
 #include <random>
 #include <utility>
 
-#include "formats/describe.hpp"
 #include "formats/testing/model_mutant.hpp"
+#include "formats/write/describe.hpp"
 #include "rt_tests/fuzz/walk_view.hpp"
 
 namespace greenloop {

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/testing/reseal.hpp"
 #include "formats/verify.hpp"
+#include "formats/write/aligned_bytes.hpp"
 
 namespace greenloop {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "rt_tests/instructions/counted.hpp"
 #include "runtime/testing/test_body.hpp"
 

@@ -12,7 +12,7 @@ forbid() {  # forbid FOLDER PATTERN: no product file of FOLDER includes a header
   fi
 }
 forbid formats 'runtime|offline|sim_hw|rt_tests'
-forbid runtime 'offline|sim_hw|rt_tests|formats/exchange'
+forbid runtime 'offline|sim_hw|rt_tests|formats/(mesh|store)'
 forbid offline 'sim_hw|rt_tests'
-forbid sim_hw 'offline|rt_tests|formats/exchange'
+forbid sim_hw 'offline|rt_tests|formats/(mesh|store)'
 exit $status

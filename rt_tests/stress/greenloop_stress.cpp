@@ -7,8 +7,8 @@
 #include <exception>
 #include <map>
 
-#include "formats/describe.hpp"
-#include "formats/model_file.hpp"
+#include "formats/write/describe.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/pipeline/progress_bar.hpp"
 #include "rt_tests/stress/heaviest_step.hpp"
 #include "rt_tests/stress/stress_report.hpp"

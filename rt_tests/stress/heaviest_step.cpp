@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "sim_hw/guard/instruction_counter.hpp"
 
 namespace greenloop {

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "formats/aligned_bytes.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "rt_tests/bench/thread_time.hpp"
 #include "rt_tests/stress/force_step.hpp"
 #include "sim_hw/guard/allocation_guard.hpp"

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "formats/model_file.hpp"
+#include "formats/write/model_file.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/body.hpp"
 #include "runtime/testing/placed_body.hpp"

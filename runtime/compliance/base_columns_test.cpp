@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/stored_blocks.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "runtime/compliance/couplings.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"

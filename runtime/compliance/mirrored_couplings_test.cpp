@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/stored_blocks.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/testing/test_body.hpp"
 

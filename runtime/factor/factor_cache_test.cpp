@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
+#include "formats/write/aligned_bytes.hpp"
 
 namespace greenloop {
 namespace {

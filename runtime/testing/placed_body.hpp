@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formats/aligned_bytes.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "runtime/elastostatic/body.hpp"
 
 namespace greenloop {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/testing/synthetic_model.hpp"
-#include "formats/writer.hpp"
+#include "formats/write/aligned_bytes.hpp"
+#include "formats/write/writer.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/verify.hpp"
+#include "formats/write/aligned_bytes.hpp"
 
 namespace greenloop {
 namespace {

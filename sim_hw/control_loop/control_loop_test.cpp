@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/aligned_bytes.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "runtime/model.hpp"
 #include "runtime/newest.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "formats/describe.hpp"
-#include "formats/model_file.hpp"
+#include "formats/write/describe.hpp"
+#include "formats/write/model_file.hpp"
 
 namespace greenloop {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "formats/aligned_bytes.hpp"
+#include "formats/write/aligned_bytes.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/model.hpp"
 

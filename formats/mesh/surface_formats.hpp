@@ -1,0 +1,27 @@
+#pragma once
+
+// The formats behind read_surface and write_surface, one function each.
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "formats/mesh/mesh_text.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
+
+namespace greenloop {
+
+[[nodiscard]] TriangleMesh parse_off(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TriangleMesh parse_obj(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TriangleMesh parse_stl(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TriangleMesh parse_ply(const std::filesystem::path& file, std::string content);
+
+[[nodiscard]] std::string format_off(const TriangleMesh& mesh);
+[[nodiscard]] std::string format_obj(const TriangleMesh& mesh);
+[[nodiscard]] std::string format_stl(const TriangleMesh& mesh);
+[[nodiscard]] std::string format_ply(const TriangleMesh& mesh);
+
+/// Appends a polygon as a fan of triangles around its first vertex.
+void append_fan(TriangleMesh& mesh, std::span<const int> polygon);
+
+}  // namespace greenloop

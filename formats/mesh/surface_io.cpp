@@ -1,0 +1,53 @@
+#include "formats/mesh/surface_io.hpp"
+
+#include <string>
+
+#include "formats/mesh/surface_formats.hpp"
+
+namespace greenloop {
+namespace {
+
+[[noreturn]] void refuse_extension(const std::filesystem::path& file) {
+  throw MeshFileError(file.string() + ": found extension " + in_quotes(file.extension().string()) +
+                      ", expected a surface file: .off, .obj, .stl or .ply");
+}
+
+}  // namespace
+
+void append_fan(TriangleMesh& mesh, std::span<const int> polygon) {
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    mesh.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+  }
+}
+
+TriangleMesh read_surface(const std::filesystem::path& file) {
+  const auto extension = lower_extension(file);
+  auto* const parse = extension == ".off"   ? parse_off
+                      : extension == ".obj" ? parse_obj
+                      : extension == ".stl" ? parse_stl
+                      : extension == ".ply" ? parse_ply
+                                            : nullptr;
+  if (parse == nullptr) {
+    refuse_extension(file);
+  }
+  auto mesh = parse(file, read_file(file));
+  if (mesh.triangles.empty()) {
+    throw MeshFileError(file.string() + ": found no face, expected a surface");
+  }
+  return mesh;
+}
+
+void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh) {
+  const auto extension = lower_extension(file);
+  auto* const format = extension == ".off"   ? format_off
+                       : extension == ".obj" ? format_obj
+                       : extension == ".stl" ? format_stl
+                       : extension == ".ply" ? format_ply
+                                             : nullptr;
+  if (format == nullptr) {
+    refuse_extension(file);
+  }
+  write_file(file, format(mesh));
+}
+
+}  // namespace greenloop

@@ -1,0 +1,63 @@
+#pragma once
+
+// The formats behind read_volume and write_volume, one function each.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "formats/mesh/mesh_text.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
+
+namespace greenloop {
+
+/// Collects nodes and tetrahedra under the numbers their file gives them.
+class VolumeBuilder {
+ public:
+  explicit VolumeBuilder(std::filesystem::path file) : file_(std::move(file)) {}
+
+  void reserve_nodes(std::size_t count);
+  /// Adds a node; a number that is taken already is refused at the token read last.
+  void add_node(const MeshText& text, std::int64_t number, const Eigen::Vector3d& position);
+  /// Reads a node number and the node's position.
+  void read_node(MeshText& text);
+  /// Reads four node numbers.
+  void read_tetrahedron(MeshText& text);
+  /// Adds a tetrahedron of four node indices in order of appearance, which stands on a line of the file.
+  void add_tetrahedron(const std::array<int, 4>& nodes, std::size_t line);
+
+  [[nodiscard]] std::size_t node_count() const { return mesh_.vertices.size(); }
+
+  /// Drops nodes in no tetrahedron and checks orientations.
+  [[nodiscard]] TetrahedralMesh finish();
+
+ private:
+  void orient();
+  void drop_unused_nodes();
+  [[nodiscard]] std::string place(std::size_t tetrahedron) const;
+
+  std::filesystem::path file_;
+  NodeNumbers numbers_;
+  TetrahedralMesh mesh_;
+  std::vector<std::size_t> lines_;  ///< of each tetrahedron
+};
+
+/// Any whole number, as node and element numbers may be.
+[[nodiscard]] std::int64_t read_number(MeshText& text, std::string_view expected);
+
+[[nodiscard]] TetrahedralMesh parse_gmsh(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TetrahedralMesh parse_vtk(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TetrahedralMesh parse_vtu(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content);
+[[nodiscard]] TetrahedralMesh parse_vega(const std::filesystem::path& file, std::string content);
+
+[[nodiscard]] std::string format_gmsh(const TetrahedralMesh& mesh);
+[[nodiscard]] std::string format_medit(const TetrahedralMesh& mesh);
+[[nodiscard]] std::string format_vtk(const TetrahedralMesh& mesh);
+
+}  // namespace greenloop

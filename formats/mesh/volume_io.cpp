@@ -1,0 +1,171 @@
+#include "formats/mesh/volume_io.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "formats/mesh/volume_formats.hpp"
+
+namespace greenloop {
+namespace {
+
+/// |det| up to this part of the longest edge cubed is flat.
+constexpr double flatness = 1e-12;
+
+[[noreturn]] void refuse_extension(const std::filesystem::path& file, const std::string& supported) {
+  throw MeshFileError(file.string() + ": found extension " + in_quotes(file.extension().string()) +
+                      ", expected a file of tetrahedra: " + supported);
+}
+
+/// -1, 0 (flat) or +1.
+int orientation(const TetrahedralMesh& mesh, const std::array<int, 4>& tetrahedron) {
+  const auto& [i, j, k, l] = tetrahedron;
+  const auto &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k], &d = mesh.vertices[l];
+  const double det = (b - a).dot((c - a).cross(d - a));
+  const double longest =
+      std::max({(b - a).norm(), (c - a).norm(), (d - a).norm(), (c - b).norm(), (d - b).norm(), (d - c).norm()});
+  if (!(std::abs(det) > flatness * longest * longest * longest)) {
+    return 0;
+  }
+  return det > 0 ? 1 : -1;
+}
+
+}  // namespace
+
+std::int64_t read_number(MeshText& text, std::string_view expected) {
+  return text.integer(expected, std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max());
+}
+
+void VolumeBuilder::reserve_nodes(std::size_t count) {
+  numbers_.reserve(count);
+  mesh_.vertices.reserve(count);
+}
+
+void VolumeBuilder::add_node(const MeshText& text, std::int64_t number, const Eigen::Vector3d& position) {
+  if (!numbers_.add(number)) {
+    text.fail("node " + std::to_string(number) + " again", "each node once");
+  }
+  mesh_.vertices.push_back(position);
+}
+
+void VolumeBuilder::read_node(MeshText& text) {
+  const auto number = read_number(text, "a node number");
+  add_node(text, number, text.point());
+}
+
+void VolumeBuilder::read_tetrahedron(MeshText& text) {
+  std::array<int, 4> nodes{};
+  for (int& node : nodes) {
+    const auto number = read_number(text, "the number of a node");
+    const auto index = numbers_.find(number);
+    if (!index) {
+      text.fail(std::to_string(number), "the number of one of the " + std::to_string(node_count()) + " nodes");
+    }
+    node = *index;
+  }
+  add_tetrahedron(nodes, text.line_number());
+}
+
+void VolumeBuilder::add_tetrahedron(const std::array<int, 4>& nodes, std::size_t line) {
+  mesh_.tetrahedra.push_back(nodes);
+  lines_.push_back(line);
+}
+
+std::string VolumeBuilder::place(std::size_t tetrahedron) const {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const int node : mesh_.tetrahedra[tetrahedron]) {
+    centre += mesh_.vertices[node] / 4;
+  }
+  std::string text = file_.string() + ":" + std::to_string(lines_[tetrahedron]) + ": found tetrahedron " +
+                     std::to_string(tetrahedron) + " (counted from 0, centre ";
+  append_point(text, centre);
+  return text + ")";
+}
+
+void VolumeBuilder::orient() {
+  std::vector<int> signs;
+  signs.reserve(mesh_.tetrahedra.size());
+  for (const auto& tetrahedron : mesh_.tetrahedra) {
+    signs.push_back(orientation(mesh_, tetrahedron));
+  }
+  const auto first = [&](int sign) {
+    return static_cast<std::size_t>(std::find(signs.begin(), signs.end(), sign) - signs.begin());
+  };
+  const auto count = [&](int sign) { return static_cast<std::size_t>(std::count(signs.begin(), signs.end(), sign)); };
+  if (count(0) > 0) {
+    throw MeshFileError(place(first(0)) + " flat, " + std::to_string(count(0)) +
+                        " in all, expected tetrahedra with a volume; remesh there");
+  }
+  if (count(-1) == signs.size()) {
+    for (auto& tetrahedron : mesh_.tetrahedra) {
+      std::swap(tetrahedron[2], tetrahedron[3]);
+    }
+  } else if (count(-1) > 0) {
+    throw MeshFileError(place(first(-1)) + " inverted, " + std::to_string(count(-1)) + " of " +
+                        std::to_string(signs.size()) +
+                        " in all, expected the same orientation everywhere; remesh there");
+  }
+}
+
+void VolumeBuilder::drop_unused_nodes() {
+  std::vector<int> renumbered(mesh_.vertices.size(), -1);
+  for (const auto& tetrahedron : mesh_.tetrahedra) {
+    for (const int node : tetrahedron) {
+      renumbered[node] = 0;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t node = 0; node < renumbered.size(); ++node) {
+    if (renumbered[node] == 0) {
+      renumbered[node] = static_cast<int>(kept);
+      mesh_.vertices[kept++] = mesh_.vertices[node];
+    }
+  }
+  mesh_.vertices.resize(kept);
+  for (auto& tetrahedron : mesh_.tetrahedra) {
+    for (int& node : tetrahedron) {
+      node = renumbered[node];
+    }
+  }
+}
+
+TetrahedralMesh VolumeBuilder::finish() {
+  if (mesh_.tetrahedra.empty()) {
+    throw MeshFileError(file_.string() + ": found no tetrahedron, expected a volume mesh");
+  }
+  orient();
+  drop_unused_nodes();
+  return std::move(mesh_);
+}
+
+TetrahedralMesh read_volume(const std::filesystem::path& file) {
+  const auto extension = lower_extension(file);
+  auto* const parse = extension == ".msh"                           ? parse_gmsh
+                      : extension == ".mesh"                        ? parse_medit
+                      : extension == ".vtk"                         ? parse_vtk
+                      : extension == ".vtu"                         ? parse_vtu
+                      : extension == ".veg"                         ? parse_vega
+                      : extension == ".node" || extension == ".ele" ? parse_tetgen
+                                                                    : nullptr;
+  if (parse == nullptr) {
+    refuse_extension(file, ".msh, .mesh, .vtk, .vtu, .node, .ele or .veg");
+  }
+  return parse(file, read_file(file));
+}
+
+void write_volume(const std::filesystem::path& file, const TetrahedralMesh& mesh) {
+  const auto extension = lower_extension(file);
+  auto* const format = extension == ".msh"    ? format_gmsh
+                       : extension == ".mesh" ? format_medit
+                       : extension == ".vtk"  ? format_vtk
+                                              : nullptr;
+  if (format == nullptr) {
+    refuse_extension(file, ".msh, .mesh or .vtk");
+  }
+  write_file(file, format(mesh));
+}
+
+}  // namespace greenloop

@@ -1,0 +1,83 @@
+// Medit (INRIA), ascii: keywords, each followed by a count and that many items; numbers from 1.
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+#include "formats/mesh/volume_formats.hpp"
+
+namespace greenloop {
+namespace {
+
+bool is_other_volume(std::string_view keyword) {
+  constexpr std::array<std::string_view, 5> keywords{"Hexahedra", "Prisms", "Pentahedra", "Pyramids", "TetrahedraP2"};
+  return std::find(keywords.begin(), keywords.end(), keyword) != keywords.end();
+}
+
+void read_vertices(MeshText& text, VolumeBuilder& builder) {
+  const auto count = text.count("the number of vertices", 8);
+  builder.reserve_nodes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    builder.add_node(text, static_cast<std::int64_t>(i) + 1, text.point());
+    static_cast<void>(text.real("the reference of a vertex"));
+  }
+}
+
+void read_tetrahedra(MeshText& text, VolumeBuilder& builder) {
+  const auto count = text.count("the number of tetrahedra", 10);
+  for (std::size_t i = 0; i < count; ++i) {
+    builder.read_tetrahedron(text);
+    static_cast<void>(text.real("the reference of a tetrahedron"));
+  }
+}
+
+void skip_numbers(MeshText& text) {
+  while (!text.at_end() && std::isalpha(static_cast<unsigned char>(text.peek().front())) == 0) {
+    static_cast<void>(text.token("a number"));
+  }
+}
+
+}  // namespace
+
+TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content) {
+  MeshText text(file, std::move(content), '#');
+  VolumeBuilder builder(file);
+  text.word("MeshVersionFormatted");
+  skip_numbers(text);
+  while (!text.at_end()) {
+    const auto keyword = text.token("a keyword");
+    if (keyword == "End") {
+      break;
+    }
+    if (keyword == "Dimension") {
+      static_cast<void>(text.integer("dimension 3", 3, 3));
+    } else if (keyword == "Vertices") {
+      read_vertices(text, builder);
+    } else if (keyword == "Tetrahedra") {
+      read_tetrahedra(text, builder);
+    } else if (is_other_volume(keyword) && text.peek() != "0") {
+      text.fail(keyword, "linear tetrahedra only");
+    } else {
+      skip_numbers(text);
+    }
+  }
+  return builder.finish();
+}
+
+std::string format_medit(const TetrahedralMesh& mesh) {
+  std::string text = "MeshVersionFormatted 2\nDimension 3\nVertices\n" + std::to_string(mesh.vertices.size()) + '\n';
+  for (const auto& vertex : mesh.vertices) {
+    append_point(text, vertex);
+    text += " 0\n";
+  }
+  text += "Tetrahedra\n" + std::to_string(mesh.tetrahedra.size()) + '\n';
+  for (const auto& tetrahedron : mesh.tetrahedra) {
+    for (const int node : tetrahedron) {
+      text += std::to_string(node + 1) + ' ';
+    }
+    text += "0\n";
+  }
+  return text + "End\n";
+}
+
+}  // namespace greenloop

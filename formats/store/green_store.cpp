@@ -1,0 +1,145 @@
+#include "formats/store/green_store.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "formats/store/green_store_contents.hpp"
+#include "formats/store/hdf5_file.hpp"
+
+namespace greenloop {
+namespace {
+
+constexpr const char* kDisplacement = "/green/displacement";
+constexpr const char* kDone = "/green/done";
+
+Hdf5Shape displacement_shape(const GreenStoreContents& contents) {
+  return {contents.column_node.size(), 3, contents.row_node.size(), 3};
+}
+
+void reserve_columns(Hdf5File& file, const GreenStoreContents& contents) {
+  file.reserve<double>(kDisplacement, displacement_shape(contents));
+  file.write_text(kDisplacement, "unit", "m/N");
+  file.write_text(kDisplacement, "axes", "column, force component, row, displacement component");
+  file.write(kDone, {contents.column_node.size()}, std::vector<unsigned char>(contents.column_node.size(), 0));
+}
+
+}  // namespace
+
+struct GreenStore::File {
+  Hdf5File hdf5;
+  GreenStoreContents contents;
+  std::vector<unsigned char> done;
+  bool writable;
+
+  void require_columns(int first, int count) const {
+    if (first < 0 || count <= 0 || first > static_cast<int>(done.size()) - count) {
+      hdf5.fail(kDisplacement, "columns " + std::to_string(first) + " .. " + std::to_string(first + count - 1) +
+                                   " are outside 0 .. " + std::to_string(done.size() - 1));
+    }
+  }
+};
+
+GreenStore::GreenStore(std::unique_ptr<File> file) : file_(std::move(file)) {}
+GreenStore::~GreenStore() = default;
+GreenStore::GreenStore(GreenStore&&) noexcept = default;
+GreenStore& GreenStore::operator=(GreenStore&&) noexcept = default;
+
+GreenStore GreenStore::create(const std::filesystem::path& path, const GreenStoreContents& contents) {
+  require_valid(contents);
+  auto unfinished = path;
+  unfinished += ".new";
+  auto hdf5 = Hdf5File::create(unfinished);
+  write_contents(hdf5, contents);
+  reserve_columns(hdf5, contents);
+  // from here on only dataset values change, so a kill leaves all metadata in the file
+  hdf5.flush();
+  std::filesystem::rename(unfinished, path);
+  hdf5.renamed(path);
+  return GreenStore(std::unique_ptr<File>(
+      new File{std::move(hdf5), contents, std::vector<unsigned char>(contents.column_node.size(), 0), true}));
+}
+
+GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
+  const bool writable = access == Access::kReadWrite;
+  auto hdf5 = Hdf5File::open(path, writable);
+  auto contents = read_contents(hdf5);
+  require_unit(hdf5, kDisplacement, "m/N");
+  if (hdf5.shape(kDisplacement) != displacement_shape(contents)) {
+    hdf5.fail(kDisplacement, "its shape must be [" + std::to_string(contents.column_node.size()) + ", 3, " +
+                                 std::to_string(contents.row_node.size()) + ", 3] (column, force, row, displacement)");
+  }
+  Hdf5Shape shape;
+  auto done = hdf5.read<unsigned char>(kDone, shape);
+  if (shape != Hdf5Shape{contents.column_node.size()}) hdf5.fail(kDone, "needs one entry per column");
+  return GreenStore(std::unique_ptr<File>(new File{std::move(hdf5), std::move(contents), std::move(done), writable}));
+}
+
+const std::filesystem::path& GreenStore::path() const { return file_->hdf5.path(); }
+const GreenStoreContents& GreenStore::contents() const { return file_->contents; }
+int GreenStore::row_count() const { return static_cast<int>(file_->contents.row_node.size()); }
+int GreenStore::column_count() const { return static_cast<int>(file_->contents.column_node.size()); }
+
+bool GreenStore::is_done(int column) const {
+  file_->require_columns(column, 1);
+  return file_->done[column] != 0;
+}
+
+std::vector<int> GreenStore::missing_columns() const {
+  std::vector<int> missing;
+  for (int c = 0; c < column_count(); ++c) {
+    if (file_->done[c] == 0) missing.push_back(c);
+  }
+  return missing;
+}
+
+void GreenStore::write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement) {
+  auto& hdf5 = file_->hdf5;
+  if (!file_->writable) hdf5.fail(kDisplacement, "the store was opened read-only");
+  if (displacement.rows() != Eigen::Index{3} * row_count() || displacement.cols() % 3 != 0) {
+    hdf5.fail(kDisplacement, "a block of " + std::to_string(displacement.rows()) + " x " +
+                                 std::to_string(displacement.cols()) + " does not fit; 3 rows per row node (" +
+                                 std::to_string(3 * row_count()) + ") and 3 columns per column node are wanted");
+  }
+  const int count = static_cast<int>(displacement.cols() / 3);
+  file_->require_columns(first, count);
+  if (!displacement.allFinite()) {
+    hdf5.fail(kDisplacement, "columns from " + std::to_string(first) + " hold values that are not finite");
+  }
+  const auto start = static_cast<hsize_t>(first), length = static_cast<hsize_t>(count);
+  const auto rows = static_cast<hsize_t>(row_count());
+  const bool contiguous = displacement.outerStride() == displacement.rows();
+  const Eigen::MatrixXd copy = contiguous ? Eigen::MatrixXd() : Eigen::MatrixXd(displacement);
+  hdf5.write_part(kDisplacement, {start, 0, 0, 0}, {length, 3, rows, 3},
+                  contiguous ? displacement.data() : copy.data());
+  hdf5.flush();
+  std::fill_n(file_->done.begin() + first, count, static_cast<unsigned char>(1));
+  hdf5.write_part(kDone, {start}, {length}, file_->done.data() + first);
+  hdf5.flush();
+}
+
+Eigen::MatrixXd GreenStore::read_columns(int first, int count) const {
+  return read_block(0, row_count(), first, count);
+}
+
+Eigen::MatrixXd GreenStore::read_block(int first_row, int rows, int first_column, int columns) const {
+  const auto& hdf5 = file_->hdf5;
+  file_->require_columns(first_column, columns);
+  for (int c = first_column; c < first_column + columns; ++c) {
+    if (!is_done(c)) hdf5.fail(kDone, "column " + std::to_string(c) + " is not solved yet; resume the build");
+  }
+  if (first_row < 0 || rows <= 0 || first_row > row_count() - rows) {
+    hdf5.fail(kDisplacement,
+              "rows from " + std::to_string(first_row) + " are outside 0 .. " + std::to_string(row_count() - 1));
+  }
+  Eigen::MatrixXd block(3 * rows, 3 * columns);
+  hdf5.read_part(kDisplacement, {static_cast<hsize_t>(first_column), 0, static_cast<hsize_t>(first_row), 0},
+                 {static_cast<hsize_t>(columns), 3, static_cast<hsize_t>(rows), 3}, block.data());
+  if (!block.allFinite()) {
+    hdf5.fail(kDisplacement, "columns from " + std::to_string(first_column) +
+                                 " hold values that are not finite; solve or measure them again");
+  }
+  return block;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/mesh/tetrahedral_mesh.hpp"
+
+namespace greenloop {
+
+/// Bits of GreenStoreContents::flags.
+enum SurfaceFlag : std::uint8_t {
+  kFree = 1,       ///< row of the free domain: neither fixed nor left out
+  kTouchable = 2,  ///< may be loaded
+  kFixed = 4,      ///< does not move
+  kRead = 8,       ///< its displacement is wanted
+};
+
+/// Everything in a store but the Green's functions themselves. n surface vertices, v volume vertices.
+struct GreenStoreContents {
+  SemiRegularMesh surface;          ///< m
+  Eigen::VectorXd area;             ///< n lumped areas, m^2, > 0
+  std::vector<std::uint8_t> flags;  ///< n combinations of SurfaceFlag
+  std::vector<int> row_node;        ///< surface vertices whose displacement is stored, strictly increasing
+  std::vector<int> column_node;     ///< surface vertices that carry unit forces, strictly increasing
+
+  TetrahedralMesh volume;                                      ///< m; empty when the columns come from elsewhere
+  std::vector<std::uint8_t> volume_fixed;                      ///< v, nonzero = fixed
+  Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;  ///< n x v weights: surface from volume displacement
+
+  double young = 0.0;       ///< Pa
+  double poisson = 0.0;     ///< dimensionless
+  std::string provenance;   ///< JSON text
+  std::string fingerprint;  ///< hexadecimal hash of all that determines the columns
+};
+
+/// Green's functions in force form, U = displacement [m] per unit nodal force [N], in an HDF5 file whose layout is
+/// described in docs/store.md. Columns may arrive in any order and are marked done only after they are in the file,
+/// so a process killed while writing leaves a store that opens and knows what it lacks. Offline only; one writer.
+/// Every error is a std::runtime_error naming file, dataset and remedy.
+class GreenStore {
+ public:
+  enum class Access { kReadOnly, kReadWrite };
+
+  /// Creates (or replaces) the file with all its datasets and no column done; it appears under its name only when
+  /// complete. Throws std::invalid_argument when the contents contradict each other.
+  [[nodiscard]] static GreenStore create(const std::filesystem::path& path, const GreenStoreContents& contents);
+
+  /// Opens an existing store and checks shapes, units, indices and finiteness of everything but the columns.
+  [[nodiscard]] static GreenStore open(const std::filesystem::path& path, Access access);
+
+  ~GreenStore();
+  GreenStore(GreenStore&&) noexcept;
+  GreenStore& operator=(GreenStore&&) noexcept;
+
+  [[nodiscard]] const std::filesystem::path& path() const;
+  [[nodiscard]] const GreenStoreContents& contents() const;
+  [[nodiscard]] int row_count() const;     ///< R
+  [[nodiscard]] int column_count() const;  ///< C; each stands for three unit forces
+
+  [[nodiscard]] bool is_done(int column) const;
+  [[nodiscard]] std::vector<int> missing_columns() const;
+
+  /// Writes columns first .. first + k - 1 and marks them done. `displacement` is 3R x 3k, m/N: row 3r + i is axis i at
+  /// row node r, column 3c + j the unit force along axis j at column node first + c. Refuses values that are not
+  /// finite.
+  void write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement);
+
+  /// Columns first .. first + count - 1 as 3R x 3 count, laid out as in write_columns; all must be done.
+  [[nodiscard]] Eigen::MatrixXd read_columns(int first, int count) const;
+
+  /// The same, of the row nodes first_row .. first_row + row_count - 1 only.
+  [[nodiscard]] Eigen::MatrixXd read_block(int first_row, int row_count, int first_column, int column_count) const;
+
+ private:
+  struct File;
+  explicit GreenStore(std::unique_ptr<File> file);
+  std::unique_ptr<File> file_;
+};
+
+}  // namespace greenloop

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "formats/store/green_store.hpp"
+#include "formats/store/hdf5_file.hpp"
+
+namespace greenloop {
+
+inline constexpr int kGreenStoreVersion = 1;
+
+/// Throws std::invalid_argument naming the first field that contradicts another or is out of range.
+void require_valid(const GreenStoreContents& contents);
+
+/// Writes everything but /green/displacement and /green/done; see docs/store.md.
+void write_contents(Hdf5File& file, const GreenStoreContents& contents);
+
+/// The reverse, with shapes, units, finiteness and cross-references checked.
+[[nodiscard]] GreenStoreContents read_contents(const Hdf5File& file);
+
+/// Throws unless the dataset's attribute `unit` is `unit`.
+void require_unit(const Hdf5File& file, const std::string& dataset, const std::string& unit);
+
+}  // namespace greenloop

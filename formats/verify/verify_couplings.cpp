@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "formats/verify/section_extent.hpp"
+#include "formats/verify/verify_sections.hpp"
+
+namespace greenloop {
+namespace {
+
+using layout::CouplingsHeader;
+
+constexpr std::uint64_t values_per_block = 9;
+constexpr std::uint64_t tail_bytes = 16;  // a wide load of the last block stays inside the section
+
+constexpr std::uint64_t bytes_per_block(std::uint32_t value_bits) {
+  return value_bits == 4 ? 5 : values_per_block * value_bits / 8;
+}
+
+// Where the arrays must stand. No overflow: columns and block_count are below 2^32, the other factors at most 18.
+struct Extent {
+  std::uint64_t begin_end, index, index_end, value, value_end;
+
+  Extent(const CouplingsHeader& header, std::uint32_t value_bits)
+      : begin_end(sizeof(CouplingsHeader) + (std::uint64_t{header.columns} + 1) * sizeof(std::uint32_t)),
+        index(aligned(begin_end)),
+        index_end(index + header.block_count * header.index_bytes),
+        value(aligned(index_end)),
+        value_end(value + header.block_count * bytes_per_block(value_bits)) {}
+};
+
+// What the place of a section says about it.
+struct Expected {
+  std::uint32_t columns, rows, value_bits;
+
+  Expected(const Section& section, const ModelView& view)
+      : columns(view.level[section.a].counts->domain_count),
+        rows(domain_of_mesh(view, section.a)),
+        value_bits(layout::value_bits[section.b]) {}
+
+  // the blocks there can be
+  [[nodiscard]] std::uint64_t all_blocks() const {
+    const std::uint64_t before = rows - columns;
+    return columns == 0 ? 0 : columns * before + std::uint64_t{columns} * (columns - 1) / 2;
+  }
+  [[nodiscard]] std::uint32_t rows_of(std::uint32_t column) const { return rows - columns + column; }
+};
+
+bool verify_header(SectionCheck& check, const CouplingsHeader& header, const Expected& expected) {
+  const auto is = [&](const char* field, std::uint32_t value, std::uint32_t right) {
+    return check.require(value == right, VerifyRule::inconsistent, field, 0, value, right);
+  };
+  const std::uint64_t most = std::min(expected.all_blocks(), std::uint64_t{layout::none});
+  return is("columns", header.columns, header.block_count > 0 ? expected.columns : 0) &&
+         is("rows", header.rows, expected.rows) &&
+         check.require(header.index_bytes == 2 || header.index_bytes == 4, VerifyRule::bad_enum, "index_bytes", 0,
+                       header.index_bytes, 4) &&
+         check.require(header.index_bytes != 2 || header.rows <= 65536, VerifyRule::inconsistent, "index_bytes", 0, 2,
+                       4) &&
+         check.require(header.block_count <= most, VerifyRule::out_of_range, "block_count", 0,
+                       static_cast<double>(header.block_count), static_cast<double>(most));
+}
+
+bool verify_extent(SectionCheck& check, const Section& section, const CouplingsHeader& header, const Extent& extent) {
+  return check.require_offset("begin_offset", header.begin_offset, sizeof(CouplingsHeader)) &&
+         check.require_offset("index_offset", header.index_offset, extent.index) &&
+         check.require_offset("value_offset", header.value_offset, extent.value) &&
+         check.require(section.bytes >= extent.value_end + tail_bytes, VerifyRule::section_size, "bytes", 0,
+                       static_cast<double>(section.bytes), static_cast<double>(extent.value_end + tail_bytes));
+}
+
+bool verify_gaps(SectionCheck& check, const Section& section, const Extent& extent) {
+  return check.require_zero(extent.begin_end, extent.index) && check.require_zero(extent.index_end, extent.value) &&
+         check.require_zero(extent.value_end, section.bytes);
+}
+
+bool verify_begin(SectionCheck& check, const CouplingsHeader& header, const Expected& expected,
+                  const std::uint32_t* begin) {
+  if (!check.require(begin[0] == 0, VerifyRule::inconsistent, "begin", 0, begin[0], 0)) return false;
+  for (std::uint32_t j = 0; j < header.columns; ++j) {
+    if (!check.require(begin[j + 1] >= begin[j], VerifyRule::not_increasing, "begin", j + 1u, begin[j + 1], begin[j])) {
+      return false;
+    }
+    const std::uint32_t kept = begin[j + 1] - begin[j], most = expected.rows_of(j);
+    if (!check.require(kept <= most, VerifyRule::inconsistent, "begin", j + 1u, begin[j + 1],
+                       static_cast<double>(std::uint64_t{begin[j]} + most))) {
+      return false;
+    }
+  }
+  return check.require(begin[header.columns] == header.block_count, VerifyRule::inconsistent, "begin", header.columns,
+                       begin[header.columns], static_cast<double>(header.block_count));
+}
+
+template <class Index>
+bool verify_index(SectionCheck& check, const CouplingsHeader& header, const Expected& expected,
+                  const std::uint32_t* begin, const Index* index) {
+  for (std::uint32_t j = 0; j < header.columns; ++j) {
+    for (std::uint32_t b = begin[j]; b < begin[j + 1]; ++b) {
+      if (!check.require(index[b] < expected.rows_of(j), VerifyRule::out_of_range, "index", b, index[b],
+                         expected.rows_of(j) - 1.0) ||
+          !check.require(b == begin[j] || index[b] > index[b - 1], VerifyRule::not_increasing, "index", b, index[b],
+                         b == begin[j] ? 0 : index[b - 1])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+// the most negative value has no counterpart, so that negation never overflows
+template <class Value>
+bool verify_values(SectionCheck& check, const CouplingsHeader& header, const Value* value) {
+  const std::uint64_t count = values_per_block * header.block_count;
+  constexpr Value forbidden = std::numeric_limits<Value>::min();
+  const Value* found = std::find(value, value + count, forbidden);
+  return check.require(found == value + count, VerifyRule::out_of_range, "value",
+                       static_cast<std::uint64_t>(found - value), forbidden, forbidden + 1);
+}
+
+bool verify_nibbles(SectionCheck& check, const CouplingsHeader& header, const std::byte* value) {
+  for (std::uint64_t b = 0; b < header.block_count; ++b, value += bytes_per_block(4)) {
+    for (std::uint64_t k = 0; k < values_per_block; ++k) {
+      const auto nibble = std::to_integer<std::uint32_t>(value[k / 2]) >> (4 * (k % 2)) & 15U;
+      if (!check.require(nibble != 8, VerifyRule::out_of_range, "value", values_per_block * b + k, -8, -7))
+        return false;
+    }
+    const auto tenth = std::to_integer<std::uint32_t>(value[4]) >> 4U;
+    if (!check.require(tenth == 0, VerifyRule::padding_not_zero, "value", values_per_block * (b + 1) - 1, tenth, 0)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool verify_blocks(SectionCheck& check, const CouplingsView& view, const CouplingsHeader& header,
+                   const Expected& expected) {
+  if (!verify_begin(check, header, expected, view.begin)) return false;
+  if (view.index_bytes == 2 &&
+      !verify_index(check, header, expected, view.begin, static_cast<const std::uint16_t*>(view.index))) {
+    return false;
+  }
+  if (view.index_bytes == 4 &&
+      !verify_index(check, header, expected, view.begin, static_cast<const std::uint32_t*>(view.index))) {
+    return false;
+  }
+  switch (expected.value_bits) {
+    case 4:
+      return verify_nibbles(check, header, view.value);
+    case 8:
+      return verify_values(check, header, reinterpret_cast<const std::int8_t*>(view.value));
+    default:
+      return verify_values(check, header, reinterpret_cast<const std::int16_t*>(view.value));
+  }
+}
+
+}  // namespace
+
+bool verify_couplings(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  if (!check.require(section.bytes >= sizeof(CouplingsHeader), VerifyRule::section_size, "bytes", 0,
+                     static_cast<double>(section.bytes), sizeof(CouplingsHeader))) {
+    return false;
+  }
+  const auto& header = *section.as<CouplingsHeader>();
+  const Expected expected(section, context.view);
+  if (!verify_header(check, header, expected) ||
+      !check.require(
+          !context.reserved_is_zero || (header.reserved0 == 0 && all_zero(std::as_bytes(std::span(header.reserved)))),
+          VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
+    return false;
+  }
+  const Extent extent(header, expected.value_bits);
+  if (!verify_extent(check, section, header, extent) || !verify_gaps(check, section, extent)) return false;
+
+  const CouplingsView view{header.columns,
+                           header.rows,
+                           header.index_bytes,
+                           reinterpret_cast<const std::uint32_t*>(section.data + header.begin_offset),
+                           static_cast<const void*>(section.data + header.index_offset),
+                           section.data + header.value_offset};
+  if (!verify_blocks(check, view, header, expected)) return false;
+  context.kept_blocks += header.block_count;
+  context.view.level[section.a].couplings[section.b] = view;
+  return true;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,99 @@
+#include "formats/write/describe.hpp"
+
+#include <fmt/format.h>
+
+#include "formats/verify/rule_text.hpp"
+
+namespace greenloop {
+namespace {
+
+using layout::SectionKind;
+
+std::string place(const VerifyResult& result) {
+  const bool in_section = result.kind != SectionKind{};
+  const std::string where = in_section ? section_name(result.kind, result.a, result.b) : "the header";
+  return fmt::format("{}, field `{}`, index {}", where, result.field, result.index);
+}
+
+}  // namespace
+
+std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
+  switch (kind) {
+    case SectionKind::info:
+      return "Info";
+    case SectionKind::provenance:
+      return "Provenance";
+    case SectionKind::level:
+      return fmt::format("Level({})", a);
+    case SectionKind::nodes:
+      return fmt::format("Nodes({})", a);
+    case SectionKind::base_triangles:
+      return "BaseTriangles";
+    case SectionKind::refinement:
+      return fmt::format("Refinement({})", a);
+    case SectionKind::stencils:
+      return fmt::format("Stencils({})", a);
+    case SectionKind::predictions:
+      return fmt::format("Predictions({})", a);
+    case SectionKind::representatives:
+      return fmt::format("Representatives({}, {})", a, b);
+    case SectionKind::scales:
+      return fmt::format("Scales({})", a);
+    case SectionKind::couplings:
+      return fmt::format("Couplings({}, {})", a, b);
+    case SectionKind::patterns:
+      return fmt::format("Patterns({})", a);
+  }
+  return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);
+}
+
+std::string_view wavelet_name(std::uint32_t wavelet) {
+  switch (static_cast<layout::Wavelet>(wavelet)) {
+    case layout::Wavelet::lifted_linear:
+      return "lifted linear";
+    case layout::Wavelet::linear:
+      return "linear";
+    case layout::Wavelet::lifted_butterfly:
+      return "lifted butterfly";
+    case layout::Wavelet::butterfly:
+      return "butterfly";
+    case layout::Wavelet::equilibrated:
+      return "equilibrated";
+  }
+  return "unknown";
+}
+
+std::string_view pattern_name(std::uint32_t kind) {
+  switch (static_cast<layout::PatternKind>(kind)) {
+    case layout::PatternKind::node:
+      return "node";
+    case layout::PatternKind::patch:
+      return "patch";
+    case layout::PatternKind::sphere:
+      return "sphere";
+    case layout::PatternKind::turned:
+      return "turned";
+    case layout::PatternKind::gathered:
+      return "gathered";
+    case layout::PatternKind::pinch:
+      return "pinch";
+    case layout::PatternKind::opposed:
+      return "opposed";
+    case layout::PatternKind::alternating:
+      return "alternating";
+    case layout::PatternKind::random:
+      return "random";
+  }
+  return "unknown";
+}
+
+std::string_view rule_name(VerifyRule rule) { return rule_text(rule).name; }
+
+std::string describe(const VerifyResult& result) {
+  const RuleText& text = rule_text(result.rule);
+  if (result.ok()) return std::string(text.meaning);
+  return fmt::format("{}: {}: found {}, expected or limit {} ({}); {}.", place(result), text.meaning, result.value,
+                     result.limit, text.name, text.mend);
+}
+
+}  // namespace greenloop

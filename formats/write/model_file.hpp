@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "formats/verify.hpp"
+#include "formats/write/aligned_bytes.hpp"
+
+namespace greenloop {
+
+/// The whole file in 64-byte-aligned memory. Throws std::runtime_error naming the file and the reason. Offline only.
+[[nodiscard]] AlignedBytes load_file(const std::filesystem::path& path);
+
+/// A model file in memory together with its verified view, which points into `bytes`. Move only.
+struct ModelFile {
+  AlignedBytes bytes;
+  ModelView view;
+};
+
+/// Verifies `bytes`. Throws std::runtime_error with `name`, usually the file's, and what is wrong. Offline only.
+[[nodiscard]] ModelFile verified_model(AlignedBytes bytes, const std::string& name);
+
+/// load_file and verified_model. Throws std::runtime_error naming the file and what is wrong with it. Offline only.
+[[nodiscard]] ModelFile open_model_file(const std::filesystem::path& path);
+
+}  // namespace greenloop
