@@ -14,7 +14,7 @@ namespace greenloop {
 namespace {
 
 static_assert(GREENLOOP_MAX_LEVELS == layout::max_levels && GREENLOOP_ALIGNMENT == layout::alignment &&
-              GREENLOOP_NO_CONTACT == StepReport::no_contact);
+              GREENLOOP_NO_CONSTRAINT == StepReport::no_constraint);
 
 template <class C, class Cpp>
 constexpr bool same(C c, Cpp cpp) {
@@ -58,14 +58,20 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
               same(GREENLOOP_HELD_RESPONSE_SIZE, Status::held_response_size) &&
               same(GREENLOOP_HELD_OVER_BUDGET, Status::held_over_budget) &&
               same(GREENLOOP_HELD_SINGULAR, Status::held_singular) &&
-              same(GREENLOOP_HELD_OVERFLOW, Status::held_overflow));
+              same(GREENLOOP_HELD_OVERFLOW, Status::held_overflow) &&
+              same(GREENLOOP_HELD_UNSUPPORTED, Status::held_unsupported) && GREENLOOP_HELD_UNSUPPORTED + 1 == statuses);
+static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
+              same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
+static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic));
 
 // NOLINTBEGIN(misc-redundant-expression): two types are compared
 static_assert(sizeof(Model) <= sizeof(greenloop_model) && alignof(Model) <= alignof(greenloop_model) &&
               std::is_trivially_destructible_v<Model>);
-static_assert(sizeof(Contact) == sizeof(greenloop_contact) && alignof(Contact) == alignof(greenloop_contact) &&
-              offsetof(Contact, node) == offsetof(greenloop_contact, node) &&
-              offsetof(Contact, displacement) == offsetof(greenloop_contact, displacement));
+static_assert(sizeof(Constraint) == sizeof(greenloop_constraint) &&
+              alignof(Constraint) == alignof(greenloop_constraint) &&
+              offsetof(Constraint, node) == offsetof(greenloop_constraint, node) &&
+              offsetof(Constraint, value) == offsetof(greenloop_constraint, value) &&
+              offsetof(Constraint, kind) == offsetof(greenloop_constraint, kind));
 // NOLINTEND(misc-redundant-expression)
 static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
 
@@ -97,6 +103,7 @@ constexpr const char* status_texts[] = {
     "held: the budget is below the least work",
     "held: the capacitance matrix is not positive definite to working precision",
     "held: the forces are too large for a finite field",
+    "held: a constraint is of a kind that the solver does not know",
 };
 
 template <std::size_t count>
@@ -126,6 +133,17 @@ greenloop_fault greenloop_open(const void* bytes, size_t size, greenloop_model* 
 uint32_t greenloop_node_count_to(const greenloop_model* model, uint32_t level) {
   return level < model_in(model).level_count() ? model_in(model).node_count(level) : 0;
 }
+greenloop_version_numbers greenloop_version(void) {
+  return {GREENLOOP_VERSION_MAJOR, GREENLOOP_VERSION_MINOR, GREENLOOP_VERSION_PATCH, layout::version_major,
+          layout::version_minor};
+}
+
+int greenloop_answered(greenloop_status status) { return answered(static_cast<Status>(status)) ? 1 : 0; }
+
+greenloop_problem greenloop_model_problem(const greenloop_model* model) {
+  return static_cast<greenloop_problem>(model_in(model).view().info->problem);
+}
+
 uint32_t greenloop_node_count(const greenloop_model* model) { return model_in(model).node_count(); }
 
 uint32_t greenloop_level_count(const greenloop_model* model) { return model_in(model).level_count(); }
@@ -146,10 +164,11 @@ int greenloop_position(const greenloop_model* model, uint32_t node, float* posit
 
 namespace {
 
-Limits limits_of(greenloop_limits limits) {
-  Limits same{.max_contacts = limits.max_contacts,
-              .cached_factors = limits.cached_factors,
-              .forces_only = limits.forces_only != 0};
+Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) {
+  Elastostatic::Limits same{.max_contacts = limits.max_contacts,
+                            .cached_factors = limits.cached_factors,
+                            .forces_only = limits.forces_only != 0,
+                            .mixtures = limits.no_mixtures == 0};
   same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
   same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
   return same;
@@ -157,49 +176,49 @@ Limits limits_of(greenloop_limits limits) {
 
 }  // namespace
 
-greenloop_intent greenloop_intended(const greenloop_model* model) {
-  const Intent intent = Elastostatic::intended(model_in(model));
-  const Limits& limits = intent.limits;
-  return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.glide_cycles,
-           limits.refining_work},
+greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
+  const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
+  const Elastostatic::Limits& limits = intent.limits;
+  return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.mixtures ? 0 : 1,
+           limits.glide_cycles, limits.refining_work},
           intent.budget.work,
           intent.rate};
 }
 
-greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits) {
-  const Requirement need = Elastostatic::required(model_in(model), limits_of(limits));
-  greenloop_requirement requirement = {need.bytes, need.least_work, {}};
+greenloop_elastostatic_requirement greenloop_elastostatic_required(const greenloop_model* model,
+                                                                   greenloop_elastostatic_limits limits) {
+  const Elastostatic::Requirement need = Elastostatic::required(model_in(model), limits_of(limits));
+  greenloop_elastostatic_requirement requirement = {need.bytes, need.least_work, {}};
   std::memcpy(requirement.worst_work, need.worst_work, sizeof need.worst_work);
   return requirement;
 }
 
-greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes) {
+greenloop_elastostatic_created greenloop_elastostatic_create(const greenloop_model* model,
+                                                             greenloop_elastostatic_limits limits, void* arena,
+                                                             size_t bytes) {
   const auto created =
       Elastostatic::create(model_in(model), limits_of(limits), {static_cast<std::byte*>(arena), bytes});
   return {static_cast<greenloop_create_error>(created.error), created.requested, created.available, created.missing,
-          reinterpret_cast<greenloop_body*>(std::bit_cast<Body*>(created.body))};
+          reinterpret_cast<greenloop_elastostatic*>(std::bit_cast<Body*>(created.body))};
 }
 
-greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* contacts, size_t count, uint64_t work,
-                                float* force, float* displacement, uint32_t nodes) {
+greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic* body,
+                                                          const greenloop_constraint* contacts, size_t count,
+                                                          uint64_t work, float* force, float* displacement,
+                                                          uint32_t nodes) {
   auto* const in_arena = reinterpret_cast<Body*>(body);
   const std::size_t floats = displacement == nullptr ? 0 : std::size_t{4} * nodes;
-  const StepReport report = std::bit_cast<Elastostatic>(in_arena).step(
-      {reinterpret_cast<const Contact*>(contacts), count}, {work}, {{force, 3 * count}, {displacement, floats}});
+  const Elastostatic::StepReport report = std::bit_cast<Elastostatic>(in_arena).step(
+      {reinterpret_cast<const Constraint*>(contacts), count}, {work}, {{force, 3 * count}, {displacement, floats}});
+  const Elastostatic::StepDetails& details = report.details;
   return {static_cast<greenloop_status>(report.status),
           report.refused,
+          report.work,
           report.constraint_level,
-          report.finer_level,
-          report.finer_contacts,
           report.field_level,
           report.error,
-          report.work,
-          report.cached_factor ? 1 : 0,
-          report.changed_nodes,
-          report.glide,
-          report.level_difference,
-          report.switch_work,
-          report.pending_work};
+          {details.cached_factor ? 1 : 0, details.finer_level, details.finer_contacts, details.changed_nodes,
+           details.glide, details.level_difference, details.switch_work, details.pending_work}};
 }
 
 const char* greenloop_rule_text(greenloop_rule rule) { return rule_text(static_cast<VerifyRule>(rule)).meaning; }

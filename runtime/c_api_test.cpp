@@ -13,18 +13,18 @@
 namespace greenloop {
 namespace {
 
-constexpr greenloop_limits limits{
-    .max_contacts = 9, .cached_factors = 2, .forces_only = 0, .glide_cycles = 5, .refining_work = 0};
+constexpr greenloop_elastostatic_limits limits{
+    .max_contacts = 9, .cached_factors = 2, .forces_only = 0, .no_mixtures = 0, .glide_cycles = 5, .refining_work = 0};
 
 // a body made and stepped through C alone
 class CBody {
  public:
   CBody() : bytes_(encode(synthetic_model({.levels = 3, .touchable_above = 0.1}))) {
     REQUIRE(greenloop_open(bytes_.data(), bytes_.size(), &model).rule == GREENLOOP_RULE_OK);
-    need = greenloop_required(&model, limits);
+    need = greenloop_elastostatic_required(&model, limits);
     arena_ = AlignedBytes(need.bytes);
     field_ = AlignedBytes(std::size_t{16} * greenloop_node_count(&model));
-    created = greenloop_create(&model, limits, arena_.data(), arena_.size());
+    created = greenloop_elastostatic_create(&model, limits, arena_.data(), arena_.size());
     REQUIRE(created.error == GREENLOOP_CREATE_OK);
   }
 
@@ -32,8 +32,8 @@ class CBody {
   [[nodiscard]] float* field() { return reinterpret_cast<float*>(field_.data()); }
 
   greenloop_model model{};
-  greenloop_requirement need{};
-  greenloop_created created{};
+  greenloop_elastostatic_requirement need{};
+  greenloop_elastostatic_created created{};
 
  private:
   AlignedBytes bytes_;
@@ -41,23 +41,24 @@ class CBody {
   AlignedBytes field_;
 };
 
-std::vector<greenloop_contact> random_contacts(std::mt19937_64& random, const std::vector<std::uint32_t>& touchable) {
-  std::vector<greenloop_contact> contacts(random() % 11);
+std::vector<greenloop_constraint> random_contacts(std::mt19937_64& random,
+                                                  const std::vector<std::uint32_t>& touchable) {
+  std::vector<greenloop_constraint> contacts(random() % 11);
   const std::size_t first = random() % touchable.size();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const auto depth = static_cast<float>(random() % 1000) * 1e-6F;
-    contacts[i] = {touchable[(first + i) % touchable.size()], {depth, 0, -depth}};
+    contacts[i] = {touchable[(first + i) % touchable.size()], {depth, 0, -depth}, GREENLOOP_HOLD};
   }
   if (!contacts.empty() && random() % 8 == 0) {
-    contacts[0].displacement[1] = std::numeric_limits<float>::quiet_NaN();
+    contacts[0].value[1] = std::numeric_limits<float>::quiet_NaN();
   }
   return contacts;
 }
 
-std::vector<Contact> to_cpp(const std::vector<greenloop_contact>& contacts) {
-  std::vector<Contact> same;
-  for (const auto& [node, u] : contacts) {
-    same.push_back({node, {u[0], u[1], u[2]}});
+std::vector<Constraint> to_cpp(const std::vector<greenloop_constraint>& contacts) {
+  std::vector<Constraint> same;
+  for (const auto& [node, u, kind] : contacts) {
+    same.push_back({node, {u[0], u[1], u[2]}, static_cast<Constraint::Kind>(kind)});
   }
   return same;
 }
@@ -82,24 +83,25 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
     const std::uint64_t work = c.need.least_work - 1 + random() % c.need.worst_work[2];
     const bool with_field = i % 3 != 0;
     std::vector<float> force(3 * contacts.size());
-    const auto report = greenloop_step(c.created.body, contacts.data(), contacts.size(), work, force.data(),
-                                       with_field ? c.field() : nullptr, with_field ? nodes : 0);
-    const StepReport expected = body.step(to_cpp(contacts), work, with_field);
+    const auto report =
+        greenloop_elastostatic_step(c.created.body, contacts.data(), contacts.size(), work, force.data(),
+                                    with_field ? c.field() : nullptr, with_field ? nodes : 0);
+    const Elastostatic::StepReport expected = body.step(to_cpp(contacts), work, with_field);
     REQUIRE(static_cast<int>(report.status) == static_cast<int>(expected.status));
     CHECK(report.refused == expected.refused);
     CHECK(report.constraint_level == expected.constraint_level);
-    CHECK(report.finer_level == expected.finer_level);
-    CHECK(report.finer_contacts == expected.finer_contacts);
+    CHECK(report.details.finer_level == expected.details.finer_level);
+    CHECK(report.details.finer_contacts == expected.details.finer_contacts);
     CHECK(report.field_level == expected.field_level);
     CHECK(report.error == expected.error);
     CHECK(report.work == expected.work);
-    CHECK((report.cached_factor == 1) == expected.cached_factor);
-    CHECK(report.changed_nodes == expected.changed_nodes);
-    CHECK(report.glide == expected.glide);
-    CHECK(report.level_difference == expected.level_difference);
-    CHECK(report.switch_work == expected.switch_work);
-    CHECK(report.pending_work == expected.pending_work);
-    glided |= report.glide < 1;
+    CHECK((report.details.cached_factor == 1) == expected.details.cached_factor);
+    CHECK(report.details.changed_nodes == expected.details.changed_nodes);
+    CHECK(report.details.glide == expected.details.glide);
+    CHECK(report.details.level_difference == expected.details.level_difference);
+    CHECK(report.details.switch_work == expected.details.switch_work);
+    CHECK(report.details.pending_work == expected.details.pending_work);
+    glided |= report.details.glide < 1;
     met.insert(report.status);
     if (report.status <= GREENLOOP_COARSER) {
       CHECK(std::memcmp(force.data(), body.force().data(), sizeof(float) * force.size()) == 0);
@@ -143,19 +145,20 @@ TEST_CASE("what is wrong is named") {
   CHECK(greenloop_open(file.data(), 10, &model).rule == GREENLOOP_RULE_TOO_SHORT);
 
   AlignedBytes arena(c.need.bytes);
-  const auto small = greenloop_create(&c.model, limits, arena.data(), c.need.bytes - 64);
+  const auto small = greenloop_elastostatic_create(&c.model, limits, arena.data(), c.need.bytes - 64);
   CHECK(small.error == GREENLOOP_CREATE_ARENA_TOO_SMALL);
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(greenloop_create(&c.model, {0, 1, 0, 1, 0}, arena.data(), c.need.bytes).error == GREENLOOP_CREATE_BAD_LIMITS);
+  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 1, 0}, arena.data(), c.need.bytes).error ==
+        GREENLOOP_CREATE_BAD_LIMITS);
 }
 
 TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps to it") {
   CBody body;
-  const greenloop_intent intent = greenloop_intended(&body.model);
+  const greenloop_elastostatic_intent intent = greenloop_elastostatic_intended(&body.model);
   const auto opened = Model::open(body.bytes());
-  const Intent same = Elastostatic::intended(opened.model);
+  const Elastostatic::Intent same = Elastostatic::intended(opened.model);
   CHECK(intent.limits.max_contacts == opened.model.view().info->max_contacts);
   CHECK(intent.limits.max_contacts == same.limits.max_contacts);
   CHECK(intent.limits.cached_factors == same.limits.cached_factors);
@@ -165,13 +168,15 @@ TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps t
   CHECK(intent.work == opened.model.view().info->step_work);
   CHECK(intent.work == same.budget.work);
   CHECK(intent.rate == opened.model.view().info->rate);
-  CHECK(greenloop_required(&body.model, intent.limits).least_work <= intent.work);
+  CHECK(greenloop_elastostatic_required(&body.model, intent.limits).least_work <= intent.work);
 }
 
 TEST_CASE("no cycles of a glide stand for the default") {
   CBody c;
-  const auto bytes = [&c](std::uint32_t cycles) { return greenloop_required(&c.model, {9, 2, 0, cycles, 0}).bytes; };
-  CHECK(bytes(0) == bytes(Limits{}.glide_cycles));
+  const auto bytes = [&c](std::uint32_t cycles) {
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, cycles, 0}).bytes;
+  };
+  CHECK(bytes(0) == bytes(Elastostatic::Limits{}.glide_cycles));
   CHECK(bytes(256) > 0);
   CHECK(bytes(257) == 0);
 }
@@ -179,7 +184,7 @@ TEST_CASE("no cycles of a glide stand for the default") {
 TEST_CASE("no refining work stands for no bound of it") {
   CBody c;
   const auto worst = [&c](std::uint64_t work) {
-    return greenloop_required(&c.model, {9, 2, 0, 0, work}).worst_work[0];
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, work}).worst_work[0];
   };
   CHECK(worst(0) == worst(~std::uint64_t{0}));
   CHECK(worst(1) < worst(0));

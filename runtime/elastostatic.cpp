@@ -15,7 +15,7 @@ namespace greenloop {
 namespace {
 
 // the finest level of the nodes that the response has room for; none if that is no level
-std::uint32_t finest_displaced(const Body& body, const Response& response) {
+std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& response) {
   for (std::uint32_t q = body.counts.levels; q-- > 0 && !body.counts.forces_only;) {
     if (response.displacement.size() == 4 * body.counts.nodes[q]) {
       return q;
@@ -24,7 +24,7 @@ std::uint32_t finest_displaced(const Body& body, const Response& response) {
   return layout::none;
 }
 
-Status check_request(const Body& body, std::size_t contacts, Budget budget, const Response& response) {
+Status check_request(const Body& body, std::size_t contacts, Budget budget, const Elastostatic::Response& response) {
   if (budget.work < body.least_work) {
     return Status::held_over_budget;
   }
@@ -37,27 +37,13 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
   return response.force.size() == 3 * contacts && field_fits ? Status::ok : Status::held_response_size;
 }
 
-// fresh factors of body.set; null if its capacitance matrix is not positive definite
-Factor* factorise(Body& body) {
-  Factor& factor = body.cache.make_room(body.set);
-  const std::uint32_t columns = body.set.columns;
-  assemble_capacitance(body.refinement, {columns, body.set.column}, body.touched, body.capacitance, body.force,
-                       body.cache.stride(), factor.matrix);
-  factor.changes = 0;
-  for (std::uint32_t k = 0; k < columns; ++k) {
-    factor.node[k] = body.set.column[k];
-    factor.position[k] = k;
+// the factor of the planned set; null if its capacitance matrix is not positive definite
+Factor* find_factor(Body& body, const Plan& plan) {
+  if (plan.cached != nullptr) {
+    return plan.cached;
   }
-  return cholesky_factor(3 * columns, body.cache.stride(), factor.matrix) ? &factor : nullptr;
-}
-
-Factor* make_factor(Body& body, bool update) {
-  drop_batch(body);
-  if (!update) {
-    return factorise(body);
-  }
-  const CapacitanceSource source{body.refinement, body.touched, body.capacitance, body.force};
-  return update_factor(body.cache, body.set, body.changes, source, body.update);
+  drop_batch(body.job, body.capacitance);
+  return make_factor(body.factor_tools(), body.planned.all(), body.touched, plan.update ? &body.changes : nullptr);
 }
 
 // three numbers of each column, between the order of the set and that of a factor
@@ -72,18 +58,18 @@ void to_set_order(const Factor& factor, std::uint32_t columns, const float* of_f
   }
 }
 
-// forces of the columns in body.column_force; false if they would overflow the answer
-bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& factor) {
-  const std::uint32_t order = 3 * body.set.columns;
-  auto* force = reinterpret_cast<float*>(body.column_force);
+// forces of the columns of a set by its factor, in `force`; false if they would overflow the answer
+bool solve_forces(const Body& body, std::span<const Constraint> contacts, const ContactSet& set, const Factor& factor,
+                  float* force) {
+  const std::uint32_t order = 3 * set.columns;
   auto* solution = reinterpret_cast<float*>(body.solution);
-  average_displacements(contacts, body.set, force);
+  average_displacements(contacts, set, force);
   for (std::uint32_t i = order; i < padded_order(order); ++i) {
     solution[i] = 0;
   }
-  to_factor_order(factor, body.set.columns, force, solution);
+  to_factor_order(factor, set.columns, force, solution);
   cholesky_solve(order, body.cache.stride(), factor.matrix, body.solution);
-  to_set_order(factor, body.set.columns, solution, force);
+  to_set_order(factor, set.columns, solution, force);
   float sum = 0;
   for (std::uint32_t i = 0; i < order; ++i) {
     sum += std::fabs(force[i]);
@@ -91,20 +77,15 @@ bool solve_forces(Body& body, std::span<const Contact> contacts, const Factor& f
   return sum <= body.force_limit;
 }
 
-// whether a contact of the set is resolved at the finest level
-bool is_finest(const Body& body, std::size_t contact) {
-  return column_level(body.set.column[body.set.place[contact]]) + 1 == body.counts.levels;
-}
-
-void answer_field(Body& body, std::span<const Contact> contacts, const FieldLevels& levels,
-                  std::span<float> displacement) {
-  const ColumnForces forces{body.set.columns, body.set.column, reinterpret_cast<const float*>(body.column_force)};
+// displacements by the forces of the planned set
+void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
+                 const FieldLevels& levels, std::span<float> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   compute_field(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const float* held = contacts[i].displacement;
-    if (is_finest(body, i) && contacts[i].node < body.counts.nodes[levels.nodes]) {
+    const float* held = contacts[i].value;
+    if (body.planned.level_of(i) + 1 == body.counts.levels && contacts[i].node < body.counts.nodes[levels.nodes]) {
       x[contacts[i].node] =
           Float4{without_denormals(held[0]), without_denormals(held[1]), without_denormals(held[2]), 0.0F};
     }
@@ -112,59 +93,62 @@ void answer_field(Body& body, std::span<const Contact> contacts, const FieldLeve
 }
 
 // nothing is touched: the body is at rest
-void release(const Body& body, const Response& response, StepReport& report) {
-  const ModelView& view = *body.view;
+void release(Body& body, const Elastostatic::Response& response, Elastostatic::StepReport& report) {
+  body.last.release();
+  const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
     report.work += response.displacement.size() / 4;
   }
-  report.constraint_level = report.finer_level = view.levels - 1;
-  report.field_level = response.displacement.empty() ? view.levels - 1 : finest_displaced(body, response);
+  report.constraint_level = finest;
+  report.details.finer_level = static_cast<std::uint8_t>(finest);
+  report.field_level = response.displacement.empty() ? finest : finest_displaced(body, response);
 }
 
-StepReport held(Status status, std::uint64_t work) {
-  StepReport report;
+Elastostatic::StepReport held(Status status, std::uint64_t work) {
+  Elastostatic::StepReport report;
   report.status = status;
   report.work = work;
   return report;
 }
 
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
-const float* solve_older_level(Body& body, std::span<const Contact> contacts, std::uint64_t budget,
+const float* solve_older_level(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
                                std::uint64_t& work) {
   if (!body.glide.follows() || work + older_forces_work(body.counts, contacts.size()) > budget) {
     return nullptr;
   }
-  resolve_contacts(contacts, *body.view, body.facts, {body.glide.older_level()}, body.set);
-  work += resolve_contacts_work(contacts.size()) + FactorCache::find_work(body.counts.cached_factors, body.set.columns);
-  Factor* const factor = body.cache.find(body.set);
+  ContactSet& set = body.other;
+  resolve_contacts(contacts, *body.view, body.facts, {body.glide.older_level()}, body.resolution, set);
+  work += resolve_contacts_work(contacts.size()) + FactorCache::find_work(body.counts.cached_factors, set.columns);
+  Factor* const factor = body.cache.find(set.all());
   if (factor == nullptr) {
     return nullptr;
   }
   body.cache.use(*factor);
-  work += solve_work(contacts.size(), body.set.columns);
-  if (!solve_forces(body, contacts, *factor)) {
+  work += solve_work(contacts.size(), set.columns);
+  if (!solve_forces(body, contacts, set, *factor, body.other_column_force)) {
     return nullptr;
   }
-  float* const force = body.glide.older_force();
-  share_forces(reinterpret_cast<const float*>(body.column_force), contacts.size(), body.set, force);
-  return force;
+  share_forces(body.other_column_force, contacts.size(), set, body.older_force);
+  return body.older_force;
 }
 
-// blends the level's forces with those of the level before, if that is another
-void glide_forces(Body& body, std::span<const Contact> contacts, std::uint64_t budget, float* force,
-                  StepReport& report) {
-  body.glide.advance(contacts, body.set);
+// blends the level's forces with those of the level before, if that is another, and remembers the answer
+void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, float* force,
+                  Elastostatic::StepReport& report) {
+  body.glide.advance(contacts, body.planned, body.last);
   const float* const older = solve_older_level(body, contacts, budget, report.work);
-  const GlideReport glide = body.glide.blend(contacts, older, force);
-  report.glide = glide.share;
-  report.level_difference = glide.difference;
-  report.switch_work = glide.switch_work;
+  const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
+  body.last.remember(contacts, body.planned, force);
+  report.details.glide = glide.share;
+  report.details.level_difference = glide.difference;
+  report.details.switch_work = glide.work;
 }
 
 // what is left of the budget goes into the factor that a finer level lacked
-void prepare_finer_level(Body& body, std::span<const Contact> contacts, const Plan& plan, std::uint64_t budget,
-                         StepReport& report) {
+void prepare_finer_level(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t budget,
+                         Elastostatic::StepReport& report) {
   if (!plan.wanted.exists || plan.wanted.level <= report.constraint_level) {
     return;
   }
@@ -173,69 +157,75 @@ void prepare_finer_level(Body& body, std::span<const Contact> contacts, const Pl
   const std::uint64_t resolving = resolve_contacts_work(contacts.size());
   const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
   if (mixed || report.work + resolving > limit) {
-    report.pending_work = pending_work(body.counts, plan.wanted.counts);
+    report.details.pending_work = pending_work(body.counts, plan.wanted.counts);
     return;
   }
-  resolve_contacts(contacts, *body.view, body.facts, {plan.wanted.level}, body.set);
+  resolve_contacts(contacts, *body.view, body.facts, {plan.wanted.level}, body.resolution, body.other);
   report.work += resolving;
   const std::uint64_t left = limit - report.work;
-  const std::uint64_t most = most_slice_work(body.counts, plan.wanted.counts) + drop_batch_work(body.pending);
-  const PendingProgress progress = continue_factor(body, plan.wanted.counts, left < most ? left : most);
+  const std::uint64_t most = most_slice_work(body.counts, plan.wanted.counts) + drop_batch_work(body.job);
+  const FactorProgress progress =
+      continue_factor(body.job, body.factor_tools(), body.other.all(), plan.wanted.counts, left < most ? left : most);
   report.work += progress.work;
-  report.pending_work = progress.pending;
+  report.details.pending_work = progress.pending;
 }
 
-StepReport answer(Body& body, std::span<const Contact> contacts, const Plan& plan, std::uint64_t work,
-                  std::uint64_t budget, const Response& response) {
-  const ModelView& view = *body.view;
-  Factor* factor = plan.cached;
-  if (factor == nullptr) {
-    work += plan.factor;
-    factor = make_factor(body, plan.update);
-    if (factor == nullptr) {
-      return held(Status::held_singular, work);
-    }
+// which levels the planned set has
+void report_levels(const Body& body, const Plan& plan, Elastostatic::StepReport& report) {
+  const ContactSet& set = body.planned;
+  report.constraint_level = set.coarsest();
+  report.details.finer_level = static_cast<std::uint8_t>(set.finest());
+  std::uint32_t finer = 0;
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    finer += column_level(set.column[k]) == set.finest() ? set.members[k] : 0;
   }
-  body.cache.keep(*factor, body.set);
+  report.details.finer_contacts = static_cast<std::uint16_t>(finer);
+  report.field_level = plan.field_levels.details;
+  report.error = body.view->level[report.constraint_level].counts->field_error;
+}
+
+Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t work,
+                                std::uint64_t budget, const Elastostatic::Response& response) {
+  const ContactSet& set = body.planned;
+  work += plan.cached != nullptr ? 0 : plan.factor;
+  Factor* const factor = find_factor(body, plan);
+  if (factor == nullptr) {
+    return held(Status::held_singular, work);
+  }
+  body.cache.keep(*factor, set.all());
   work += force_work(plan.counts);
-  if (!solve_forces(body, contacts, *factor)) {
+  if (!solve_forces(body, contacts, set, *factor, body.column_force)) {
     return held(Status::held_overflow, work);
   }
-  share_forces(reinterpret_cast<const float*>(body.column_force), contacts.size(), body.set, response.force.data());
+  share_forces(body.column_force, contacts.size(), set, response.force.data());
   if (!response.displacement.empty()) {
     work += plan.field;
-    answer_field(body, contacts, plan.field_levels, response.displacement);
+    reconstruct(body, contacts, {set.columns, set.column, body.column_force}, plan.field_levels, response.displacement);
   }
-  StepReport report;
-  report.constraint_level = body.set.coarsest();
-  report.finer_level = body.set.finest();
-  for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-    report.finer_contacts += column_level(body.set.column[k]) == report.finer_level ? body.set.members[k] : 0;
-  }
-  report.field_level = plan.field_levels.details;
-  report.error = view.level[report.constraint_level].counts->field_error;
+  Elastostatic::StepReport report;
   report.work = work;
+  report_levels(body, plan, report);
   glide_forces(body, contacts, budget, response.force.data(), report);
   body.cache.use(*factor);
   prepare_finer_level(body, contacts, plan, budget, report);
-  report.cached_factor = plan.cached != nullptr;
-  report.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
+  report.details.cached_factor = plan.cached != nullptr;
+  report.details.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
   const bool finest =
-      report.constraint_level + 1 == view.levels && plan.field_levels.details == plan.field_levels.nodes;
-  report.status = finest && report.glide == 1 ? Status::ok : Status::coarser;
+      report.constraint_level + 1 == body.view->levels && plan.field_levels.details == plan.field_levels.nodes;
+  report.status = finest && report.details.glide == 1 ? Status::ok : Status::coarser;
   return report;
 }
 
 }  // namespace
 
-Intent Elastostatic::intended(const Model& model) noexcept {
+Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
   const layout::Info& info = *model.view().info;
   return {.limits = {.max_contacts = info.max_contacts}, .budget = {info.step_work}, .rate = info.rate};
 }
 
-Requirement Elastostatic::required(const Model& model, const Limits& limits) noexcept {
+Elastostatic::Requirement Elastostatic::required(const Model& model, const Elastostatic::Limits& limits) noexcept {
   BodySizes sizes;
-  Requirement requirement;
+  Elastostatic::Requirement requirement;
   measure_body(model.view(), limits, sizes, requirement);
   if (!sizes.supported) {
     return {};
@@ -246,13 +236,13 @@ Requirement Elastostatic::required(const Model& model, const Limits& limits) noe
   return requirement;
 }
 
-Elastostatic::Created Elastostatic::create(const Model& model, const Limits& limits,
+Elastostatic::Created Elastostatic::create(const Model& model, const Elastostatic::Limits& limits,
                                            std::span<std::byte> memory) noexcept {
   const ModelView& view = model.view();
   Created created;
   created.available = memory.size();
   BodySizes sizes;
-  Requirement requirement;
+  Elastostatic::Requirement requirement;
   measure_body(view, limits, sizes, requirement);
   if (!sizes.supported) {
     created.error = in_range(limits) ? CreateError::unsupported_model : CreateError::bad_limits;
@@ -277,13 +267,14 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Limits& lim
   return created;
 }
 
-StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, const Response& response) noexcept {
+Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
+                                            const Elastostatic::Response& response) noexcept {
   Body& body = *body_;
   const Status request = check_request(body, contacts.size(), budget, response);
   if (request != Status::ok) {
     return held(request, 0);
   }
-  StepReport report;
+  Elastostatic::StepReport report;
   report.work = check_contacts_work(contacts.size());
   const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
   if (checked != Status::ok) {
@@ -292,7 +283,6 @@ StepReport Elastostatic::step(std::span<const Contact> contacts, Budget budget, 
     return report;
   }
   if (contacts.empty()) {
-    body.glide.release();
     release(body, response, report);
   } else {
     const bool wants_field = !response.displacement.empty();

@@ -17,12 +17,12 @@
 namespace greenloop {
 namespace {
 
-std::vector<Contact> random_contacts(std::mt19937_64& random, std::vector<std::uint32_t> nodes, std::size_t count) {
-  std::vector<Contact> contacts;
+std::vector<Constraint> random_contacts(std::mt19937_64& random, std::vector<std::uint32_t> nodes, std::size_t count) {
+  std::vector<Constraint> contacts;
   for (std::size_t i = 0; i < std::min(count, nodes.size()); ++i) {
     std::swap(nodes[i], nodes[i + random() % (nodes.size() - i)]);
-    Contact contact{nodes[i], {}};
-    for (float& u : contact.displacement) {
+    Constraint contact{nodes[i], {}};
+    for (float& u : contact.value) {
       u = (static_cast<float>(random() >> 40) * 0x1p-23F - 1.0F) * 1e-3F;
     }
     contacts.push_back(contact);
@@ -62,15 +62,15 @@ TEST_CASE("every constraint level agrees with a dense double-precision solution 
       const auto contacts = random_contacts(random, model.touchable(), 1 + random() % 20);
       // less and less work, down to the level that is wanted or to the least
       std::uint64_t budget = any_budget;
-      StepReport report;
+      Elastostatic::StepReport report;
       const std::uint32_t wanted = static_cast<std::uint32_t>(trial) % model.view().levels;
       TestBody body(model, {.max_contacts = 20, .cached_factors = 4});
-      while ((report = body.step(contacts, budget)).status <= Status::coarser && report.constraint_level > wanted &&
+      while (answered((report = body.step(contacts, budget)).status) && report.constraint_level > wanted &&
              report.work > body.requirement().least_work) {
         budget = std::max(report.work - report.work / 4, body.requirement().least_work);
         body = TestBody(model, {.max_contacts = 20, .cached_factors = 4});
       }
-      REQUIRE(report.status <= Status::coarser);
+      REQUIRE(answered(report.status));
       const std::uint32_t c = report.constraint_level;
       levels_seen |= 1U << c;
       CAPTURE(c);
@@ -108,7 +108,7 @@ TEST_CASE("nothing dropped and 16 bits reproduce the exact compliance to quantis
         a.block<3, 3>(3 * i, 3 * j) = compliance(contacts[i].node, contacts[j].node);
       }
       for (Eigen::Index r = 0; r < 3; ++r) {
-        prescribed(3 * i + r) = contacts[i].displacement[r];
+        prescribed(3 * i + r) = contacts[i].value[r];
       }
     }
     const Eigen::VectorXd force = a.ldlt().solve(prescribed);
@@ -134,9 +134,9 @@ TEST_CASE("held nodes stand exactly where they are held") {
   for (int trial = 0; trial < 10; ++trial) {
     const auto contacts = random_contacts(random, model.touchable(), 12);
     REQUIRE(body.step(contacts, any_budget).status == Status::ok);
-    for (const Contact& contact : contacts) {
+    for (const Constraint& contact : contacts) {
       for (std::size_t r = 0; r < 3; ++r) {
-        CHECK(body.field()[std::size_t{4} * contact.node + r] == contact.displacement[r]);
+        CHECK(body.field()[std::size_t{4} * contact.node + r] == contact.value[r]);
       }
     }
   }
@@ -144,7 +144,7 @@ TEST_CASE("held nodes stand exactly where they are held") {
 
 TEST_CASE("no step leaves anything behind for the next but factors and what it glides from") {
   const TestModel model({.levels = 4});
-  const Limits limits{.max_contacts = 12, .cached_factors = 2, .glide_cycles = 1};
+  const Elastostatic::Limits limits{.max_contacts = 12, .cached_factors = 2, .glide_cycles = 1};
   TestBody used(model, limits);
   std::mt19937_64 random(16);
   int compared = 0;
@@ -153,18 +153,18 @@ TEST_CASE("no step leaves anything behind for the next but factors and what it g
     const std::uint64_t least = used.requirement().least_work;
     const std::uint64_t budget = trial % 3 == 0 ? any_budget : least + random() % (8 * least);
     if (trial % 7 == 6) {
-      contacts[0].displacement[0] = trial % 2 == 0 ? std::numeric_limits<float>::max() : 1e-30F;
+      contacts[0].value[0] = trial % 2 == 0 ? std::numeric_limits<float>::max() : 1e-30F;
     }
     TestBody fresh(model, limits);
-    const StepReport a = used.step(contacts, budget, trial % 5 != 4);
-    const StepReport b = fresh.step(contacts, budget, trial % 5 != 4);
+    const Elastostatic::StepReport a = used.step(contacts, budget, trial % 5 != 4);
+    const Elastostatic::StepReport b = fresh.step(contacts, budget, trial % 5 != 4);
     REQUIRE(a.status == b.status);
     REQUIRE(a.constraint_level == b.constraint_level);
-    if (a.cached_factor || a.changed_nodes > 0) {
+    if (a.details.cached_factor || a.details.changed_nodes > 0) {
       continue;  // by chance the set's representatives, or most of them, were seen before
     }
     ++compared;
-    if (a.status <= Status::coarser) {
+    if (answered(a.status)) {
       CHECK(std::equal(used.force().begin(), used.force().end(), fresh.force().begin()));
       if (trial % 5 != 4) {
         CHECK(std::equal(used.field().begin(), used.field().end(), fresh.field().begin()));
@@ -182,7 +182,7 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
   const TestModel model(encode(data));
   for (const bool with_field : {true, false}) {
     TestBody body(model, {.max_contacts = 12, .cached_factors = 2});
-    const Requirement& need = body.requirement();
+    const Elastostatic::Requirement& need = body.requirement();
     std::mt19937_64 random(6);
     const auto contacts = random_contacts(random, model.touchable(), 12);
     std::uint32_t rank = 0;
@@ -191,8 +191,8 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
     for (std::uint64_t budget = need.least_work; budget <= need.worst_work[3] + stride; budget += stride) {
       // a body of its own: no factor is cached
       TestBody fresh(model, {.max_contacts = 12, .cached_factors = 2});
-      const StepReport report = fresh.step(contacts, budget, with_field);
-      REQUIRE(report.status <= Status::coarser);
+      const Elastostatic::StepReport report = fresh.step(contacts, budget, with_field);
+      REQUIRE(answered(report.status));
       CHECK(report.work <= budget);
       CHECK(report.work <= need.worst_work[report.constraint_level]);
       CHECK((report.status == Status::ok) == (report.constraint_level == 3 && report.field_level == 3));
@@ -205,7 +205,7 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
     CHECK(rank == 15);
     CHECK(seen == 0xf);
     // one unit less than a level costs is a coarser level
-    const StepReport whole = TestBody(model, {.max_contacts = 12}).step(contacts, any_budget, with_field);
+    const Elastostatic::StepReport whole = TestBody(model, {.max_contacts = 12}).step(contacts, any_budget, with_field);
     CHECK(TestBody(model, {.max_contacts = 12}).step(contacts, whole.work, with_field).constraint_level == 3);
     CHECK(TestBody(model, {.max_contacts = 12}).step(contacts, whole.work - 1, with_field).constraint_level == 2);
   }
@@ -218,13 +218,13 @@ TEST_CASE("a finer level takes part of the budget only while its factor is made"
   const auto contacts = random_contacts(random, model.touchable(), 12);
   const std::uint64_t whole = TestBody(model, {.max_contacts = 12}).step(contacts, any_budget).work;
   const std::uint64_t budget = whole / 4;
-  StepReport report = body.step(contacts, budget);
-  CHECK(report.pending_work > 0);
+  Elastostatic::StepReport report = body.step(contacts, budget);
+  CHECK(report.details.pending_work > 0);
   for (int step = 0; step < 20 && report.status != Status::ok; ++step) {
     report = body.step(contacts, budget);
   }
   REQUIRE(report.status != Status::coarser);
-  CHECK(report.pending_work == 0);
+  CHECK(report.details.pending_work == 0);
   const std::uint64_t held = body.step(contacts, budget).work;
   TestBody cached(model, {.max_contacts = 12, .cached_factors = 2});
   cached.step(contacts, any_budget);
@@ -237,17 +237,17 @@ TEST_CASE("a factor is reused bit for bit, in any order of the contacts") {
   TestBody body(model, {.max_contacts = 10, .cached_factors = 3});
   std::mt19937_64 random(9);
   auto contacts = random_contacts(random, model.touchable(), 10);
-  const StepReport fresh = body.step(contacts, any_budget);
-  CHECK_FALSE(fresh.cached_factor);
+  const Elastostatic::StepReport fresh = body.step(contacts, any_budget);
+  CHECK_FALSE(fresh.details.cached_factor);
   const std::vector<float> field(body.field().begin(), body.field().end());
   std::reverse(contacts.begin(), contacts.end());
-  const StepReport cached = body.step(contacts, any_budget);
-  CHECK(cached.cached_factor);
+  const Elastostatic::StepReport cached = body.step(contacts, any_budget);
+  CHECK(cached.details.cached_factor);
   CHECK(cached.work < fresh.work);
   CHECK(std::equal(field.begin(), field.end(), body.field().begin()));
   // an unrelated set comes between
   body.step(random_contacts(random, model.touchable(), 3), any_budget);
-  CHECK(body.step(contacts, any_budget).cached_factor);
+  CHECK(body.step(contacts, any_budget).details.cached_factor);
 }
 
 TEST_CASE("released: no contact, no field") {
@@ -255,7 +255,7 @@ TEST_CASE("released: no contact, no field") {
   TestBody body(model, {.max_contacts = 4, .cached_factors = 1});
   std::mt19937_64 random(10);
   body.step(random_contacts(random, model.touchable(), 4), any_budget);
-  const StepReport report = body.step({}, body.requirement().least_work);
+  const Elastostatic::StepReport report = body.step({}, body.requirement().least_work);
   CHECK(report.status == Status::ok);
   CHECK(std::all_of(body.field().begin(), body.field().end(), [](float u) { return u == 0; }));
   CHECK(body.step({}, body.requirement().least_work, false).work == 0);
@@ -271,8 +271,8 @@ struct Held {
     field.assign(body.field().begin(), body.field().end());
   }
   // refused with `status`, nothing written, and the next good step is answered as before
-  void refuses(std::span<const Contact> bad, Status status, std::uint32_t refused, std::uint64_t work = any_budget) {
-    const StepReport report = body.step(bad, work);
+  void refuses(std::span<const Constraint> bad, Status status, std::uint32_t refused, std::uint64_t work = any_budget) {
+    const Elastostatic::StepReport report = body.step(bad, work);
     CHECK(report.status == status);
     CHECK(report.refused == refused);
     CHECK(report.work <= body.requirement().worst_work[2]);
@@ -280,13 +280,13 @@ struct Held {
     if (bad.size() == contacts.size()) {
       CHECK(std::equal(force.begin(), force.end(), body.force().begin()));
     }
-    const StepReport good = body.step(contacts, any_budget);
+    const Elastostatic::StepReport good = body.step(contacts, any_budget);
     CHECK(good.status == Status::ok);
-    CHECK(good.refused == StepReport::no_contact);
+    CHECK(good.refused == StepReport::no_constraint);
     CHECK(std::equal(field.begin(), field.end(), body.field().begin()));
   }
   TestBody body;
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   std::vector<float> force, field;
 };
 
@@ -294,7 +294,7 @@ TEST_CASE("refusals have a name, write nothing and leave the body usable") {
   const TestModel model({.levels = 3});
   Held held(model);
   auto bad = held.contacts;
-  bad[3].displacement[1] = std::numeric_limits<float>::quiet_NaN();
+  bad[3].value[1] = std::numeric_limits<float>::quiet_NaN();
   held.refuses(bad, Status::held_not_finite, 3);
   bad = held.contacts;
   bad[3].node = model.view().node_count;
@@ -306,25 +306,26 @@ TEST_CASE("refusals have a name, write nothing and leave the body usable") {
   bad[2].node = model.view().node_count - 1;
   held.refuses(bad, Status::held_not_touchable, 2);
   bad = held.contacts;
-  bad[1].displacement[2] = std::numeric_limits<float>::max();
-  held.refuses(bad, Status::held_overflow, StepReport::no_contact);
-  held.refuses(held.contacts, Status::held_over_budget, StepReport::no_contact, held.body.requirement().least_work - 1);
-  held.refuses(held.contacts, Status::held_over_budget, StepReport::no_contact, 0);
+  bad[1].value[2] = std::numeric_limits<float>::max();
+  held.refuses(bad, Status::held_overflow, StepReport::no_constraint);
+  held.refuses(held.contacts, Status::held_over_budget, StepReport::no_constraint,
+               held.body.requirement().least_work - 1);
+  held.refuses(held.contacts, Status::held_over_budget, StepReport::no_constraint, 0);
   bad = held.contacts;
   const auto nodes = model.touchable();
   bad.push_back({*std::find_if(nodes.begin(), nodes.end(),
                                [&](std::uint32_t node) {
                                  return std::none_of(bad.begin(), bad.end(),
-                                                     [node](const Contact& c) { return c.node == node; });
+                                                     [node](const Constraint& c) { return c.node == node; });
                                }),
                  {}});
-  held.refuses(bad, Status::held_out_of_range, StepReport::no_contact);  // more than the limits allow
+  held.refuses(bad, Status::held_out_of_range, StepReport::no_constraint);  // more than the limits allow
 }
 
 TEST_CASE("the nodes of coarser levels, asked for alone, stand where the whole field has them, for less work") {
   for (const layout::Wavelet wavelet : layout::wavelets) {
     const TestModel model({.levels = 4, .wavelet = wavelet, .touchable_above = 0.3});
-    const Limits limits{.max_contacts = 12, .cached_factors = 2};
+    const Elastostatic::Limits limits{.max_contacts = 12, .cached_factors = 2};
     TestBody whole(model, limits);
     TestBody part(model, limits);
     std::mt19937_64 random(17);
@@ -333,8 +334,8 @@ TEST_CASE("the nodes of coarser levels, asked for alone, stand where the whole f
       std::vector<float> force(3 * contacts.size());
       AlignedBytes memory(std::size_t{16} * model.model().node_count(level));
       const std::span<float> few(reinterpret_cast<float*>(memory.data()), memory.size() / sizeof(float));
-      const StepReport all = whole.step(contacts, any_budget);
-      const StepReport report = part.body().step(contacts, {any_budget}, {force, few});
+      const Elastostatic::StepReport all = whole.step(contacts, any_budget);
+      const Elastostatic::StepReport report = part.body().step(contacts, {any_budget}, {force, few});
       CHECK(report.status == Status::ok);
       CHECK(report.field_level == level);
       CHECK((level + 1 == model.view().levels ? report.work == all.work : report.work < all.work));
@@ -355,7 +356,7 @@ TEST_CASE("a body for forces alone gives the same forces out of less memory, and
     const auto contacts = random_contacts(random, model.touchable(), 8);
     CHECK(forces.step(contacts, any_budget, false).work == whole.step(contacts, any_budget, false).work);
     CHECK(std::equal(forces.force().begin(), forces.force().end(), whole.force().begin()));
-    CHECK(forces.step(contacts, forces.requirement().least_work, false).status <= Status::coarser);
+    CHECK(answered(forces.step(contacts, forces.requirement().least_work, false).status));
     CHECK(forces.step(contacts, any_budget).status == Status::held_response_size);
   }
 }
@@ -363,7 +364,7 @@ TEST_CASE("a body for forces alone gives the same forces out of less memory, and
 TEST_CASE("response buffers of the wrong size or alignment are refused") {
   const TestModel model({.levels = 2});
   TestBody body(model, {.max_contacts = 2, .cached_factors = 1});
-  const std::vector<Contact> contacts = {{model.touchable()[0], {1e-3F, 0, 0}}};
+  const std::vector<Constraint> contacts = {{model.touchable()[0], {1e-3F, 0, 0}}};
   std::vector<float> force(3, 42.0F);
   const auto field = body.field();
   const auto status = [&](std::span<float> forces, std::span<float> displacement) {
@@ -384,7 +385,7 @@ TEST_CASE("a capacitance matrix that is not positive definite is refused, not an
   TestBody body(model, {.max_contacts = 4, .cached_factors = 2});
   const auto nodes = model.touchable();
   REQUIRE(nodes.size() >= 2);
-  const std::vector<Contact> bad = {{nodes[0], {1e-3F, 0, 0}}, {nodes[1], {0, 1e-3F, 0}}};
+  const std::vector<Constraint> bad = {{nodes[0], {1e-3F, 0, 0}}, {nodes[1], {0, 1e-3F, 0}}};
   CHECK(body.step(bad, any_budget).status == Status::held_singular);
   CHECK(body.step(std::span(bad).first(1), any_budget).status == Status::ok);
   CHECK(body.step(bad, any_budget).status == Status::held_singular);
@@ -392,11 +393,11 @@ TEST_CASE("a capacitance matrix that is not positive definite is refused, not an
 
 TEST_CASE("create: what is short or wrong is said in numbers") {
   const TestModel model({.levels = 2});
-  const Limits limits{.max_contacts = 5, .cached_factors = 2};
-  const Requirement need = Elastostatic::required(model.model(), limits);
+  const Elastostatic::Limits limits{.max_contacts = 5, .cached_factors = 2};
+  const Elastostatic::Requirement need = Elastostatic::required(model.model(), limits);
   CHECK(need.alignment == 64);
   AlignedBytes memory(need.bytes + 64);
-  const auto create = [&](const Limits& l, std::size_t offset, std::size_t size) {
+  const auto create = [&](const Elastostatic::Limits& l, std::size_t offset, std::size_t size) {
     return Elastostatic::create(model.model(), l, {memory.data() + offset, size});
   };
   CHECK(create(limits, 0, need.bytes));
@@ -406,8 +407,10 @@ TEST_CASE("create: what is short or wrong is said in numbers") {
   CHECK(small.available == need.bytes - 10);
   CHECK(small.missing == 10);
   CHECK(create(limits, 4, need.bytes).error == CreateError::arena_misaligned);
-  for (const Limits& bad : {Limits{0, 1}, Limits{4097, 1}, Limits{1, 0}, Limits{1, 1025}, Limits{1, 1, false, 0},
-                            Limits{1, 1, false, 257}}) {
+  for (const Elastostatic::Limits& bad :
+       {Elastostatic::Limits{0, 1}, Elastostatic::Limits{4097, 1}, Elastostatic::Limits{1, 0},
+        Elastostatic::Limits{1, 1025}, Elastostatic::Limits{.glide_cycles = 0},
+        Elastostatic::Limits{.glide_cycles = 257}}) {
     CHECK(create(bad, 0, memory.size()).error == CreateError::bad_limits);
     CHECK(Elastostatic::required(model.model(), bad).bytes == 0);
   }

@@ -1,4 +1,4 @@
-/* Greenloop for C99 and every language that calls C: the same loop as runtime/elastostatic.hpp, the same bits.
+/* Greenloop for C99 and every language that calls C: the same loops as the C++ headers beside it, the same bits.
  *
  * Memory: the caller owns all of it. A model is read in place: its bytes, the greenloop_model and the arena stay where
  * they are, unchanged by others, while a body uses them. Nothing here allocates, locks or enters the kernel.
@@ -6,7 +6,7 @@
  * Threads: a greenloop_model does not change once it is open, so any number of threads may use one at once, each with a
  * body and an arena of its own. A body is for one thread at a time; so are the buffers of a step.
  *
- * Only greenloop_step is for the loop; the rest is for start-up. */
+ * Only greenloop_elastostatic_step is for the loop; the rest is for start-up. */
 #ifndef GREENLOOP_H
 #define GREENLOOP_H
 /* NOLINTBEGIN(modernize-use-using, modernize-deprecated-headers): this header is C */
@@ -20,7 +20,20 @@ extern "C" {
 
 enum { GREENLOOP_ALIGNMENT = 64 };  /* of a model's bytes and of an arena */
 enum { GREENLOOP_MAX_LEVELS = 12 }; /* of a model */
-#define GREENLOOP_NO_CONTACT 0xffffffffU
+#define GREENLOOP_NO_CONSTRAINT 0xffffffffU
+
+#define GREENLOOP_VERSION_MAJOR 0
+#define GREENLOOP_VERSION_MINOR 1
+#define GREENLOOP_VERSION_PATCH 0
+
+/* Of the library, which may differ from the header's, and of the model files that it writes and reads. */
+typedef struct greenloop_version_numbers {
+  int major, minor, patch;
+  int format_major, format_minor;
+} greenloop_version_numbers;
+
+/* What a model file is precomputed for: which functions take it. */
+typedef enum greenloop_problem { GREENLOOP_PROBLEM_ELASTOSTATIC = 1 } greenloop_problem;
 
 /* Rules of the verifier that a model file can break. */
 typedef enum greenloop_rule {
@@ -70,7 +83,8 @@ typedef enum greenloop_status {
   GREENLOOP_HELD_RESPONSE_SIZE,
   GREENLOOP_HELD_OVER_BUDGET,
   GREENLOOP_HELD_SINGULAR,
-  GREENLOOP_HELD_OVERFLOW
+  GREENLOOP_HELD_OVERFLOW,
+  GREENLOOP_HELD_UNSUPPORTED
 } greenloop_status;
 
 /* An open model; its contents are the library's. */
@@ -82,8 +96,8 @@ typedef struct greenloop_model {
 #endif
 } greenloop_model;
 
-/* A body; it lives in the caller's arena. */
-typedef struct greenloop_body greenloop_body;
+/* A body of greenloop_elastostatic_create; it lives in the caller's arena. */
+typedef struct greenloop_elastostatic greenloop_elastostatic;
 
 /* The first fault of a model file. */
 typedef struct greenloop_fault {
@@ -97,60 +111,81 @@ typedef struct greenloop_fault {
 } greenloop_fault;
 
 /* What a body must be able to do. */
-typedef struct greenloop_limits {
+typedef struct greenloop_elastostatic_limits {
   uint32_t max_contacts;   /* 1..4096, contacts per step */
   uint32_t cached_factors; /* 1..1024, capacitance factors kept */
   int forces_only;         /* 1: no fields, little memory */
+  int no_mixtures;         /* 1: sets do not mix constraint levels */
   uint32_t glide_cycles;   /* 1..256, steps in which the forces go over to another level; 1: at once; 0: 16 */
   uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
-} greenloop_limits;
+} greenloop_elastostatic_limits;
 
 /* The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md). */
-typedef struct greenloop_intent {
-  greenloop_limits limits; /* the scene's contacts, the rest by default: what `work` was computed for */
-  uint64_t work;           /* units per step: the scene's, or what the build chose, enough for the finest level */
-  float rate;              /* Hz, steps per second */
-} greenloop_intent;
+typedef struct greenloop_elastostatic_intent {
+  greenloop_elastostatic_limits limits; /* the scene's contacts, the rest by default: what `work` was computed for */
+  uint64_t work; /* units per step: the scene's, or what the build chose, enough for the finest level */
+  float rate;    /* Hz, steps per second */
+} greenloop_elastostatic_intent;
 
 /* What those limits cost. Work is counted in units: see docs/runtime.md. */
-typedef struct greenloop_requirement {
-  size_t bytes;                              /* of the arena; 0: greenloop_create would refuse */
-  uint64_t least_work;                       /* the smallest budget that greenloop_step accepts */
+typedef struct greenloop_elastostatic_requirement {
+  size_t bytes;                              /* of the arena; 0: greenloop_elastostatic_create would refuse */
+  uint64_t least_work;                       /* the smallest budget that greenloop_elastostatic_step accepts */
   uint64_t worst_work[GREENLOOP_MAX_LEVELS]; /* of a step by its constraint_level */
-} greenloop_requirement;
+} greenloop_elastostatic_requirement;
 
-typedef struct greenloop_created {
+typedef struct greenloop_elastostatic_created {
   greenloop_create_error error;
   size_t requested, available, missing; /* bytes */
-  greenloop_body* body;                 /* null on an error */
-} greenloop_created;
+  greenloop_elastostatic* body;         /* null on an error */
+} greenloop_elastostatic_created;
 
-/* A node held at a prescribed displacement. */
-typedef struct greenloop_contact {
-  uint32_t node;         /* index in the model file */
-  float displacement[3]; /* m */
-} greenloop_contact;
+/* What is known of a node; greenloop_elastostatic_step knows GREENLOOP_HOLD and refuses the others. */
+typedef enum greenloop_constraint_kind {
+  GREENLOOP_HOLD,   /* all three components of its displacement */
+  GREENLOOP_NORMAL, /* its displacement along the normal; it slides freely across it */
+  GREENLOOP_FORCE,  /* the force on it */
+  GREENLOOP_PATTERN /* a pattern of forces, by its number, as a whole */
+} greenloop_constraint_kind;
 
-typedef struct greenloop_report {
+typedef struct greenloop_constraint {
+  uint32_t node;  /* index in the model file; of a pattern its number */
+  float value[3]; /* m where displacements are known, N where forces are */
+  greenloop_constraint_kind kind;
+} greenloop_constraint;
+
+/* How a step was answered. */
+typedef struct greenloop_elastostatic_details {
+  int cached_factor;       /* 1: the capacitance factor came from the cache, unchanged */
+  uint32_t finer_level;    /* of a mixed set the finer one, else constraint_level */
+  uint32_t finer_contacts; /* constraints that were resolved at finer_level */
+  uint32_t changed_nodes;  /* nodes put into a cached factor and taken out of it, to make this one */
+  float glide;             /* share of constraint_level in the forces; the rest is of the level before it */
+  float level_difference;  /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
+  double switch_work;      /* J, elastic energy that this step's change of `glide` put into the body */
+  uint64_t pending_work;   /* units, at most, until the factor of a finer level is complete; 0: none is made */
+} greenloop_elastostatic_details;
+
+typedef struct greenloop_elastostatic_report {
   greenloop_status status;
-  uint32_t refused;          /* first contact, by its place among them, that `status` is about; GREENLOOP_NO_CONTACT */
-  uint32_t constraint_level; /* level at which the contacts were resolved, of a mixed set the coarser one */
-  uint32_t finer_level;      /* of a mixed set the finer one, else the same */
-  uint32_t finer_contacts;   /* contacts that were resolved at finer_level */
+  uint32_t refused;          /* first constraint, by its place, that `status` is about; or GREENLOOP_NO_CONSTRAINT */
+  uint64_t work;             /* units spent, never more than the budget */
+  uint32_t constraint_level; /* level at which they were resolved, of a mixed set the coarser one */
   uint32_t field_level;      /* finest level whose details are in the field */
   float error;               /* worst field error of that constraint level, measured offline */
-  uint64_t work;             /* units spent, never more than the budget */
-  int cached_factor;         /* 1: the capacitance factor came from the cache, unchanged */
-  uint32_t changed_nodes;    /* nodes put into a cached factor and taken out of it, to make this one */
-  float glide;               /* share of constraint_level in the forces; the rest is of the level before it */
-  float level_difference;    /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
-  double switch_work;        /* J, elastic energy that this step's change of `glide` put into the body */
-  uint64_t pending_work;     /* units, at most, until the factor of a finer level is complete; 0: none is made */
-} greenloop_report;
+  greenloop_elastostatic_details details;
+} greenloop_elastostatic_report;
+
+greenloop_version_numbers greenloop_version(void);
+
+/* Whether a step was answered, so that its buffers hold this step's answer. */
+int greenloop_answered(greenloop_status status);
 
 /* Verifies every field of a model file once. bytes: GREENLOOP_ALIGNMENT-aligned. The model is usable only if the rule
  * is GREENLOOP_RULE_OK. Start-up; work linear in the bytes. */
 greenloop_fault greenloop_open(const void* bytes, size_t size, greenloop_model* model);
+
+greenloop_problem greenloop_model_problem(const greenloop_model* model);
 
 uint32_t greenloop_node_count(const greenloop_model* model);
 /* Nodes of mesh levels 0..level, which come first; 0 for a level that the model does not have. */
@@ -164,20 +199,25 @@ int greenloop_is_touchable(const greenloop_model* model, uint32_t node);
 int greenloop_position(const greenloop_model* model, uint32_t node, float* position);
 
 /* What the scene asked for. Start-up. */
-greenloop_intent greenloop_intended(const greenloop_model* model);
+greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model);
 
 /* Bytes and worst-case work in closed form. Start-up. */
-greenloop_requirement greenloop_required(const greenloop_model* model, greenloop_limits limits);
+greenloop_elastostatic_requirement greenloop_elastostatic_required(const greenloop_model* model,
+                                                                   greenloop_elastostatic_limits limits);
 
 /* Makes a body in `arena`, GREENLOOP_ALIGNMENT-aligned. Start-up; linear in the model's bytes. */
-greenloop_created greenloop_create(const greenloop_model* model, greenloop_limits limits, void* arena, size_t bytes);
+greenloop_elastostatic_created greenloop_elastostatic_create(const greenloop_model* model,
+                                                             greenloop_elastostatic_limits limits, void* arena,
+                                                             size_t bytes);
 
 /* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of the first
  * `nodes` nodes, all or those of the coarser levels (greenloop_node_count_to). force: 3 * count floats [N], in the
  * order of the contacts. displacement: 4 * nodes floats [m], x y z 0 per node, 16-byte aligned; null and 0 if no field
  * is wanted, which then costs nothing. Spends at most `work` units. */
-greenloop_report greenloop_step(greenloop_body* body, const greenloop_contact* contacts, size_t count, uint64_t work,
-                                float* force, float* displacement, uint32_t nodes);
+greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic* body,
+                                                          const greenloop_constraint* contacts, size_t count,
+                                                          uint64_t work, float* force, float* displacement,
+                                                          uint32_t nodes);
 
 /* One sentence each; static storage. */
 const char* greenloop_rule_text(greenloop_rule rule);

@@ -6,7 +6,8 @@
 #include "formats/view.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "runtime/compliance/mirrored_couplings.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
+#include "runtime/wavelet/reach.hpp"
+#include "runtime/wavelet/refinement.hpp"
 
 namespace greenloop::offline {
 

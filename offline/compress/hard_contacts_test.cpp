@@ -55,17 +55,17 @@ class Random {
   float displacement() { return static_cast<float>(1e-3 * (2 * static_cast<double>(engine_() >> 11) * 0x1p-53 - 1)); }
 
   // of the body's free nodes, in any order, displaced at random
-  std::vector<Contact> contacts(const test::Body& body, std::size_t count) {
+  std::vector<Constraint> contacts(const test::Body& body, std::size_t count) {
     auto nodes = body.column_nodes;
     for (std::size_t i = 0; i < count; ++i) std::swap(nodes[i], nodes[i + below(nodes.size() - i)]);
-    std::vector<Contact> result(count);
+    std::vector<Constraint> result(count);
     for (std::size_t i = 0; i < count; ++i) result[i].node = static_cast<std::uint32_t>(nodes[i]);
     move(result);
     return result;
   }
-  void move(std::vector<Contact>& contacts) {
+  void move(std::vector<Constraint>& contacts) {
     for (auto& contact : contacts) {
-      for (float& u : contact.displacement) u = displacement();
+      for (float& u : contact.value) u = displacement();
     }
   }
 
@@ -73,7 +73,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-std::vector<Index> unknowns(const test::Body& body, const std::vector<Contact>& contacts) {
+std::vector<Index> unknowns(const test::Body& body, const std::vector<Constraint>& contacts) {
   std::vector<Index> result;
   for (const auto& contact : contacts) {
     const auto at = std::lower_bound(body.column_nodes.begin(), body.column_nodes.end(), contact.node);
@@ -82,10 +82,10 @@ std::vector<Index> unknowns(const test::Body& body, const std::vector<Contact>& 
   return result;
 }
 
-VectorXd displacement(const std::vector<Contact>& contacts) {
+VectorXd displacement(const std::vector<Constraint>& contacts) {
   VectorXd u(static_cast<Index>(3 * contacts.size()));
   for (Index i = 0; i < u.size(); ++i) {
-    u(i) = static_cast<double>(contacts[static_cast<std::size_t>(i / 3)].displacement[i % 3]);
+    u(i) = static_cast<double>(contacts[static_cast<std::size_t>(i / 3)].value[i % 3]);
   }
   return u;
 }
@@ -94,12 +94,12 @@ VectorXd forces(const TestBody& body, std::size_t contacts) {
   return Eigen::Map<const Eigen::VectorXf>(body.force().data(), static_cast<Index>(3 * contacts)).cast<double>();
 }
 
-std::vector<Contact> nearest(const test::Body& body, std::size_t seed, std::size_t count) {
+std::vector<Constraint> nearest(const test::Body& body, std::size_t seed, std::size_t count) {
   auto nodes = body.column_nodes;
   const Eigen::Vector3d centre = body.mesh.positions[body.column_nodes[seed]];
   const auto distance = [&](std::size_t node) { return (body.mesh.positions[node] - centre).squaredNorm(); };
   std::stable_sort(nodes.begin(), nodes.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
-  std::vector<Contact> result(count);
+  std::vector<Constraint> result(count);
   for (std::size_t i = 0; i < count; ++i) result[i].node = static_cast<std::uint32_t>(nodes[i]);
   return result;
 }
@@ -110,7 +110,7 @@ TEST_CASE("64 neighbours held against each other: finite forces, positive work, 
     for (const std::size_t seed : {std::size_t{0}, std::size_t{30}, std::size_t{90}}) {
       auto contacts = nearest(one.body, seed, 64);
       for (std::size_t i = 0; i < contacts.size(); ++i) {
-        for (std::size_t k = 0; k < 3; ++k) contacts[i].displacement[k] = ((i >> k) & 1U) != 0 ? 1e-3F : -1e-3F;
+        for (std::size_t k = 0; k < 3; ++k) contacts[i].value[k] = ((i >> k) & 1U) != 0 ? 1e-3F : -1e-3F;
       }
       TestBody body(one.model, {.max_contacts = 64, .cached_factors = 1});
       REQUIRE(body.step(contacts, any_budget).status == Status::ok);
@@ -145,8 +145,8 @@ TEST_CASE("two contacts a thousandth of an edge apart, moved against each other:
     least = std::min(least, distance);
   }
   REQUIRE(least < 2e-4);
-  near[0].displacement[2] = 1e-3F;
-  near[1].displacement[2] = -1e-3F;
+  near[0].value[2] = 1e-3F;
+  near[1].value[2] = -1e-3F;
   TestBody body(one.model, {.max_contacts = 2, .cached_factors = 1});
   REQUIRE(body.step(near, any_budget).status == Status::ok);
   const VectorXd f = forces(body, 2), u = displacement(near);
@@ -164,7 +164,7 @@ TEST_CASE("two contacts a thousandth of an edge apart, moved against each other:
 struct Rounding {
   double force = 0, field = 0;
 };
-Rounding rounding(const Case& one, const std::vector<Contact>& contacts) {
+Rounding rounding(const Case& one, const std::vector<Constraint>& contacts) {
   TestBody body(one.model, {.max_contacts = static_cast<std::uint32_t>(contacts.size()), .cached_factors = 1});
   REQUIRE(body.step(contacts, any_budget).status == Status::ok);
   const CompressedCompliance all(one.model.view());
@@ -202,7 +202,7 @@ TEST_CASE("the loop's single precision against double precision on the same file
     for (std::size_t seed = 0; seed < one.body.column_nodes.size(); seed += 10) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         auto contacts = nearest(one.body, seed, 64);
-        for (auto& contact : contacts) contact.displacement[axis] = 1e-3F;
+        for (auto& contact : contacts) contact.value[axis] = 1e-3F;
         const auto found = rounding(one, contacts);
         worst = {std::max(worst.force, found.force), std::max(worst.field, found.field)};
       }
@@ -216,7 +216,7 @@ TEST_CASE("the loop's single precision against double precision on the same file
 TEST_CASE("all nodes in contact: forces near the exact ones, coarser and bounded on a budget") {
   for (const auto& one : cases()) {
     auto contacts = nearest(one.body, 0, one.body.column_nodes.size());
-    for (auto& contact : contacts) contact.displacement[1] = 1e-3F;
+    for (auto& contact : contacts) contact.value[1] = 1e-3F;
     const auto count = static_cast<std::uint32_t>(contacts.size());
     TestBody body(one.model, {.max_contacts = count, .cached_factors = 1});
     const auto& need = body.requirement();
@@ -255,7 +255,8 @@ TEST_CASE("all nodes in contact: forces near the exact ones, coarser and bounded
 
 // for bodies that prepare no finer level: budgets that answer these contacts on each constraint level with a fresh
 // factor, fine to coarse, as far as a budget may be so small
-std::vector<std::uint64_t> budgets(const Case& one, const std::vector<Contact>& contacts, const Limits& limits) {
+std::vector<std::uint64_t> budgets(const Case& one, const std::vector<Constraint>& contacts,
+                                   const Elastostatic::Limits& limits) {
   std::vector<std::uint64_t> result = {any_budget};
   for (std::uint32_t level = one.model.view().levels; level-- > 0;) {
     TestBody body(one.model, limits);
@@ -274,7 +275,7 @@ TEST_CASE("on every constraint level contacts resist, and a closed path of displ
   for (const auto& one : cases()) {
     for (int trial = 0; trial < 8; ++trial) {
       auto contacts = random.contacts(one.body, 2 + random.below(24));
-      const Limits limits{
+      const Elastostatic::Limits limits{
           .max_contacts = static_cast<std::uint32_t>(contacts.size()), .cached_factors = 1, .refining_work = 0};
       std::uint32_t level = one.model.view().levels;
       for (const std::uint64_t budget : budgets(one, contacts, limits)) {
@@ -284,7 +285,7 @@ TEST_CASE("on every constraint level contacts resist, and a closed path of displ
         for (int corner = 0; corner < 12; ++corner) {
           random.move(contacts);
           const auto report = body.step(contacts, budget, false);
-          REQUIRE(report.status <= Status::coarser);
+          REQUIRE(answered(report.status));
           REQUIRE(report.constraint_level == level);
           u.push_back(displacement(contacts));
           f.push_back(forces(body, contacts.size()));

@@ -44,7 +44,7 @@ Answers answers(const Units& units) {
   }
   TestBody loop(model, {.max_contacts = 8, .cached_factors = 1});
   for (std::uint32_t first = 0; first + 8 <= touchable.size(); first += 8) {
-    std::vector<Contact> contacts;
+    std::vector<Constraint> contacts;
     for (std::uint32_t i = 0; i < 8; ++i) {
       const auto u = static_cast<float>(1e-3 * units.length);
       contacts.push_back({touchable[first + i], {u, (i & 1U) != 0 ? -u : u, 0}});

@@ -57,7 +57,7 @@ TEST_CASE("the loop's forces and fields from a built model are the exact complia
   const AlignedBytes file(encode(built.model));
   const auto opened = Model::open(file.span());
   REQUIRE(opened);
-  const Limits limits{.max_contacts = contact_count, .cached_factors = 2};
+  const Elastostatic::Limits limits{.max_contacts = contact_count, .cached_factors = 2};
   const auto need = Elastostatic::required(opened.model, limits);
   AlignedBytes memory(need.bytes);
   auto created = Elastostatic::create(opened.model, limits, {memory.data(), memory.size()});
@@ -73,10 +73,10 @@ TEST_CASE("the loop's forces and fields from a built model are the exact complia
     for (std::size_t axis = 0; axis < 3; ++axis) {
       CAPTURE(seed);
       CAPTURE(axis);
-      std::vector<Contact> contacts;
+      std::vector<Constraint> contacts;
       for (const std::size_t node : patch.nodes) {
         contacts.push_back({static_cast<std::uint32_t>(node), {}});
-        contacts.back().displacement[axis] = 1e-3F;
+        contacts.back().value[axis] = 1e-3F;
       }
       const auto report =
           created.body.step(contacts, {.work = std::numeric_limits<std::uint64_t>::max()}, {force, {field, 4 * nodes}});

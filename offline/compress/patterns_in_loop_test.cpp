@@ -25,13 +25,12 @@ ExactContacts solve(const test::Body& body) {
   return exact;
 }
 
-std::vector<Contact> contacts_of(const test::Body& body, const ContactSite& site, Eigen::Index sample) {
-  std::vector<Contact> contacts;
+std::vector<Constraint> contacts_of(const test::Body& body, const ContactSite& site, Eigen::Index sample) {
+  std::vector<Constraint> contacts;
   for (std::size_t i = 0; i < site.rows.size(); ++i) {
     contacts.push_back({static_cast<std::uint32_t>(body.column_nodes[site.rows[i]]), {}});
     for (std::size_t k = 0; k < 3; ++k) {
-      contacts.back().displacement[k] =
-          static_cast<float>(site.displacement(static_cast<Eigen::Index>(3 * i + k), sample));
+      contacts.back().value[k] = static_cast<float>(site.displacement(static_cast<Eigen::Index>(3 * i + k), sample));
     }
   }
   return contacts;
@@ -39,9 +38,10 @@ std::vector<Contact> contacts_of(const test::Body& body, const ContactSite& site
 
 // what a body that has answered nothing yet does within a budget
 struct Answer {
-  Answer(const Model& model, const std::vector<Contact>& contacts, std::uint64_t work)
+  Answer(const Model& model, const std::vector<Constraint>& contacts, std::uint64_t work)
       : force(3 * contacts.size()), field_memory(std::size_t{16} * model.node_count()) {
-    const Limits limits{.max_contacts = most_contacts, .cached_factors = 1, .glide_cycles = 1, .refining_work = 0};
+    const Elastostatic::Limits limits{
+        .max_contacts = most_contacts, .cached_factors = 1, .glide_cycles = 1, .refining_work = 0};
     AlignedBytes memory(Elastostatic::required(model, limits).bytes);
     auto created = Elastostatic::create(model, limits, {memory.data(), memory.size()});
     REQUIRE(created);
@@ -52,7 +52,7 @@ struct Answer {
     const auto* at = reinterpret_cast<const float*>(field_memory.data()) + 4 * node;
     return {double{at[0]}, double{at[1]}, double{at[2]}};
   }
-  StepReport report;
+  Elastostatic::StepReport report;
   std::vector<float> force;
   AlignedBytes field_memory;
 };
@@ -91,9 +91,9 @@ void check_loop(const test::Body& body, const ExactContacts& exact, layout::Wave
     for (double work = static_cast<double>(need.least_work);
          work < 2 * static_cast<double>(need.worst_work[file.view.levels - 1]); work *= 1.5) {
       const Answer answer(opened.model, contacts, static_cast<std::uint64_t>(work));
-      const StepReport& report = answer.report;
-      REQUIRE(report.status <= Status::coarser);
-      if (report.finer_level != report.constraint_level || report.field_level + 1 < file.view.levels) continue;
+      const Elastostatic::StepReport& report = answer.report;
+      REQUIRE(answered(report.status));
+      if (report.details.finer_level != report.constraint_level || report.field_level + 1 < file.view.levels) continue;
       levels.insert(report.constraint_level);
       const Eigen::VectorXd found =
           Eigen::Map<const Eigen::VectorXf>(answer.force.data(), wanted.size()).cast<double>();

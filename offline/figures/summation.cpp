@@ -40,7 +40,7 @@ std::vector<TouchableNode> touchable_nodes(const ModelView& view) {
 
 // Sets that are pressed by a thousandth of the body's height.
 struct SpreadContacts {
-  std::vector<std::vector<Contact>> sets;
+  std::vector<std::vector<Constraint>> sets;
   double blocks = 0;  // of their fields, mean
 };
 
@@ -49,11 +49,11 @@ SpreadContacts spread_contacts(const ModelView& view, std::size_t contacts) {
   if (nodes.size() < contacts * sets) throw std::runtime_error("summation: the body has too few touchable nodes");
   const float depth = 0.001F * (view.info->box_max[2] - view.info->box_min[2]);
   FieldCounter field(view);
-  SpreadContacts all{.sets = std::vector<std::vector<Contact>>(sets)};
+  SpreadContacts all{.sets = std::vector<std::vector<Constraint>>(sets)};
   std::vector<std::vector<std::uint32_t>> rows(sets);
   for (std::size_t i = 0; i < contacts * sets; ++i) {
     const auto [node, row] = nodes[i * nodes.size() / (contacts * sets)];
-    all.sets[i % sets].push_back({.node = node, .displacement = {0, 0, -depth}});
+    all.sets[i % sets].push_back({.node = node, .value = {0, 0, -depth}});
     rows[i % sets].push_back(row);
   }
   for (const auto& set : rows) all.blocks += static_cast<double>(field.blocks_of(set)) / sets;
@@ -65,14 +65,14 @@ class Stepper {
  public:
   Stepper(const Model& model, std::size_t contacts)
       : force_(3 * contacts), displacement_(4 * sizeof(float) * std::size_t{model.node_count()}) {
-    const Limits limits{static_cast<std::uint32_t>(contacts), static_cast<std::uint32_t>(sets)};
+    const Elastostatic::Limits limits{static_cast<std::uint32_t>(contacts), static_cast<std::uint32_t>(sets)};
     memory_ = AlignedBytes(Elastostatic::required(model, limits).bytes);
     auto created = Elastostatic::create(model, limits, {memory_.data(), memory_.size()});
     if (!created) throw std::runtime_error("summation: the model is refused");
     body_ = created.body;
   }
 
-  std::uint64_t step(const std::vector<Contact>& set) {
+  std::uint64_t step(const std::vector<Constraint>& set) {
     auto* field = reinterpret_cast<float*>(displacement_.data());
     const auto report = body_.step(set, {std::numeric_limits<std::uint64_t>::max()},
                                    {force_, {field, displacement_.size() / sizeof(float)}});
@@ -88,14 +88,14 @@ class Stepper {
   Elastostatic body_;
 };
 
-double mean_work(Stepper& stepper, const std::vector<std::vector<Contact>>& all) {
+double mean_work(Stepper& stepper, const std::vector<std::vector<Constraint>>& all) {
   double work = 0;
   for (const auto& set : all) stepper.step(set);
   for (const auto& set : all) work += static_cast<double>(stepper.step(set));
   return work / static_cast<double>(all.size());
 }
 
-double median_seconds(Stepper& stepper, const std::vector<std::vector<Contact>>& all, std::size_t rounds) {
+double median_seconds(Stepper& stepper, const std::vector<std::vector<Constraint>>& all, std::size_t rounds) {
   std::vector<double> times;
   for (std::size_t round = 0; round < rounds; ++round) {
     const double start = thread_seconds();

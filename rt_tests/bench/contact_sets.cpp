@@ -43,9 +43,9 @@ float diagonal(const layout::Info& info) {
 }
 
 /// One of the three axes, forwards or backwards.
-Contact pressed(std::uint32_t node, std::uint64_t direction, float depth) {
-  Contact contact{node, {}};
-  contact.displacement[direction % 3] = direction % 2 == 0 ? depth : -depth;
+Constraint pressed(std::uint32_t node, std::uint64_t direction, float depth) {
+  Constraint contact{node, {}};
+  contact.value[direction % 3] = direction % 2 == 0 ? depth : -depth;
   return contact;
 }
 
@@ -59,13 +59,13 @@ std::vector<std::uint32_t> touchable_nodes(const ModelView& model) {
   return nodes;
 }
 
-std::vector<std::vector<Contact>> patch_contacts(const ModelView& model, std::size_t sets, std::size_t contacts,
-                                                 std::uint64_t seed) {
+std::vector<std::vector<Constraint>> patch_contacts(const ModelView& model, std::size_t sets, std::size_t contacts,
+                                                    std::uint64_t seed) {
   auto points = touchable_points(model);
   contacts = std::min(contacts, points.size());
   const float depth = diagonal(*model.info) / 1000;
   std::mt19937_64 random(seed);
-  std::vector<std::vector<Contact>> result(sets);
+  std::vector<std::vector<Constraint>> result(sets);
   for (auto& set : result) {
     const Point centre = points[random() % points.size()];
     const std::uint64_t direction = random() % 6;

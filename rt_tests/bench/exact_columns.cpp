@@ -8,7 +8,7 @@
 
 namespace greenloop::bench {
 
-ExactColumns::ExactColumns(const GreenStore& store, const std::vector<std::vector<Contact>>& sets) {
+ExactColumns::ExactColumns(const GreenStore& store, const std::vector<std::vector<Constraint>>& sets) {
   openblas_set_num_threads(1);
   const auto& contents = store.contents();
   for (std::size_t r = 0; r < contents.row_node.size(); ++r) {
@@ -19,7 +19,7 @@ ExactColumns::ExactColumns(const GreenStore& store, const std::vector<std::vecto
     column_of[static_cast<std::uint32_t>(contents.column_node[c])] = static_cast<int>(c);
   }
   for (const auto& set : sets) {
-    for (const Contact& contact : set) {
+    for (const Constraint& contact : set) {
       const auto found = column_of.find(contact.node);
       if (found == column_of.end()) {
         throw std::runtime_error(store.path().string() + ": node " + std::to_string(contact.node) +
@@ -34,7 +34,7 @@ ExactColumns::ExactColumns(const GreenStore& store, const std::vector<std::vecto
   }
 }
 
-Solution ExactColumns::solve(const std::vector<Contact>& set) const {
+Solution ExactColumns::solve(const std::vector<Constraint>& set) const {
   const auto s = static_cast<Eigen::Index>(set.size());
   Eigen::MatrixXd capacitance(3 * s, 3 * s);
   Eigen::VectorXd held(3 * s);
@@ -44,7 +44,7 @@ Solution ExactColumns::solve(const std::vector<Contact>& set) const {
     for (Eigen::Index i = 0; i < s; ++i) {
       capacitance.block<3, 3>(3 * i, 3 * j) = column.middleRows<3>(3 * row_.at(set[static_cast<std::size_t>(i)].node));
     }
-    held.segment<3>(3 * j) = Eigen::Map<const Eigen::Vector3f>(contact.displacement).cast<double>();
+    held.segment<3>(3 * j) = Eigen::Map<const Eigen::Vector3f>(contact.value).cast<double>();
   }
   Solution solution;
   solution.force = capacitance.llt().solve(held);
@@ -56,7 +56,7 @@ Solution ExactColumns::solve(const std::vector<Contact>& set) const {
   return solution;
 }
 
-void ExactColumns::sum(const std::vector<Contact>& set, const float* force, Eigen::VectorXf& field) const {
+void ExactColumns::sum(const std::vector<Constraint>& set, const float* force, Eigen::VectorXf& field) const {
   field.setZero();
   const auto rows = static_cast<int>(field.size());
   for (std::size_t j = 0; j < set.size(); ++j) {

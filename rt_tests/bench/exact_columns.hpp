@@ -20,13 +20,13 @@ struct Solution {
 class ExactColumns {
  public:
   /// Reads the columns of every node of `sets` out of the store. Throws std::runtime_error if a node has none.
-  ExactColumns(const GreenStore& store, const std::vector<std::vector<Contact>>& sets);
+  ExactColumns(const GreenStore& store, const std::vector<std::vector<Constraint>>& sets);
 
   /// Solves the capacitance problem of a set and sums its columns, in double precision.
-  [[nodiscard]] Solution solve(const std::vector<Contact>& set) const;
+  [[nodiscard]] Solution solve(const std::vector<Constraint>& set) const;
 
   /// field = the sum of a set's columns for these forces, in single precision by OpenBLAS: one sgemv a contact.
-  void sum(const std::vector<Contact>& set, const float* force, Eigen::VectorXf& field) const;
+  void sum(const std::vector<Constraint>& set, const float* force, Eigen::VectorXf& field) const;
 
  private:
   struct Column {

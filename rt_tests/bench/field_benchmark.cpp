@@ -57,18 +57,18 @@ struct ErrorSum {
 /// Fields of given forces, without the step that finds them.
 class FieldSums {
  public:
-  FieldSums(const Model& model, const std::vector<std::vector<Contact>>& sets,
+  FieldSums(const Model& model, const std::vector<std::vector<Constraint>>& sets,
             const std::vector<std::vector<float>>& forces)
       : placed_(model.view(), static_cast<std::uint32_t>(sets.front().size())),
         level_(model.level_count() - 1),
         x_(model.node_count()) {
     Body& body = *placed_.body;
     for (std::size_t i = 0; i < sets.size(); ++i) {
-      resolve_contacts(sets[i], model.view(), body.facts, {level_}, body.set);
-      Columns columns{{body.set.column, body.set.column + body.set.columns}, {}};
+      resolve_contacts(sets[i], model.view(), body.facts, {level_}, body.resolution, body.planned);
+      Columns columns{{body.planned.column, body.planned.column + body.planned.columns}, {}};
       columns.force.resize(3 * columns.column.size());
       for (std::size_t k = 0; k < 3 * sets[i].size(); ++k) {
-        columns.force[3 * body.set.place[k / 3] + k % 3] += forces[i][k];
+        columns.force[3 * body.planned.place[k / 3] + k % 3] += forces[i][k];
       }
       sets_.push_back(std::move(columns));
     }
@@ -99,7 +99,7 @@ class FieldSums {
 /// Everything one contact count is measured with.
 struct Bench {
   const ModelView* view;
-  const std::vector<std::vector<Contact>>& sets;
+  const std::vector<std::vector<Constraint>>& sets;
   const ExactColumns& columns;
   const std::vector<int>& row_node;
   std::vector<Solution> truth;
@@ -119,7 +119,7 @@ void sum_dense(const Bench& bench, Eigen::VectorXf& field) {
   }
 }
 
-void step_sets(const std::vector<std::vector<Contact>>& sets, Stepper& stepper) {
+void step_sets(const std::vector<std::vector<Constraint>>& sets, Stepper& stepper) {
   for (const auto& set : sets) {
     stepper.step(set);
   }
@@ -154,7 +154,7 @@ void measure_same_set(Bench& bench, std::size_t rounds, FieldFigures& figures) {
   std::vector<double> ratio;
   for (std::size_t round = 0; round < rounds; ++round) {
     const std::size_t i = round % bench.sets.size();
-    const std::vector<std::vector<Contact>> same(bench.sets.size(), bench.sets[i]);
+    const std::vector<std::vector<Constraint>> same(bench.sets.size(), bench.sets[i]);
     step_sets(same, bench.cached);
     const double dense = time_of_sets(bench, [&] {
       for (const auto& set : same) {
@@ -174,8 +174,8 @@ void descend(Bench& bench, std::size_t rounds, FieldFigures& figures) {
     ErrorSum errors{*bench.view};
     std::vector<double> work, time;
     for (std::size_t i = 0; i < bench.sets.size(); ++i) {
-      const StepReport report = bench.cached.step(bench.sets[i], budget[i]);
-      if (report.status > Status::coarser) {
+      const Elastostatic::StepReport report = bench.cached.step(bench.sets[i], budget[i]);
+      if (!answered(report.status)) {
         return;
       }
       rung.constraint_level = report.constraint_level;

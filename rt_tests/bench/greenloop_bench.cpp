@@ -231,7 +231,7 @@ int main(int argc, char** argv) {
   app.add_option("--store", arguments.store, "The HDF5 store the model was built from")
       ->required()
       ->check(CLI::ExistingFile);
-  app.add_option("--contacts", arguments.contacts, "Contact counts to measure")
+  app.add_option("--contacts", arguments.contacts, "Constraint counts to measure")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_option("--rounds", arguments.rounds, "Rounds per figure; medians are reported")

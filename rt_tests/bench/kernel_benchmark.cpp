@@ -92,14 +92,15 @@ class ChangingFactors {
 TransformFigures measure_transform(const Model& model, const GreenStore& store, std::size_t rounds) {
   const ModelView& view = model.view();
   Patch patch(model, 64);
-  const std::vector<std::vector<Contact>> one = {{patch.set.front()}};
+  const std::vector<std::vector<Constraint>> one = {{patch.set.front()}};
   const ExactColumns columns(store, one);
   const float unit[3] = {1, 0.5F, -0.25F};
   Eigen::VectorXf field(3 * static_cast<Eigen::Index>(store.contents().row_node.size()));
   std::vector<Float4> x(view.node_count);
   Body& body = patch.body;
   const std::vector<float> forces(patch.order(), 1e-3F);
-  transform_forces(body.refinement, {body.set.columns, body.set.column, forces.data()}, body.touched, body.force);
+  transform_forces(body.refinement, {body.planned.columns, body.planned.column, forces.data()}, body.touched,
+                   body.force);
   sum_couplings(body.field_model(), body.touched, view.domain_count, body.force, body.field_sums);
   scale_sums(view, view.domain_count, body.field_sums);
   const std::vector<Float4> sums(body.field_sums.of_blocks, body.field_sums.of_blocks + view.domain_count);
@@ -151,7 +152,7 @@ CapacitanceFigures measure_capacitance(const Model& model, std::size_t contacts,
   if (!factors.good()) {
     throw std::runtime_error("a capacitance matrix of the model is not positive definite");
   }
-  const std::uint32_t blocks = patch.body.set.columns * (patch.body.set.columns + 1) / 2;
+  const std::uint32_t blocks = patch.body.planned.columns * (patch.body.planned.columns + 1) / 2;
   figures.extract_ns_per_block = 1e3 * median(extract) / blocks;
   figures.factor_us = median(factor);
   figures.insert_us = median(insert);
@@ -171,7 +172,7 @@ ForceFigures measure_forces(const Model& model, std::size_t contacts, std::size_
   return {set.size(), median(time)};
 }
 
-CreationFigures measure_creation(const Model& model, const Limits& limits) {
+CreationFigures measure_creation(const Model& model, const Elastostatic::Limits& limits) {
   CreationFigures figures{limits, 0, Elastostatic::required(model, limits).bytes};
   AlignedBytes memory(figures.arena_bytes);
   std::fill_n(memory.data(), memory.size(), std::byte{1});

@@ -41,10 +41,10 @@ struct ForceFigures {
 
 /// What a body costs to make.
 struct CreationFigures {
-  Limits limits;
+  Elastostatic::Limits limits;
   double create_ms = 0;  ///< Elastostatic::create, once, in memory that has been touched
   std::size_t arena_bytes = 0;
 };
-[[nodiscard]] CreationFigures measure_creation(const Model& model, const Limits& limits);
+[[nodiscard]] CreationFigures measure_creation(const Model& model, const Elastostatic::Limits& limits);
 
 }  // namespace greenloop::bench

@@ -18,19 +18,19 @@ struct Patch {
         placed(model.view(), static_cast<std::uint32_t>(set.size())),
         body(*placed.body),
         level(model.level_count() - 1) {
-    resolve_contacts(set, model.view(), body.facts, {level}, body.set);
-    touch(body.refinement, body.set.column, body.set.columns, body.touched);
+    resolve_contacts(set, model.view(), body.facts, {level}, body.resolution, body.planned);
+    touch(body.refinement, body.planned.column, body.planned.columns, body.touched);
   }
-  [[nodiscard]] std::uint32_t order() const { return 3 * body.set.columns; }
+  [[nodiscard]] std::uint32_t order() const { return 3 * body.planned.columns; }
   [[nodiscard]] std::uint32_t stride() const { return body.cache.stride(); }
 
   /// The lower triangle of the capacitance matrix.
   void assemble(std::vector<Float4>& matrix) {
-    assemble_capacitance(body.refinement, {body.set.columns, body.set.column}, body.touched, body.capacitance,
+    assemble_capacitance(body.refinement, {body.planned.columns, body.planned.column}, body.touched, body.capacitance,
                          body.force, stride(), matrix.data());
   }
 
-  std::vector<Contact> set;
+  std::vector<Constraint> set;
   PlacedBody placed;
   Body& body;
   std::uint32_t level;

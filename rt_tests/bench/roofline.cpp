@@ -263,7 +263,7 @@ class RooflineRun {
     Body& body = patch.body;
     CapacitanceScratch& scratch = body.capacitance;
     const std::uint64_t slots = body.touched.coefficients();
-    const std::uint32_t columns = body.set.columns;
+    const std::uint32_t columns = body.planned.columns;
     const bool panel = has_panel(scratch.room, slots, columns);
     const std::uint64_t width = panel ? columns : batch_width(scratch.room, slots);
     std::uint64_t operations = 0;
@@ -271,7 +271,7 @@ class RooflineRun {
       PartialCapacitance batch;
       batch.panel = panel;
       batch.computed = static_cast<std::uint32_t>(std::min<std::uint64_t>(width, columns - first));
-      batch.set = {static_cast<std::uint32_t>(first) + batch.computed, body.set.column};
+      batch.set = {static_cast<std::uint32_t>(first) + batch.computed, body.planned.column};
       begin_capacitance(body.refinement, body.touched, scratch, body.force, batch);
       const SparseInverse& inverse = scratch.inverse;
       const std::uint64_t terms = inverse.steps > 0 ? inverse.step[inverse.steps - 1].end : 0;

@@ -46,7 +46,7 @@ TEST_CASE("every kernel has a point, with the bytes and flops that its order tak
 
 TEST_CASE("a body is made in the bytes that it requires") {
   const TestModel model({.levels = 4});
-  const Limits limits{.max_contacts = 5, .cached_factors = 2};
+  const Elastostatic::Limits limits{.max_contacts = 5, .cached_factors = 2};
   const CreationFigures figures = measure_creation(model.model(), limits);
   CHECK(figures.arena_bytes == Elastostatic::required(model.model(), limits).bytes);
   CHECK(figures.create_ms > 0);

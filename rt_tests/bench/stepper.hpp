@@ -14,7 +14,7 @@ class Stepper {
  public:
   Stepper(const Model& model, std::size_t contacts, std::size_t factors)
       : force_(3 * contacts), displacement_(16 * std::size_t{model.node_count()}) {
-    const Limits limits{static_cast<std::uint32_t>(contacts), static_cast<std::uint32_t>(factors)};
+    const Elastostatic::Limits limits{static_cast<std::uint32_t>(contacts), static_cast<std::uint32_t>(factors)};
     memory_ = AlignedBytes(Elastostatic::required(model, limits).bytes);
     auto created = Elastostatic::create(model, limits, {memory_.data(), memory_.size()});
     if (!created) {
@@ -23,12 +23,12 @@ class Stepper {
     body_ = created.body;
   }
 
-  StepReport step(const std::vector<Contact>& set, std::uint64_t work = UINT64_MAX) {
+  Elastostatic::StepReport step(const std::vector<Constraint>& set, std::uint64_t work = UINT64_MAX) {
     return body_.step(set, {work}, {{force_.data(), 3 * set.size()}, {displacement(), displacement_.size() / 4}});
   }
 
   /// The forces alone.
-  StepReport step_forces(const std::vector<Contact>& set) {
+  Elastostatic::StepReport step_forces(const std::vector<Constraint>& set) {
     return body_.step(set, {UINT64_MAX}, {{force_.data(), 3 * set.size()}, {}});
   }
 

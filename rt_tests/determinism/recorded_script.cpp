@@ -26,26 +26,26 @@ class Digest {
   std::uint64_t value_ = 0xcbf29ce484222325;
 };
 
-void note(const StepReport& report, const StepReport& last, ScriptOutcome& outcome) {
+void note(const Elastostatic::StepReport& report, const Elastostatic::StepReport& last, ScriptOutcome& outcome) {
   ++outcome.by_status[static_cast<std::size_t>(report.status)];
   outcome.work += report.work;
-  if (report.status <= Status::coarser) {
-    outcome.cached += report.cached_factor ? 1 : 0;
+  if (answered(report.status)) {
+    outcome.cached += report.details.cached_factor ? 1 : 0;
     outcome.levels |= 1U << report.constraint_level;
     const bool finer = report.constraint_level > last.constraint_level;
-    outcome.refined += finer && last.pending_work > 0 && report.cached_factor ? 1 : 0;
+    outcome.refined += finer && last.details.pending_work > 0 && report.details.cached_factor ? 1 : 0;
   }
 }
 
 ScriptOutcome run_script(RecordedScript& script, Elastostatic& body, std::span<float> field, bool flip) {
   ScriptOutcome outcome;
   Digest digest;
-  StepReport last;
+  Elastostatic::StepReport last;
   std::array<float, 3 * (RecordedScript::most_contacts + 1)> force_memory{};
   for (std::uint32_t i = 0; i < RecordedScript::cycles; ++i) {
     const RecordedScript::Cycle cycle = script.next();
     const std::span<float> force(force_memory.data(), 3 * cycle.contacts.size());
-    const StepReport report =
+    const Elastostatic::StepReport report =
         body.step(cycle.contacts, cycle.budget, {force, cycle.with_field ? field : std::span<float>()});
     if (flip && i == RecordedScript::cycles / 2) {
       field[0] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(field[0]) ^ 1U);
@@ -53,12 +53,12 @@ ScriptOutcome run_script(RecordedScript& script, Elastostatic& body, std::span<f
     note(report, last, outcome);
     last = report;
     digest.add(static_cast<std::uint64_t>(report.status) << 32 | report.constraint_level << 8 | report.field_level);
-    digest.add(std::uint64_t{report.finer_level} << 32 | report.finer_contacts);
-    digest.add(report.work << 1 | (report.cached_factor ? 1 : 0));
-    digest.add(std::bit_cast<std::uint32_t>(report.glide));
-    digest.add(std::bit_cast<std::uint32_t>(report.level_difference));
-    digest.add(std::bit_cast<std::uint64_t>(report.switch_work));
-    digest.add(report.pending_work);
+    digest.add(std::uint64_t{report.details.finer_level} << 32 | report.details.finer_contacts);
+    digest.add(report.work << 1 | (report.details.cached_factor ? 1 : 0));
+    digest.add(std::bit_cast<std::uint32_t>(report.details.glide));
+    digest.add(std::bit_cast<std::uint32_t>(report.details.level_difference));
+    digest.add(std::bit_cast<std::uint64_t>(report.details.switch_work));
+    digest.add(report.details.pending_work);
     digest.add(force);
     digest.add(field);
   }
@@ -68,7 +68,7 @@ ScriptOutcome run_script(RecordedScript& script, Elastostatic& body, std::span<f
 
 }  // namespace
 
-RecordedScript::RecordedScript(const Model& model, const Requirement& requirement) noexcept
+RecordedScript::RecordedScript(const Model& model, const Elastostatic::Requirement& requirement) noexcept
     : model_(&model), requirement_(requirement) {
   visit_nodes(model.view(), [this](std::uint32_t node, const layout::NodeRecord& record) {
     if ((record.flags & layout::node_touchable) == 0) {
@@ -150,7 +150,7 @@ void RecordedScript::scatter(std::uint32_t count, float depth) noexcept {
   for (std::uint32_t i = 0; i < count_; ++i) {
     std::swap(candidate_[i], candidate_[i + below(touchable_ - i)]);
     contact_[i].node = candidate_[i].node;
-    for (float& component : contact_[i].displacement) {
+    for (float& component : contact_[i].value) {
       component = depth * uniform();
     }
   }
@@ -165,12 +165,12 @@ float RecordedScript::extreme_depth() noexcept {
 void RecordedScript::spoil() noexcept {
   constexpr std::array<float, 3> bad{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                                      -std::numeric_limits<float>::infinity()};
-  Contact& victim = contact_[below(count_)];
+  Constraint& victim = contact_[below(count_)];
   const std::uint32_t way = below(5);
   const std::uint32_t which = below(3);
   switch (way) {
     case 0:
-      victim.displacement[which] = bad[(which + count_) % bad.size()];
+      victim.value[which] = bad[(which + count_) % bad.size()];
       break;
     case 1:
       victim.node = below(2) == 0 ? 0xffffffff : model_->node_count() + below(1000);
@@ -240,7 +240,7 @@ RecordedRun run_recorded_script(std::span<const std::byte> bytes, std::span<std:
     run.error = opened.result.field;
     return run;
   }
-  const Requirement need = Elastostatic::required(opened.model, RecordedScript::limits);
+  const Elastostatic::Requirement need = Elastostatic::required(opened.model, RecordedScript::limits);
   run.arena_bytes = need.bytes;
   auto created = Elastostatic::create(opened.model, RecordedScript::limits, arena);
   RecordedScript script(opened.model, need);

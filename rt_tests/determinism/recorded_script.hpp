@@ -17,16 +17,16 @@ class RecordedScript {
   static constexpr std::uint32_t cycles = 10'000;
   static constexpr std::uint32_t most_contacts = 8;
   static constexpr std::uint32_t most_touchable = 192;
-  static constexpr Limits limits{.max_contacts = most_contacts, .cached_factors = 4};
+  static constexpr Elastostatic::Limits limits{.max_contacts = most_contacts, .cached_factors = 4};
 
   struct Cycle {
-    std::span<const Contact> contacts;  ///< valid until the next cycle; at most most_contacts + 1
+    std::span<const Constraint> contacts;  ///< valid until the next cycle; at most most_contacts + 1
     Budget budget;
     bool with_field;
   };
 
   /// `model` must outlive the script and have 1..most_touchable touchable nodes (`usable`).
-  RecordedScript(const Model& model, const Requirement& requirement) noexcept;
+  RecordedScript(const Model& model, const Elastostatic::Requirement& requirement) noexcept;
 
   [[nodiscard]] bool usable() const noexcept { return touchable_ > 0 && touchable_ <= most_touchable; }
 
@@ -53,12 +53,12 @@ class RecordedScript {
   [[nodiscard]] float uniform() noexcept;  ///< -1..1
 
   const Model* model_;
-  Requirement requirement_;
+  Elastostatic::Requirement requirement_;
   std::uint64_t state_ = 20;
   std::uint32_t touchable_ = 0;
   std::uint32_t not_touchable_ = 0;                    ///< a node that is not, if there is one
   std::array<Candidate, most_touchable> candidate_{};  ///< touchable nodes, in a burst by distance from its centre
-  std::array<Contact, most_contacts + 1> contact_{};
+  std::array<Constraint, most_contacts + 1> contact_{};
   std::uint32_t count_ = 0;
   Kind kind_ = Kind::press;
   std::uint32_t remaining_ = 0;

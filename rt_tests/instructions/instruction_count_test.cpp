@@ -171,7 +171,7 @@ TEST_CASE("whole steps take the same instructions when repeated and whatever the
   const TestModel model({.levels = 2});
   TestBody body(model, {.max_contacts = 3, .cached_factors = 1});
   std::vector<float> force(9);
-  std::vector<Contact> contacts(3);
+  std::vector<Constraint> contacts(3);
   const auto nodes = model.touchable();
   const auto step = [&](float value) {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -186,7 +186,7 @@ TEST_CASE("whole steps take the same instructions when repeated and whatever the
     CAPTURE(value);
     CHECK(step(value) == first);
   }
-  const Limits limits{.max_contacts = 3, .cached_factors = 1};
+  const Elastostatic::Limits limits{.max_contacts = 3, .cached_factors = 1};
   const std::int64_t heaviest = instructions_of_heaviest_step(model.model(), limits);
   CHECK(heaviest > static_cast<std::int64_t>(first));
   CHECK(instructions_of_heaviest_step(model.model(), limits) == heaviest);

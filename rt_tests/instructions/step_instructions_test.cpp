@@ -18,7 +18,7 @@ namespace {
 // bodies one after the other in the same memory
 class Steps {
  public:
-  Steps(const TestModel& model, const Limits& limits)
+  Steps(const TestModel& model, const Elastostatic::Limits& limits)
       : model_(&model),
         limits_(limits),
         requirement_(Elastostatic::required(model.model(), limits)),
@@ -28,27 +28,27 @@ class Steps {
 
   void renew() { body_ = Elastostatic::create(model_->model(), limits_, {arena_.data(), arena_.size()}).body; }
 
-  StepReport step(const std::vector<Contact>& contacts, std::uint64_t work, bool with_field) {
+  Elastostatic::StepReport step(const std::vector<Constraint>& contacts, std::uint64_t work, bool with_field) {
     const std::span<float> field(reinterpret_cast<float*>(field_.data()), field_.size() / sizeof(float));
     return body_.step(contacts, {work},
                       {std::span(force_).first(3 * contacts.size()), with_field ? field : std::span<float>()});
   }
 
-  [[nodiscard]] const Requirement& requirement() const { return requirement_; }
+  [[nodiscard]] const Elastostatic::Requirement& requirement() const { return requirement_; }
 
  private:
   const TestModel* model_;
-  Limits limits_;
-  Requirement requirement_;
+  Elastostatic::Limits limits_;
+  Elastostatic::Requirement requirement_;
   AlignedBytes arena_, field_;
   std::vector<float> force_;
   Elastostatic body_;
 };
 
-std::vector<Contact> contacts(const std::vector<std::uint32_t>& nodes, float value) {
-  std::vector<Contact> result(nodes.size());
+std::vector<Constraint> contacts(const std::vector<std::uint32_t>& nodes, float value) {
+  std::vector<Constraint> result(nodes.size());
   std::transform(nodes.begin(), nodes.end(), result.begin(), [value](std::uint32_t node) {
-    return Contact{node, {value, -value, value}};
+    return Constraint{node, {value, -value, value}};
   });
   return result;
 }
@@ -65,7 +65,7 @@ struct Way {
 // instructions of the last step with contacts displaced by each value, and the reports
 struct Outcome {
   std::vector<std::uint64_t> instructions;
-  StepReport report;
+  Elastostatic::StepReport report;
 };
 
 Outcome take(const Way& way, Steps& steps, std::initializer_list<float> values) {
@@ -115,12 +115,12 @@ std::vector<Way> ways(const TestModel& model, Steps& steps, std::size_t contacts
           {"coarser", {}, patch, budget_below(steps, patch), true}};
 }
 
-void check_way(const Way& way, const StepReport& report, std::uint32_t finest) {
+void check_way(const Way& way, const Elastostatic::StepReport& report, std::uint32_t finest) {
   const std::string& name = way.name;
   const bool fine = report.constraint_level == finest && report.field_level == finest;
   CHECK(report.status == (fine ? Status::ok : Status::coarser));
-  CHECK((name.find("cached") == 0) == report.cached_factor);
-  CHECK((name == "changed") == (report.changed_nodes > 0));
+  CHECK((name.find("cached") == 0) == report.details.cached_factor);
+  CHECK((name == "changed") == (report.details.changed_nodes > 0));
   CHECK((name.find("coarse") == 0) == (report.constraint_level < finest));
   CHECK((name == "coarsest, field cut") == (report.field_level < finest));
 }

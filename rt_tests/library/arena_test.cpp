@@ -11,7 +11,7 @@ constexpr double margin = 1.02;  // of the recorded bytes, for what does not dep
 
 struct Recorded {
   SyntheticOptions model;
-  Limits limits;
+  Elastostatic::Limits limits;
   std::size_t bytes;
 };
 

@@ -31,8 +31,8 @@ std::mt19937_64 generator(ScriptKind kind, std::uint64_t seed) {
 
 }  // namespace
 
-ContactScript::ContactScript(const ModelView& view, const Limits& limits, const Requirement& requirement,
-                             ScriptKind kind, std::uint64_t seed)
+ContactScript::ContactScript(const ModelView& view, const Elastostatic::Limits& limits,
+                             const Elastostatic::Requirement& requirement, ScriptKind kind, std::uint64_t seed)
     : view_(&view), limits_(limits), requirement_(requirement), script_(kind), random_(generator(kind, seed)) {
   worst_work_ = *std::max_element(std::begin(requirement.worst_work), std::end(requirement.worst_work));
   list_touchable();
@@ -168,7 +168,7 @@ void ContactScript::place_contacts() {
       step_.contacts = sets_[age_ % sets_.size()];
       break;
     case ScriptKind::every_node:
-      step_.contacts[below(most_)].displacement[below(3)] = depth;
+      step_.contacts[below(most_)].value[below(3)] = depth;
       break;
     case ScriptKind::flap_levels:
       // a set that is at hand is answered at the finest level for any budget: every other time they come in pairs
@@ -193,9 +193,9 @@ void ContactScript::place_contacts() {
 void ContactScript::touch(std::size_t first, std::size_t count, float depth) {
   step_.contacts.clear();
   for (std::size_t i = 0; i < std::min(count, patch_.size()); ++i) {
-    Contact contact{patch_[(first + i) % patch_.size()], {}};
+    Constraint contact{patch_[(first + i) % patch_.size()], {}};
     for (int r = 0; r < 3; ++r) {
-      contact.displacement[r] = depth * direction_[r];
+      contact.value[r] = depth * direction_[r];
     }
     step_.contacts.push_back(contact);
   }
@@ -230,8 +230,8 @@ void ContactScript::scatter(std::size_t count) {
 void ContactScript::displace_extremely() {
   constexpr float sizes[] = {0, FLT_TRUE_MIN, FLT_MIN, 1e-30F, 1e-12F, 1, 1e10F};
   const float size = sizes[below(std::size(sizes))];
-  for (Contact& contact : step_.contacts) {
-    for (float& u : contact.displacement) {
+  for (Constraint& contact : step_.contacts) {
+    for (float& u : contact.value) {
       u = size * uniform();
     }
   }
@@ -240,12 +240,12 @@ void ContactScript::displace_extremely() {
 // makes the contacts wrong in one of the ways a controller can get them wrong
 void ContactScript::spoil() {
   step_.valid = false;
-  Contact& victim = step_.contacts[below(step_.contacts.size())];
+  Constraint& victim = step_.contacts[below(step_.contacts.size())];
   const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                        -std::numeric_limits<float>::infinity(), FLT_MAX, -FLT_MAX};
   switch (below(6)) {
     case 0:
-      victim.displacement[below(3)] = bad[below(std::size(bad))];
+      victim.value[below(3)] = bad[below(std::size(bad))];
       break;
     case 1:
       victim.node = view_->node_count + static_cast<std::uint32_t>(below(0x80000000 - view_->node_count));

@@ -34,7 +34,7 @@ constexpr const char* name(ScriptKind kind) { return script_names[static_cast<st
 
 /// One cycle of a script.
 struct ScriptedStep {
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   std::uint64_t budget = 0;
   bool with_field = true;
   bool valid = true;  ///< must be answered if the budget is at least Requirement::least_work
@@ -44,8 +44,8 @@ struct ScriptedStep {
 /// unlimited in the others. The same kind and seed give the same script.
 class ContactScript {
  public:
-  ContactScript(const ModelView& view, const Limits& limits, const Requirement& requirement, ScriptKind kind,
-                std::uint64_t seed);
+  ContactScript(const ModelView& view, const Elastostatic::Limits& limits, const Elastostatic::Requirement& requirement,
+                ScriptKind kind, std::uint64_t seed);
 
   /// The next cycle; valid until the one after. Not for an armed section: it allocates.
   const ScriptedStep& next();
@@ -69,8 +69,8 @@ class ContactScript {
   float uniform() { return static_cast<float>(random_() >> 40) * 0x1p-23F - 1; }
 
   const ModelView* view_;
-  Limits limits_;
-  Requirement requirement_;
+  Elastostatic::Limits limits_;
+  Elastostatic::Requirement requirement_;
   ScriptKind script_;
   std::uint64_t worst_work_ = 0;
   std::vector<std::uint32_t> touchable_;        ///< increasing
@@ -86,10 +86,10 @@ class ContactScript {
   std::uint32_t age_ = 0;
   bool unlimited_ = false;
   float direction_[3] = {};
-  std::size_t size_ = 0;                    ///< contacts
-  std::size_t shift_ = 0;                   ///< nodes between two sets in turn
-  std::vector<std::uint32_t> patch_;        ///< touchable nodes around its centre, nearest first
-  std::vector<std::vector<Contact>> sets_;  ///< those that take turns
+  std::size_t size_ = 0;                       ///< contacts
+  std::size_t shift_ = 0;                      ///< nodes between two sets in turn
+  std::vector<std::uint32_t> patch_;           ///< touchable nodes around its centre, nearest first
+  std::vector<std::vector<Constraint>> sets_;  ///< those that take turns
   ScriptedStep step_;
 };
 

@@ -6,7 +6,7 @@
 
 namespace greenloop {
 
-double ForceStep::follow(std::span<const Contact> contacts, bool answered, std::span<const float> force) {
+double ForceStep::follow(std::span<const Constraint> contacts, bool answered, std::span<const float> force) {
   const bool same = answered && answered_ && contacts.size() == contacts_.size() &&
                     std::memcmp(contacts.data(), contacts_.data(), contacts.size_bytes()) == 0;
   double change = 0, now = 0, before = 0;

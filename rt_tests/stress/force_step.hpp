@@ -15,11 +15,11 @@ class ForceStep {
 
   /// ||f - f'|| over the larger of ||f|| and ||f'||, f' of the cycle before; 0 unless both were answered with the same
   /// contacts and displacements. force: [3 * contacts] N.
-  double follow(std::span<const Contact> contacts, bool answered, std::span<const float> force);
+  double follow(std::span<const Constraint> contacts, bool answered, std::span<const float> force);
 
  private:
   bool answered_ = false;
-  std::vector<Contact> contacts_;
+  std::vector<Constraint> contacts_;
   std::vector<float> force_;
 };
 

@@ -10,7 +10,7 @@
 namespace greenloop {
 namespace {
 
-std::vector<Contact> spread_contacts(const ModelView& view, std::size_t most) {
+std::vector<Constraint> spread_contacts(const ModelView& view, std::size_t most) {
   std::vector<std::uint32_t> touchable;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
@@ -20,7 +20,7 @@ std::vector<Contact> spread_contacts(const ModelView& view, std::size_t most) {
       }
     }
   }
-  std::vector<Contact> contacts(std::min(most, touchable.size()));
+  std::vector<Constraint> contacts(std::min(most, touchable.size()));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float depth = 1e-5F * static_cast<float>(1 + i % 7);
     contacts[i] = {touchable[i * touchable.size() / contacts.size()], {depth, -depth, depth / 2}};
@@ -30,7 +30,7 @@ std::vector<Contact> spread_contacts(const ModelView& view, std::size_t most) {
 
 }  // namespace
 
-std::int64_t instructions_of_heaviest_step(const Model& model, const Limits& limits) {
+std::int64_t instructions_of_heaviest_step(const Model& model, const Elastostatic::Limits& limits) {
   if (!instruction_counter::install()) {
     return -1;
   }
@@ -40,9 +40,9 @@ std::int64_t instructions_of_heaviest_step(const Model& model, const Limits& lim
     throw std::runtime_error("no body for this model and these limits");
   }
   AlignedBytes field(std::size_t{16} * model.node_count());
-  const std::vector<Contact> contacts = spread_contacts(model.view(), limits.max_contacts);
+  const std::vector<Constraint> contacts = spread_contacts(model.view(), limits.max_contacts);
   std::vector<float> force(3 * contacts.size());
-  const Response response{force, {reinterpret_cast<float*>(field.data()), field.size() / sizeof(float)}};
+  const Elastostatic::Response response{force, {reinterpret_cast<float*>(field.data()), field.size() / sizeof(float)}};
   created.body.step({}, {~std::uint64_t{0}}, response);  // every library function has been called before
   instruction_counter::start();
   created.body.step(contacts, {~std::uint64_t{0}}, response);

@@ -134,7 +134,7 @@ class StressRun {
     result_.scripts.push_back(script_);
   }
 
-  Response response(const ScriptedStep& scripted) {
+  Elastostatic::Response response(const ScriptedStep& scripted) {
     return {std::span(force_).first(3 * scripted.contacts.size()), scripted.with_field ? field_ : std::span<float>()};
   }
 
@@ -144,14 +144,14 @@ class StressRun {
   }
 
   void cycle(const ScriptedStep& scripted) {
-    const Response response = this->response(scripted);
+    const Elastostatic::Response response = this->response(scripted);
     const std::uint64_t violations = result_.violations.sum();
     const double begin = bench::thread_microseconds();
-    const StepReport report = guarded_step(scripted, response);
+    const Elastostatic::StepReport report = guarded_step(scripted, response);
     const double us = bench::thread_microseconds() - begin;
     result_.times.add(us);
     script_.worst_us = std::max(script_.worst_us, us);
-    const bool answered = report.status <= Status::coarser;
+    const bool answered = greenloop::answered(report.status);
     check(scripted, report, response);
     count(report);
     note_digest(report, response);
@@ -165,7 +165,7 @@ class StressRun {
     }
   }
 
-  StepReport guarded_step(const ScriptedStep& scripted, const Response& response) {
+  Elastostatic::StepReport guarded_step(const ScriptedStep& scripted, const Elastostatic::Response& response) {
     const bool faulty = script_.cycles % 100 == 99;
     if (faulty && options_.fault == InjectedFault::page_fault) {
       madvise(page_.get(), page_bytes_, MADV_DONTNEED);
@@ -175,7 +175,7 @@ class StressRun {
     allocation_guard::arm();
     mutex_guard::arm();
     system_call_guard::arm();
-    StepReport report = body_.step(scripted.contacts, {scripted.budget}, response);
+    Elastostatic::StepReport report = body_.step(scripted.contacts, {scripted.budget}, response);
     if (faulty) {
       commit_fault(report);
     }
@@ -190,7 +190,7 @@ class StressRun {
     return report;
   }
 
-  void commit_fault(StepReport& report) {
+  void commit_fault(Elastostatic::StepReport& report) {
     switch (options_.fault) {
       case InjectedFault::none:
         break;
@@ -213,8 +213,9 @@ class StressRun {
     }
   }
 
-  void check(const ScriptedStep& scripted, const StepReport& report, const Response& response) {
-    const bool answered = report.status <= Status::coarser;
+  void check(const ScriptedStep& scripted, const Elastostatic::StepReport& report,
+             const Elastostatic::Response& response) {
+    const bool answered = greenloop::answered(report.status);
     const std::uint64_t declared = answered ? requirement_.worst_work[report.constraint_level] : result_.declared_work;
     result_.violations.work_overruns += report.work > scripted.budget || report.work > declared ? 1 : 0;
     const bool may_answer = scripted.budget >= requirement_.least_work;
@@ -229,23 +230,23 @@ class StressRun {
     result_.violations.wrong_answers += right ? 0 : 1;
   }
 
-  void count(const StepReport& report) {
-    const bool answered = report.status <= Status::coarser;
+  void count(const Elastostatic::StepReport& report) {
+    const bool answered = greenloop::answered(report.status);
     ++result_.by_status[static_cast<std::size_t>(report.status)];
     ++(answered ? script_.answered : script_.refused);
     script_.coarser += report.status == Status::coarser ? 1 : 0;
-    script_.cached += report.cached_factor ? 1 : 0;
-    script_.mixed_levels += report.finer_level > report.constraint_level ? 1 : 0;
-    script_.changed += report.changed_nodes > 0 ? 1 : 0;
+    script_.cached += report.details.cached_factor ? 1 : 0;
+    script_.mixed_levels += report.details.finer_level > report.constraint_level ? 1 : 0;
+    script_.changed += report.details.changed_nodes > 0 ? 1 : 0;
     script_.worst_work = std::max(script_.worst_work, report.work);
     result_.levels[report.constraint_level] += answered ? 1 : 0;
   }
 
-  void note_digest(const StepReport& report, const Response& response) {
+  void note_digest(const Elastostatic::StepReport& report, const Elastostatic::Response& response) {
     const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status),
                                    report.constraint_level,
-                                   report.finer_level,
-                                   report.finer_contacts,
+                                   report.details.finer_level,
+                                   report.details.finer_contacts,
                                    report.field_level,
                                    report.work};
     script_.digest = add_to_digest(script_.digest, facts, sizeof facts);
@@ -255,7 +256,7 @@ class StressRun {
 
   const Model* model_;
   StressOptions options_;
-  Requirement requirement_;
+  Elastostatic::Requirement requirement_;
   AlignedBytes arena_;
   std::vector<std::byte> pristine_;  // the arena of a new body
   AlignedBytes field_memory_;

@@ -19,7 +19,7 @@ struct StressOptions {
   std::uint64_t cycles = 20000;
   std::uint64_t seed = 1;
   std::optional<ScriptKind> script = std::nullopt;  ///< this one alone; else all, in turn
-  Limits limits;
+  Elastostatic::Limits limits;
   std::size_t histogram_bins = 400;
   InjectedFault fault = InjectedFault::none;
   std::function<void(ScriptKind, std::uint64_t)> progress = nullptr;  ///< called every so often with the cycles done

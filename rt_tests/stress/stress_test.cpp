@@ -27,9 +27,9 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
                                      {.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly},
                                      {.levels = 4, .wavelet = layout::Wavelet::butterfly},
                                      {.levels = 4, .wavelet = layout::Wavelet::equilibrated}};
-  const Limits limits[] = {{.max_contacts = 1, .cached_factors = 1},
-                           {.max_contacts = 16, .cached_factors = 3},
-                           {.max_contacts = 33, .cached_factors = 8}};
+  const Elastostatic::Limits limits[] = {{.max_contacts = 1, .cached_factors = 1},
+                                         {.max_contacts = 16, .cached_factors = 3},
+                                         {.max_contacts = 33, .cached_factors = 8}};
   std::uint64_t seed = 0;
   for (const auto& synthetic : models) {
     for (const auto& limit : limits) {
@@ -107,7 +107,7 @@ TEST_CASE("a script alone does what it did among the others") {
 }
 
 TEST_CASE("every fault is seen, counted and can be met again") {
-  const Limits limits{.max_contacts = 4};
+  const Elastostatic::Limits limits{.max_contacts = 4};
   for (const InjectedFault fault : {InjectedFault::none, InjectedFault::allocation, InjectedFault::lock,
                                     InjectedFault::system_call, InjectedFault::page_fault, InjectedFault::overrun}) {
     StressReport report{

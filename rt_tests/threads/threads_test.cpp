@@ -14,15 +14,15 @@
 namespace greenloop {
 namespace {
 
-constexpr Limits limits{.max_contacts = 12, .cached_factors = 3};
+constexpr Elastostatic::Limits limits{.max_contacts = 12, .cached_factors = 3};
 
 // what the fast loop hands over
 struct Touch {
   std::uint32_t cycle = 0;
   std::uint32_t count = 0;
-  std::array<Contact, limits.max_contacts> contact{};
+  std::array<Constraint, limits.max_contacts> contact{};
 
-  [[nodiscard]] std::span<const Contact> contacts() const { return {contact.data(), count}; }
+  [[nodiscard]] std::span<const Constraint> contacts() const { return {contact.data(), count}; }
 };
 
 // a hand that moves over the body
@@ -40,12 +40,12 @@ std::uint64_t digest_of_loop(const TestModel& model, std::uint64_t seed) {
   const auto nodes = model.touchable();
   std::mt19937_64 random(seed);
   TestBody body(model, limits);
-  const Requirement& need = body.requirement();
+  const Elastostatic::Requirement& need = body.requirement();
   std::uint64_t digest = empty_hash;
   for (int i = 0; i < 400; ++i) {
     const Touch touch = touch_at(static_cast<std::uint32_t>(random() % 4000), nodes);
     const std::uint64_t work = need.least_work + random() % (need.worst_work[2] >> random() % 8);
-    const StepReport report = body.step(touch.contacts(), work, i % 3 == 0);
+    const Elastostatic::StepReport report = body.step(touch.contacts(), work, i % 3 == 0);
     digest = hash_step(digest, report, body.force(), body.field());
   }
   return digest;
@@ -76,7 +76,7 @@ struct FieldDigest {
 };
 
 std::uint64_t field_digest(TestBody& body, const Touch& touch) {
-  const StepReport report = body.step(touch.contacts(), any_budget);
+  const Elastostatic::StepReport report = body.step(touch.contacts(), any_budget);
   REQUIRE(report.status == Status::ok);
   return hash_bytes(empty_hash, std::as_bytes(std::span<const float>(body.field())));
 }
@@ -89,7 +89,7 @@ std::uint64_t run_force_loop(const TestModel& model, std::uint32_t cycles, Newes
   for (std::uint32_t cycle = 0; cycle < cycles; ++cycle) {
     const Touch touch = touch_at(cycle, nodes);
     newest.put(touch);
-    const StepReport report = body.step(touch.contacts(), any_budget, false);
+    const Elastostatic::StepReport report = body.step(touch.contacts(), any_budget, false);
     digest = hash_step(digest, report, body.force(), {});
   }
   return digest;

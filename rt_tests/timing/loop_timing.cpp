@@ -37,7 +37,7 @@ double median_nanoseconds(int batch, Work work) {
 }
 
 // nodes near each other: those closest to a random one
-std::vector<Contact> patch(const TestModel& model, std::mt19937_64& random, std::size_t count) {
+std::vector<Constraint> patch(const TestModel& model, std::mt19937_64& random, std::size_t count) {
   const auto position = [&model](std::uint32_t node) { return node_record(model.view(), node).position; };
   std::vector<std::uint32_t> nodes = model.touchable();
   const float* centre = position(nodes[random() % nodes.size()]);
@@ -50,7 +50,7 @@ std::vector<Contact> patch(const TestModel& model, std::mt19937_64& random, std:
     return sum;
   };
   std::stable_sort(nodes.begin(), nodes.end(), [&](auto a, auto b) { return distance(a) < distance(b); });
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   for (std::size_t i = 0; i < std::min(count, nodes.size()); ++i) {
     contacts.push_back({nodes[i], {1e-3F, 2e-4F, -3e-4F * static_cast<float>(i % 3)}});
   }
@@ -62,10 +62,10 @@ void time_steps(const TestModel& model, std::size_t count) {
   TestBody body(model, {.max_contacts = static_cast<std::uint32_t>(count), .cached_factors = 1});
   const auto a = patch(model, random, count);
   const auto b = patch(model, random, count);
-  StepReport report;
+  Elastostatic::StepReport report;
   const double cached = median_nanoseconds(20, [&](int) { report = body.step(a, any_budget); });
   const double force = median_nanoseconds(20, [&](int) { body.step(a, any_budget, false); });
-  StepReport fresh_report;
+  Elastostatic::StepReport fresh_report;
   const double fresh = median_nanoseconds(4, [&](int i) { fresh_report = body.step(i % 2 == 0 ? a : b, any_budget); });
   std::printf(
       "%3zu contacts: cached %8.0f ns (%7llu units, %.3f ns/unit)  forces only %7.0f ns  fresh %9.0f ns "
@@ -82,22 +82,22 @@ void time_kernels(const TestModel& model) {
   std::mt19937_64 random(3);
   const auto contacts = patch(model, random, 16);
   const std::uint32_t c = view.levels - 1;
-  resolve_contacts(contacts, view, body.facts, {c}, body.set);
+  resolve_contacts(contacts, view, body.facts, {c}, body.resolution, body.planned);
   const double touching = median_nanoseconds(20, [&](int) {
     clear(body.touched);
-    touch(body.refinement, body.set.column, body.set.columns, body.touched);
+    touch(body.refinement, body.planned.column, body.planned.columns, body.touched);
   });
   SetCounts counts;
-  count_factor(body.set, body.touched, body.cost, body.stored, counts);
+  count_factor(body.planned.all(), body.touched, body.cost, body.stored, counts);
   const auto blocks = static_cast<double>(count_field_blocks(body.field_blocks, body.touched, c));
   const std::vector<float> force(3 * contacts.size(), 1e-3F);
-  const ColumnForces forces{body.set.columns, body.set.column, force.data()};
+  const ColumnForces forces{body.planned.columns, body.planned.column, force.data()};
   const double field = median_nanoseconds(20, [&](int) {
     compute_field(body.field_model(), forces, body.touched, {c, c}, body.field_scratch(), x.data());
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
-    assemble_capacitance(body.refinement, {body.set.columns, body.set.column}, body.touched, body.capacitance,
+    assemble_capacitance(body.refinement, {body.planned.columns, body.planned.column}, body.touched, body.capacitance,
                          body.force, 48, matrix.data());
   });
   const double transform = median_nanoseconds(20, [&](int) {
@@ -108,9 +108,9 @@ void time_kernels(const TestModel& model) {
   std::printf("touch               %8.0f ns\n", touching);
   std::printf("field               %8.0f ns, %6.3f ns/block\n", field, field / blocks);
   std::printf("inverse transform   %8.0f ns, %6.3f ns/node\n", transform, transform / view.domain_count);
-  std::printf("capacitance column  %8.0f ns, %6.3f ns/block of %.0f\n", capacitance / body.set.columns,
+  std::printf("capacitance column  %8.0f ns, %6.3f ns/block of %.0f\n", capacitance / body.planned.columns,
               capacitance / static_cast<double>(counts.column.blocks),
-              static_cast<double>(counts.column.blocks) / body.set.columns);
+              static_cast<double>(counts.column.blocks) / body.planned.columns);
 }
 
 void run(const TestModel& model) {

@@ -358,7 +358,7 @@ std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcep
          more * (begin_batch_work(counts) + 88 * counts.stored) + counts.rows * store_capacitance_work(counts.columns);
 }
 
-std::uint32_t count_slots(const CapacitanceColumns& set, const Touched& touched) noexcept {
+std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept {
   auto slots = static_cast<std::uint32_t>(touched.coefficients());
   for (std::uint32_t i = 0; i < set.count; ++i) {
     slots += column_level(set.column[i]) < touched.finest ? 1 : 0;
@@ -366,7 +366,7 @@ std::uint32_t count_slots(const CapacitanceColumns& set, const Touched& touched)
   return slots;
 }
 
-void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, const Touched& touched,
+void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, std::uint32_t stride, Float4* a) noexcept {
   const std::uint32_t slots = count_slots(set, touched);
   const bool panel = has_panel(scratch.room, slots, set.count);

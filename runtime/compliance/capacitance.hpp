@@ -4,10 +4,11 @@
 
 #include "runtime/compliance/couplings.hpp"
 #include "runtime/compliance/functionals.hpp"
-#include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/wavelet/column.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
+#include "runtime/wavelet/reach.hpp"
+#include "runtime/wavelet/refinement.hpp"
+#include "runtime/wavelet/sparse_inverse.hpp"
 
 namespace greenloop {
 
@@ -114,15 +115,9 @@ constexpr std::uint64_t store_capacitance_work(std::uint64_t columns) { return 9
 /// Work units of assemble_capacitance, or their bound.
 [[nodiscard]] std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept;
 
-/// Rows and columns of a capacitance matrix.
-struct CapacitanceColumns {
-  std::uint32_t count;
-  const std::uint32_t* column;  ///< [count] in any order
-};
-
 /// Slots of a set: the coefficients that it touches, and its columns that are coarser than the finest. For the loop;
 /// work: a unit a column.
-[[nodiscard]] std::uint32_t count_slots(const CapacitanceColumns& set, const Touched& touched) noexcept;
+[[nodiscard]] std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept;
 
 // The capacitance matrix in force form: block (i, j) is the displacement of the average of column i per force at column
 // j (James & Pai 2003, sections 3.2 and 5.4), by all layers. It is A = T^-1 S T^-T of the couplings S between the
@@ -133,14 +128,14 @@ struct CapacitanceColumns {
 /// The lower half of the capacitance matrix. Every block between two touched coefficients is read once, or once per
 /// batch of rows. touched: by the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after. For
 /// the loop; work: assemble_capacitance_work.
-void assemble_capacitance(const Refinement& refinement, const CapacitanceColumns& set, const Touched& touched,
+void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
                           CapacitanceScratch& scratch, Float4* force, std::uint32_t stride, Float4* a) noexcept;
 
 // The last rows of the same, in pieces: begin, add the blocks, store the rows, release. Until it is released,
 // `scratch` and the touched coefficients belong to it.
 
 struct PartialCapacitance {
-  CapacitanceColumns set{};
+  ColumnSet set;               ///< in any order
   std::uint32_t computed = 0;  ///< rows, no more than batch_width
   bool panel = false;          ///< has_panel of the set
   std::uint32_t slots = 0;

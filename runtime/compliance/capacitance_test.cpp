@@ -47,11 +47,7 @@ struct TouchedSet {
   [[nodiscard]] CapacitanceCounts counts(std::uint32_t rows) const {
     SetCounts counts;
     counts.columns = set.count;
-    std::vector<std::uint32_t> last(set.column + (set.count - rows), set.column + set.count);
-    ContactSet columns;
-    columns.column = last.data();
-    columns.columns = rows;
-    count_factor(columns, body.touched, body.cost, body.stored, counts);
+    count_factor({rows, set.column + (set.count - rows)}, body.touched, body.cost, body.stored, counts);
     CapacitanceCounts result = capacitance_counts(body.counts, counts);
     result.rows = rows;
     return result;
@@ -59,7 +55,7 @@ struct TouchedSet {
 
   Body& body;
   std::vector<std::uint32_t> column;
-  CapacitanceColumns set{};
+  ColumnSet set{};
 };
 
 // worst difference over the largest entry of row node `j`, up to the diagonal; entry(r, k): of its row r and column k

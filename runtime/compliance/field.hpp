@@ -6,7 +6,9 @@
 #include "runtime/compliance/base_columns.hpp"
 #include "runtime/compliance/column_blocks.hpp"
 #include "runtime/compliance/mirrored_couplings.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
+#include "runtime/wavelet/force_transform.hpp"
+#include "runtime/wavelet/reach.hpp"
+#include "runtime/wavelet/refinement.hpp"
 #include "runtime/wavelet/wavelet.hpp"
 
 namespace greenloop {

@@ -4,7 +4,9 @@
 
 #include "runtime/algebra/float4.hpp"
 #include "runtime/memory/arena.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
+#include "runtime/wavelet/force_transform.hpp"
+#include "runtime/wavelet/reach.hpp"
+#include "runtime/wavelet/refinement.hpp"
 
 namespace greenloop {
 

@@ -5,7 +5,8 @@
 #include "formats/view.hpp"
 #include "runtime/compliance/base_columns.hpp"
 #include "runtime/memory/arena.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
+#include "runtime/wavelet/reach.hpp"
+#include "runtime/wavelet/refinement.hpp"
 
 namespace greenloop {
 

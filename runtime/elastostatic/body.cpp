@@ -104,6 +104,7 @@ float largest_force_sum(const ModelView& view, const Lifting& lifting) {
 
 // what is written once, at the start
 struct Tables {
+  ModelView* view = nullptr;
   RefinementTables refinement;
   ColumnCost* cost[layout::max_levels] = {};
   PredictionOffsets offsets;
@@ -114,6 +115,7 @@ struct Tables {
 };
 
 void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
+  tables.view = arena.take<ModelView>(1);
   tables.refinement.carve(arena, view);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     tables.cost[c] = arena.take<ColumnCost>(domain_up_to(view, c));
@@ -126,14 +128,6 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.mirrored.carve(arena, view, tables.base.columns());
   tables.read = arena.take<std::uint8_t>(view.domain_count);
   tables.field_blocks = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels);
-}
-
-void carve_set(Arena& arena, const ModelView& view, std::uint32_t contacts, ContactSet& set) {
-  set.column = arena.take<std::uint32_t>(contacts);
-  set.sorting = arena.take<std::uint32_t>(contacts);
-  set.members = arena.take<std::uint32_t>(contacts);
-  set.place = arena.take<std::uint32_t>(contacts);
-  set.index_of_place = arena.take<std::uint32_t>(view.domain_count);
 }
 
 void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch& scratch) {
@@ -163,17 +157,22 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   }
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
-  carve_set(arena, view, sizes.counts.max_contacts, body.set);
+  body.resolution.carve(arena, sizes.counts.max_contacts, view.domain_count);
+  body.planned.carve(arena, sizes.counts.max_contacts);
+  body.other.carve(arena, sizes.counts.max_contacts);
   body.touched.carve(arena, view);
   carve_capacitance(arena, view, sizes, body.capacitance);
-  body.update.carve(arena, sizes.set_columns);
-  body.column_force = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
+  body.factoring.carve(arena, sizes.set_columns);
+  body.column_force = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
+  body.other_column_force = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
+  body.older_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
   body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
-  body.pending.carve(arena, view, sizes.set_columns);
+  body.job.carve(arena, view, sizes.set_columns);
   body.mixture.carve(arena, sizes.counts.max_contacts);
-  body.glide.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.glide_cycles);
+  body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
+  body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);
 }
 
 void count_stored(const ModelView& view, std::uint32_t* stored) {
@@ -203,9 +202,9 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
   tables.refinement.fill(view);
   list_node_facts(view, body.facts);
   count_stored(view, body.stored);
-  fill_costs(view, tables, body.set.index_of_place, body);
+  fill_costs(view, tables, body.resolution.index_of_place, body);
   for (std::uint32_t j = 0; j < view.domain_count; ++j) {
-    body.set.index_of_place[j] = layout::none;
+    body.resolution.index_of_place[j] = layout::none;
     body.capacitance.slot[j] = layout::none;
   }
 }
@@ -234,12 +233,13 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   }
   Body& body = *new (memory) Body;
   carve(arena, view, sizes, body, tables);
-  body.view = &view;
+  *tables.view = view;
+  body.view = tables.view;
   body.counts = sizes.counts;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     body.cost.level[q] = tables.cost[q];
   }
-  body.refinement = tables.refinement.refinement(view, body.lifting);
+  body.refinement = tables.refinement.refinement(*body.view, body.lifting);
   fill_tables(view, tables, body);
   if (!body.counts.forces_only) {
     prepare_fields(view, tables, body);

@@ -10,21 +10,21 @@
 #include "runtime/compliance/mirrored_couplings.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
+#include "runtime/elastostatic/last_answer.hpp"
 #include "runtime/elastostatic/mixture.hpp"
 #include "runtime/elastostatic/requirement.hpp"
-#include "runtime/elastostatic/step_work.hpp"
 #include "runtime/factor/factor_cache.hpp"
-#include "runtime/factor/factor_update.hpp"
-#include "runtime/factor/pending_factor.hpp"
+#include "runtime/factor/factor_job.hpp"
 #include "runtime/memory/arena.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
+#include "runtime/wavelet/reach.hpp"
+#include "runtime/wavelet/refinement.hpp"
 #include "runtime/wavelet/wavelet.hpp"
 
 namespace greenloop {
 
 /// Everything that a body keeps in its arena.
 struct Body {
-  const ModelView* view = nullptr;
+  const ModelView* view = nullptr;  ///< its own
   ModelCounts counts;
   std::uint64_t least_work = 0;
   float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
@@ -40,26 +40,34 @@ struct Body {
   std::uint32_t* stored = nullptr;  ///< [domain] blocks of all layers in a coefficient's column
   ColumnCosts cost;
   NodeFacts* facts = nullptr;  ///< [node_count]
-  ContactSet set;
-  Touched touched;  ///< by the set
+  ResolutionScratch resolution;
+  ContactSet planned;  ///< the set that a step is answered with
+  ContactSet other;    ///< the same contacts on the level before, and then on the one that is prepared
+  Touched touched;     ///< by the planned set
   CapacitanceScratch capacitance;
   FactorChanges changes;  ///< what tells the nearest cached factor from the planned set
-  FactorUpdateScratch update;
-  Float4* column_force = nullptr;  ///< displacements, then forces of the set's columns
-  Float4* solution = nullptr;      ///< the same in the order of a factor
-  Float4* force = nullptr;         ///< [domain], zero between steps
+  FactorScratch factoring;
+  Float4* solution = nullptr;     ///< of a set's columns in the order of its factor
+  float* column_force = nullptr;  ///< [3 * columns] of the planned set
+  float* other_column_force = nullptr;
+  float* older_force = nullptr;  ///< [3 * contacts] by the level before
+  Float4* force = nullptr;       ///< [domain], zero between steps
   FactorCache cache;
-  PendingFactor pending;
+  FactorJob job;  ///< the factor of a finer level
+  LastAnswer last;
   Glide glide;
   Mixture mixture;
   const std::byte* last_red_zone = nullptr;
 
+  [[nodiscard]] FactorTools factor_tools() {
+    return {counts, refinement, cost, stored, cache, capacitance, factoring, force, resolution.index_of_place};
+  }
   [[nodiscard]] FieldModel field_model() const { return {refinement, mirrored, base, offsets, block_sums, add_tiles}; }
   [[nodiscard]] FieldScratch field_scratch() const { return {force, field_sums}; }
 };
 
-/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. `view` must outlive
-/// the body. Start-up; linear in the model's nodes and, for every level, its blocks.
+/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. The bytes that
+/// `view` points to must outlive the body. Start-up; linear in the model's nodes and, for every level, its blocks.
 Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept;
 
 }  // namespace greenloop

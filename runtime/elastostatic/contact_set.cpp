@@ -8,17 +8,19 @@
 namespace greenloop {
 namespace {
 
-bool finite(const Contact& contact) {
-  return std::isfinite(contact.displacement[0]) && std::isfinite(contact.displacement[1]) &&
-         std::isfinite(contact.displacement[2]);
+bool finite(const Constraint& contact) {
+  return std::isfinite(contact.value[0]) && std::isfinite(contact.value[1]) && std::isfinite(contact.value[2]);
 }
 
-Status check_contact(const Contact& contact, std::uint32_t node_count, const NodeFacts* facts) {
+Status check_contact(const Constraint& contact, std::uint32_t node_count, const NodeFacts* facts) {
   if (contact.node >= node_count) {
     return Status::held_out_of_range;
   }
   if (!facts[contact.node].touchable) {
     return Status::held_not_touchable;
+  }
+  if (contact.kind != Constraint::Kind::hold) {
+    return Status::held_unsupported;
   }
   if (!finite(contact)) {
     return Status::held_not_finite;
@@ -38,7 +40,8 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
   }
 }
 
-CheckedContacts check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept {
+CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count,
+                               NodeFacts* facts) noexcept {
   CheckedContacts result;
   std::size_t checked = 0;
   for (; checked < contacts.size(); ++checked) {
@@ -55,6 +58,17 @@ CheckedContacts check_contacts(std::span<const Contact> contacts, std::uint32_t 
   return result;
 }
 
+void ContactSet::carve(Arena& arena, std::uint32_t contacts) noexcept {
+  column = arena.take<std::uint32_t>(contacts);
+  place = arena.take<std::uint32_t>(contacts);
+  members = arena.take<std::uint32_t>(contacts);
+}
+
+void ResolutionScratch::carve(Arena& arena, std::uint32_t contacts, std::uint64_t domain) noexcept {
+  sorting = arena.take<std::uint32_t>(contacts);
+  index_of_place = arena.take<std::uint32_t>(domain);
+}
+
 std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node,
                         std::uint32_t level) noexcept {
   const std::uint32_t mesh_level = facts[node].mesh_level;
@@ -63,41 +77,41 @@ std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint
   return make_column(level, domain_place(view, facts[representative].mesh_level, representative));
 }
 
-void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
-                      const Resolution& resolution, ContactSet& set) noexcept {
+void resolve_contacts(std::span<const Constraint> contacts, const ModelView& view, const NodeFacts* facts,
+                      const Resolution& resolution, ResolutionScratch& scratch, ContactSet& set) noexcept {
   set.columns = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool fine = resolution.fine != nullptr && resolution.fine[i];
     const std::uint32_t column = column_of(view, facts, contacts[i].node, fine ? view.levels - 1 : resolution.level);
     set.place[i] = column_place(column);
-    std::uint32_t& index = set.index_of_place[column_place(column)];
+    std::uint32_t& index = scratch.index_of_place[column_place(column)];
     if (index == layout::none) {
       index = 0;
       set.column[set.columns++] = column;
     }
   }
-  merge_sort(set.columns, set.column, set.sorting, [](std::uint32_t a, std::uint32_t b) { return a < b; });
+  merge_sort(set.columns, set.column, scratch.sorting, [](std::uint32_t a, std::uint32_t b) { return a < b; });
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    set.index_of_place[column_place(set.column[k])] = k;
+    scratch.index_of_place[column_place(set.column[k])] = k;
     set.members[k] = 0;
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    set.place[i] = set.index_of_place[set.place[i]];
+    set.place[i] = scratch.index_of_place[set.place[i]];
     ++set.members[set.place[i]];
   }
   for (std::uint32_t k = 0; k < set.columns; ++k) {
-    set.index_of_place[column_place(set.column[k])] = layout::none;
+    scratch.index_of_place[column_place(set.column[k])] = layout::none;
   }
 }
 
-void average_displacements(std::span<const Contact> contacts, const ContactSet& set, float* displacement) noexcept {
+void average_displacements(std::span<const Constraint> contacts, const ContactSet& set, float* displacement) noexcept {
   for (std::uint32_t k = 0; k < 3 * set.columns; ++k) {
     displacement[k] = 0;
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     float* sum = displacement + std::size_t{3} * set.place[i];
     for (std::uint32_t r = 0; r < 3; ++r) {
-      sum[r] += contacts[i].displacement[r];
+      sum[r] += contacts[i].value[r];
     }
   }
   for (std::uint32_t k = 0; k < set.columns; ++k) {

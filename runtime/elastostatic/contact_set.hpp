@@ -6,7 +6,9 @@
 
 #include "formats/view.hpp"
 #include "runtime/algebra/merge_sort.hpp"
-#include "runtime/elastostatic.hpp"
+#include "runtime/constraint.hpp"
+#include "runtime/loop.hpp"
+#include "runtime/memory/arena.hpp"
 #include "runtime/wavelet/column.hpp"
 
 namespace greenloop {
@@ -25,14 +27,15 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept;
 /// What check_contacts finds: the first fault and the contact that has it, by its place among them.
 struct CheckedContacts {
   Status status = Status::ok;
-  std::uint32_t refused = StepReport::no_contact;
+  std::uint32_t refused = StepReport::no_constraint;
 };
 
 /// Work units of check_contacts.
 constexpr std::uint64_t check_contacts_work(std::uint64_t contacts) { return 4 * contacts; }
 
 /// Refuses contacts that are out of range, not touchable, not finite or named twice; the first at fault decides.
-CheckedContacts check_contacts(std::span<const Contact> contacts, std::uint32_t node_count, NodeFacts* facts) noexcept;
+CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count,
+                               NodeFacts* facts) noexcept;
 
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;
@@ -52,16 +55,33 @@ struct Resolution {
 /// The contacts of a step as columns: the nodes, of one constraint level or of two, that stand for them. Contacts that
 /// share a column are merged.
 struct ContactSet {
-  std::uint32_t columns = 0;                ///< columns that hold them
-  std::uint32_t* column = nullptr;          ///< [columns] increasing, of distinct places
-  std::uint32_t* place = nullptr;           ///< [contacts] of each contact's column in `column`
-  std::uint32_t* members = nullptr;         ///< [columns] contacts merged into it
-  std::uint32_t* sorting = nullptr;         ///< [contacts] scratch
-  std::uint32_t* index_of_place = nullptr;  ///< [domain] scratch, `layout::none` between calls
+  std::uint32_t columns = 0;         ///< columns that hold them
+  std::uint32_t* column = nullptr;   ///< [columns] increasing, of distinct places
+  std::uint32_t* place = nullptr;    ///< [contacts] of each contact's column in `column`
+  std::uint32_t* members = nullptr;  ///< [columns] contacts merged into it
+
+  /// Arrays out of `arena`; null while it counts.
+  void carve(Arena& arena, std::uint32_t contacts) noexcept;
+
+  [[nodiscard]] ColumnSet all() const noexcept { return {columns, column}; }
+
+  /// Constraint level of a contact.
+  [[nodiscard]] std::uint32_t level_of(std::size_t contact) const noexcept {
+    return column_level(column[place[contact]]);
+  }
 
   /// Constraint levels of its columns; of a set that has some.
   [[nodiscard]] std::uint32_t coarsest() const noexcept { return column_level(column[0]); }
   [[nodiscard]] std::uint32_t finest() const noexcept { return column_level(column[columns - 1]); }
+};
+
+/// What contacts are resolved with.
+struct ResolutionScratch {
+  std::uint32_t* sorting = nullptr;         ///< [contacts]
+  std::uint32_t* index_of_place = nullptr;  ///< [domain], `layout::none` between calls
+
+  /// Arrays out of `arena`; null while it counts.
+  void carve(Arena& arena, std::uint32_t contacts, std::uint64_t domain) noexcept;
 };
 
 /// Bound of the work units of resolve_contacts: linear but for a merge sort.
@@ -75,14 +95,14 @@ constexpr std::uint64_t resolve_contacts_work(std::uint64_t contacts) {
 
 /// Resolves checked contacts at levels that have representatives. Of contacts that share a representative all or none
 /// are fine: then no place has two columns, since a node that can be held stands for itself on every level of its own.
-void resolve_contacts(std::span<const Contact> contacts, const ModelView& view, const NodeFacts* facts,
-                      const Resolution& resolution, ContactSet& set) noexcept;
+void resolve_contacts(std::span<const Constraint> contacts, const ModelView& view, const NodeFacts* facts,
+                      const Resolution& resolution, ResolutionScratch& scratch, ContactSet& set) noexcept;
 
 /// Work units of average_displacements and of share_forces.
 constexpr std::uint64_t merge_work(std::uint64_t contacts, std::uint64_t columns) { return 6 * (contacts + columns); }
 
 /// displacement[3 * columns]: mean over each column's contacts.
-void average_displacements(std::span<const Contact> contacts, const ContactSet& set, float* displacement) noexcept;
+void average_displacements(std::span<const Constraint> contacts, const ContactSet& set, float* displacement) noexcept;
 
 /// contact_force[3 * contacts]: each column's force in equal parts, so that the total is kept.
 void share_forces(const float* column_force, std::size_t contacts, const ContactSet& set,

@@ -25,11 +25,12 @@ struct Memory {
     set.column = column.data();
     set.place = place.data();
     set.members = members.data();
-    set.sorting = sorting.data();
-    set.index_of_place = index_of_place.data();
+    scratch.sorting = sorting.data();
+    scratch.index_of_place = index_of_place.data();
   }
   std::vector<NodeFacts> facts;
   std::vector<std::uint32_t> column, place, members, sorting, index_of_place;
+  ResolutionScratch scratch;
   ContactSet set;
 };
 
@@ -40,7 +41,7 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
   std::mt19937_64 random(4);
   for (int trial = 0; trial < 50; ++trial) {
     std::shuffle(nodes.begin(), nodes.end(), random);
-    std::vector<Contact> contacts;
+    std::vector<Constraint> contacts;
     const std::size_t touched = 1 + random() % 40;
     for (std::size_t i = 0; i < touched; ++i) {
       contacts.push_back({nodes[i], {static_cast<float>(i), 1.0F, -2.0F}});
@@ -48,7 +49,7 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
     Memory memory(view, contacts.size());
     REQUIRE(check_contacts(contacts, view.node_count, memory.facts.data()).status == Status::ok);
     for (std::uint32_t c = 0; c < 4; ++c) {
-      resolve_contacts(contacts, view, memory.facts.data(), {c}, memory.set);
+      resolve_contacts(contacts, view, memory.facts.data(), {c}, memory.scratch, memory.set);
       const ContactSet& set = memory.set;
       REQUIRE(set.columns <= contacts.size());
       CHECK(std::adjacent_find(set.column, set.column + set.columns, std::greater_equal<>()) ==
@@ -66,7 +67,7 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
         const std::uint32_t q = memory.facts[contacts[i].node].mesh_level;
         const std::uint32_t node = view.representatives[c][q][contacts[i].node - view.level[q].node_begin];
         CHECK(set.column[set.place[i]] == make_column(c, domain_place(view, node)));
-        sum[set.place[i]] += contacts[i].displacement[0];
+        sum[set.place[i]] += contacts[i].value[0];
         ++count[set.place[i]];
         for (std::size_t r = 0; r < 3; ++r) {
           total[std::size_t{3} * set.place[i] + r] += shared[3 * i + r];
@@ -88,10 +89,10 @@ TEST_CASE("each fault of a contact has its name, and the check leaves no trace")
   const TestModel model({.levels = 3});
   const ModelView& view = model.view();
   Memory memory(view, 4);
-  const auto check = [&](std::vector<Contact> contacts) {
+  const auto check = [&](std::vector<Constraint> contacts) {
     const CheckedContacts checked = check_contacts(contacts, view.node_count, memory.facts.data());
     CHECK(std::all_of(memory.facts.begin(), memory.facts.end(), [](const NodeFacts& f) { return !f.marked; }));
-    CHECK((checked.refused == StepReport::no_contact) == (checked.status == Status::ok));
+    CHECK((checked.refused == StepReport::no_constraint) == (checked.status == Status::ok));
     return checked.status;
   };
   const auto nodes = model.touchable();
@@ -99,7 +100,7 @@ TEST_CASE("each fault of a contact has its name, and the check leaves no trace")
   while (std::find(nodes.begin(), nodes.end(), untouchable) != nodes.end()) {
     ++untouchable;
   }
-  const Contact good{nodes[0], {1, 2, 3}};
+  const Constraint good{nodes[0], {1, 2, 3}};
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   CHECK(check({good, {nodes[1], {}}}) == Status::ok);
@@ -115,8 +116,8 @@ TEST_CASE("each fault of a contact has its name, and the check leaves no trace")
 TEST_CASE("displacements far below the size of an atom count as none") {
   const TestModel model({.levels = 1});
   Memory memory(model.view(), 1);
-  const std::vector<Contact> contacts = {{model.touchable()[0], {1e-40F, -1e-26F, 1e-20F}}};
-  resolve_contacts(contacts, model.view(), memory.facts.data(), {0}, memory.set);
+  const std::vector<Constraint> contacts = {{model.touchable()[0], {1e-40F, -1e-26F, 1e-20F}}};
+  resolve_contacts(contacts, model.view(), memory.facts.data(), {0}, memory.scratch, memory.set);
   float mean[3];
   average_displacements(contacts, memory.set, mean);
   CHECK(mean[0] == 0);

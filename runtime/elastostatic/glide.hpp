@@ -4,8 +4,8 @@
 #include <span>
 
 #include "formats/layout.hpp"
-#include "runtime/elastostatic.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
+#include "runtime/elastostatic/last_answer.hpp"
 #include "runtime/memory/arena.hpp"
 
 namespace greenloop {
@@ -13,8 +13,8 @@ namespace greenloop {
 /// What a step's report says about a change of level.
 struct GlideReport {
   float share = 1;
-  float difference = 0;    ///< N
-  double switch_work = 0;  ///< J
+  float difference = 0;  ///< N
+  double work = 0;       ///< J, as of StepDetails::switch_work
 };
 
 /// Leads the forces from one constraint level, or mixture of levels, to another in equal parts of their difference.
@@ -27,66 +27,41 @@ struct GlideReport {
 class Glide {
  public:
   /// Arrays out of `arena`; null while it counts. cycles: of a whole glide, at least 1; with 1 there is none.
-  void carve(Arena& arena, std::uint32_t contacts, std::uint64_t nodes, std::uint32_t cycles) noexcept;
+  void carve(Arena& arena, std::uint32_t contacts, std::uint32_t cycles) noexcept;
 
   /// Takes this step's contacts as they are resolved. For the loop; work: within blend's.
-  void advance(std::span<const Contact> contacts, const ContactSet& set) noexcept;
+  void advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept;
 
   /// Whether the forces of `older_level` are wanted.
   [[nodiscard]] bool follows() const noexcept { return moving_ && !kept_ && cycles_ > 1 && from_ != mixed; }
   [[nodiscard]] std::uint32_t older_level() const noexcept { return from_; }
 
-  /// Work units of advance and blend.
+  /// Work units of advance and blend, and of LastAnswer::remember.
   static constexpr std::uint64_t blend_work(std::uint64_t contacts) { return 32 * contacts; }
 
   /// force: [3 * contacts] of the newer level, becomes the answer. older: of the older level, or null: they are not
   /// known. For the loop.
-  GlideReport blend(std::span<const Contact> contacts, const float* older, float* force) noexcept;
-
-  /// Whether most contacts are those of the last answer. For the loop; work: a unit a contact.
-  [[nodiscard]] bool persists(std::span<const Contact> contacts) const noexcept;
-
-  /// Whether all are, and no other. For the loop; work: a unit a contact.
-  [[nodiscard]] bool stays(std::span<const Contact> contacts) const noexcept;
+  GlideReport blend(std::span<const Constraint> contacts, const LastAnswer& last, const float* older,
+                    float* force) noexcept;
 
   /// Whether the last answer was not of one level, or mixture, alone.
   [[nodiscard]] bool under_way() const noexcept { return left_ > 0; }
 
-  /// [3] of a node in the last answer, N; null if it was not held. For the loop; work: a unit.
-  [[nodiscard]] const float* last_force(std::uint32_t node) const noexcept;
-
-  /// No contact is held: the next ones have nothing to glide from.
-  void release() noexcept { contacts_ = 0; }
-
-  /// [3 * contacts] for the caller: forces of the older level.
-  [[nodiscard]] float* older_force() const noexcept { return older_force_; }
-
  private:
   static constexpr std::uint32_t mixed = layout::max_levels;  // for a level
 
-  [[nodiscard]] std::uint32_t last_place(std::uint32_t node) const noexcept;
-  [[nodiscard]] std::size_t common(std::span<const Contact> contacts) const noexcept;
-  [[nodiscard]] bool moves(std::span<const Contact> contacts) const noexcept;
-  void turn_back() noexcept;
-  void remember(std::span<const Contact> contacts, const float* force) noexcept;
+  void turn_back(std::uint32_t contacts) noexcept;
 
   std::uint32_t cycles_ = 1;
   std::uint32_t left_ = 0;  ///< cycles until the newer level stands alone
   std::uint32_t from_ = 0;
   std::uint32_t to_ = 0;
-  bool moving_ = false;                 ///< this step's share differs from that of the last
-  bool fresh_ = false;                  ///< this step begins a glide
-  bool kept_ = false;                   ///< the difference is kept, not computed
-  float kept_weight_ = 0;               ///< of a kept difference in the last answer
-  std::uint32_t contacts_ = 0;          ///< of the last answer
-  std::uint32_t* node_ = nullptr;       ///< [contacts]
-  std::uint32_t* place_ = nullptr;      ///< [nodes] in node_, of those that are there
-  std::uint8_t* level_ = nullptr;       ///< [contacts]
-  std::uint8_t* next_level_ = nullptr;  ///< [contacts] of this step
-  float* force_ = nullptr;              ///< [3 * contacts]
-  float* difference_ = nullptr;         ///< [3 * contacts]
-  float* next_difference_ = nullptr;    ///< [3 * contacts] scratch
-  float* older_force_ = nullptr;
+  bool moving_ = false;               ///< this step's share differs from that of the last
+  bool fresh_ = false;                ///< this step begins a glide
+  bool kept_ = false;                 ///< the difference is kept, not computed
+  float kept_weight_ = 0;             ///< of a kept difference in the last answer
+  float* difference_ = nullptr;       ///< [3 * contacts] by place in the last answer
+  float* next_difference_ = nullptr;  ///< [3 * contacts] scratch
 };
 
 }  // namespace greenloop

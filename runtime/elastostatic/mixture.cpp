@@ -7,12 +7,12 @@ namespace greenloop {
 namespace {
 
 // square of the force of a group in the last answer
-float square_force(std::span<const Contact> contacts, std::span<const std::uint32_t> group, const Glide& last) {
+float square_force(std::span<const Constraint> contacts, std::span<const std::uint32_t> group, const LastAnswer& last) {
   float force[3] = {};
   for (const std::uint32_t i : group) {
-    const float* const of_node = last.last_force(contacts[i].node);
-    for (std::uint32_t r = 0; of_node != nullptr && r < 3; ++r) {
-      force[r] += of_node[r];
+    const std::uint32_t place = last.place(contacts[i].node);
+    for (std::uint32_t r = 0; place != layout::none && r < 3; ++r) {
+      force[r] += last.force(place)[r];
     }
   }
   return force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
@@ -45,8 +45,8 @@ void Mixture::list_members(const ContactSet& set, std::size_t contacts) noexcept
   begin_[0] = 0;
 }
 
-void Mixture::rank(std::span<const Contact> contacts, const ContactSet& set, const NodeFacts* facts,
-                   const Glide& last) noexcept {
+void Mixture::rank(std::span<const Constraint> contacts, const ContactSet& set, const NodeFacts* facts,
+                   const LastAnswer& last) noexcept {
   groups_ = set.columns;
   std::memset(fine_, 0, contacts.size());
   std::memcpy(column_, set.column, sizeof(std::uint32_t) * groups_);
@@ -66,7 +66,7 @@ void Mixture::choose(std::uint32_t g) noexcept {
   }
 }
 
-void Mixture::remember(bool answered, std::uint32_t level, std::span<const Contact> contacts,
+void Mixture::remember(bool answered, std::uint32_t level, std::span<const Constraint> contacts,
                        NodeFacts* facts) noexcept {
   last_level_ = level;
   for (std::uint32_t k = 0; k < last_; ++k) {

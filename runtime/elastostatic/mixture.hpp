@@ -4,7 +4,7 @@
 #include <span>
 
 #include "runtime/elastostatic/contact_set.hpp"
-#include "runtime/elastostatic/glide.hpp"
+#include "runtime/elastostatic/last_answer.hpp"
 #include "runtime/memory/arena.hpp"
 
 namespace greenloop {
@@ -24,8 +24,8 @@ class Mixture {
 
   /// Ranks the groups of a set of one constraint level; none is chosen. last: knows the last answer. For the loop;
   /// work: within choose_work.
-  void rank(std::span<const Contact> contacts, const ContactSet& set, const NodeFacts* facts,
-            const Glide& last) noexcept;
+  void rank(std::span<const Constraint> contacts, const ContactSet& set, const NodeFacts* facts,
+            const LastAnswer& last) noexcept;
 
   [[nodiscard]] std::uint32_t groups() const noexcept { return groups_; }
 
@@ -46,7 +46,7 @@ class Mixture {
 
   /// Marks the nodes of the chosen groups of a level, or none, in place of those of the last choice. For the loop;
   /// work: within choose_work.
-  void remember(bool answered, std::uint32_t level, std::span<const Contact> contacts, NodeFacts* facts) noexcept;
+  void remember(bool answered, std::uint32_t level, std::span<const Constraint> contacts, NodeFacts* facts) noexcept;
 
   /// Whether there was a last choice.
   [[nodiscard]] bool has_last() const noexcept { return last_ > 0; }

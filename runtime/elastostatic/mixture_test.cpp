@@ -32,9 +32,9 @@ std::vector<char> random_choice(const ContactSet& set, std::size_t contacts, std
 }
 
 // forces of contacts as they are resolved, by a fresh factor; none if that is not positive definite
-std::vector<float> solve(Body& body, const std::vector<Contact>& contacts, const Resolution& resolution) {
-  ContactSet& set = body.set;
-  resolve_contacts(contacts, *body.view, body.facts, resolution, set);
+std::vector<float> solve(Body& body, const std::vector<Constraint>& contacts, const Resolution& resolution) {
+  ContactSet& set = body.planned;
+  resolve_contacts(contacts, *body.view, body.facts, resolution, body.resolution, set);
   clear(body.touched);
   touch(body.refinement, set.column, set.columns, body.touched);
   const std::uint32_t stride = body.cache.stride();
@@ -63,12 +63,12 @@ TEST_CASE("every mixture of a level and the finest is positive definite and agre
       auto contacts = patch(model, random() % 100, 10 + random() % 31);
       std::shuffle(contacts.begin(), contacts.end(), random);
       const std::uint32_t c = static_cast<std::uint32_t>(trial) % 3;
-      resolve_contacts(contacts, model.view(), body.facts, {c}, body.set);
-      const std::vector<char> choice = random_choice(body.set, contacts.size(), random);
+      resolve_contacts(contacts, model.view(), body.facts, {c}, body.resolution, body.planned);
+      const std::vector<char> choice = random_choice(body.planned, contacts.size(), random);
       const Resolution resolution{c, reinterpret_cast<const bool*>(choice.data())};
       const std::vector<float> force = solve(body, contacts, resolution);
       REQUIRE(force.size() == 3 * contacts.size());
-      CHECK(std::is_sorted(body.set.column, body.set.column + body.set.columns));
+      CHECK(std::is_sorted(body.planned.column, body.planned.column + body.planned.columns));
       const DenseAnswer dense = solve_dense(model.view(), reference, resolution, contacts);
       const Eigen::Map<const Eigen::VectorXf> computed(force.data(), dense.force.size());
       const double error = (computed.cast<double>() - dense.force).cwiseAbs().maxCoeff();
@@ -83,25 +83,24 @@ TEST_CASE(
   const PlacedBody placed(model.view(), 40);
   Body& body = *placed.body;
   const auto contacts = patch(model, 20, 40);
-  resolve_contacts(contacts, model.view(), body.facts, {1}, body.set);
-  REQUIRE(body.set.columns >= 4);
+  resolve_contacts(contacts, model.view(), body.facts, {1}, body.resolution, body.planned);
+  REQUIRE(body.planned.columns >= 4);
   std::vector<float> force(3 * contacts.size());
   const auto rank_after = [&](auto force_of_group) {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const std::uint32_t k = body.set.place[i];
-      force[3 * i] = force_of_group(k) / static_cast<float>(body.set.members[k]);
+      const std::uint32_t k = body.planned.place[i];
+      force[3 * i] = force_of_group(k) / static_cast<float>(body.planned.members[k]);
     }
-    body.glide.advance(contacts, body.set);
-    body.glide.blend(contacts, nullptr, force.data());
-    body.mixture.rank(contacts, body.set, body.facts, body.glide);
+    body.last.remember(contacts, body.planned, force.data());
+    body.mixture.rank(contacts, body.planned, body.facts, body.last);
     std::vector<std::uint32_t> columns;
     for (std::uint32_t g = 0; g < body.mixture.groups(); ++g) {
       columns.push_back(body.mixture.column(g));
     }
     return columns;
   };
-  const std::uint32_t n = body.set.columns;
-  const std::vector<std::uint32_t> increasing(body.set.column, body.set.column + n);
+  const std::uint32_t n = body.planned.columns;
+  const std::vector<std::uint32_t> increasing(body.planned.column, body.planned.column + n);
   CHECK(rank_after([&](std::uint32_t k) { return static_cast<float>(n - k); }) == increasing);
   std::vector<std::uint32_t> last_first = increasing;
   std::rotate(last_first.begin(), last_first.end() - 1, last_first.end());
@@ -127,7 +126,7 @@ double distance(std::span<const float> a, std::span<const float> b) {
 }
 
 // the touchable nodes next to one, displaced by a linear function of their places
-std::vector<Contact> smooth_patch(const TestModel& model, std::size_t first, std::size_t count) {
+std::vector<Constraint> smooth_patch(const TestModel& model, std::size_t first, std::size_t count) {
   const auto nodes = model.touchable();
   const auto position = [&](std::uint32_t node) {
     return Eigen::Vector3f(Eigen::Map<const Eigen::Vector3f>(node_record(model.view(), node).position));
@@ -138,7 +137,7 @@ std::vector<Contact> smooth_patch(const TestModel& model, std::size_t first, std
     near.emplace_back((position(node) - centre).norm(), node);
   }
   std::sort(near.begin(), near.end());
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3f x = (position(near[i].second) - centre) / near[count].first;
     contacts.push_back({near[i].second, {1e-4F * (1 - x[1]), 1e-4F * (x[0] + x[2] / 2), -2e-4F + 5e-5F * x[1]}});
@@ -158,9 +157,9 @@ double order_error(const TestModel& model, Body& body, bool smooth, double part,
     const auto contacts = smooth ? smooth_patch(model, first, 40) : patch(model, first, 40);
     const std::vector<float> exact = solve(body, contacts, {finest});
     const std::vector<float> coarse = solve(body, contacts, {finest - 1});
-    const std::vector<std::uint32_t> place(body.set.place, body.set.place + contacts.size());
-    std::vector<std::vector<std::size_t>> groups(body.set.columns);
-    std::vector<Eigen::Vector3f> force(body.set.columns, Eigen::Vector3f::Zero());
+    const std::vector<std::uint32_t> place(body.planned.place, body.planned.place + contacts.size());
+    std::vector<std::vector<std::size_t>> groups(body.planned.columns);
+    std::vector<Eigen::Vector3f> force(body.planned.columns, Eigen::Vector3f::Zero());
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       groups[place[i]].push_back(i);
       force[place[i]] += Eigen::Map<const Eigen::Vector3f>(coarse.data() + 3 * i);
@@ -195,14 +194,14 @@ OrderErrors order_errors(const TestModel& model, bool smooth, double part) {
   const OrderErrors errors{
       error([](const auto&, const auto&, const Eigen::Vector3f& f) { return f.squaredNorm(); }),
       error([&](const auto&, const auto&, const auto&) { return static_cast<double>(random() % 1000); }),
-      error([](const std::vector<Contact>& contacts, const auto& group, const auto&) {
+      error([](const std::vector<Constraint>& contacts, const auto& group, const auto&) {
         Eigen::Vector3f mean = Eigen::Vector3f::Zero();
         double sum = 0;
         for (const std::size_t i : group) {
-          mean += Eigen::Map<const Eigen::Vector3f>(contacts[i].displacement) / static_cast<float>(group.size());
+          mean += Eigen::Map<const Eigen::Vector3f>(contacts[i].value) / static_cast<float>(group.size());
         }
         for (const std::size_t i : group) {
-          sum += (Eigen::Map<const Eigen::Vector3f>(contacts[i].displacement) - mean).squaredNorm();
+          sum += (Eigen::Map<const Eigen::Vector3f>(contacts[i].value) - mean).squaredNorm();
         }
         return sum;
       })};
@@ -224,10 +223,10 @@ TEST_CASE("large forces come first: where displacements are smooth, chance and d
 }
 
 // whether the forces of a mixed step are those of a fresh factor of its set
-bool agrees(const Body& body, const StepReport& report, const std::vector<Contact>& contacts,
+bool agrees(const Body& body, const Elastostatic::StepReport& report, const std::vector<Constraint>& contacts,
             std::span<const float> force, Body& other) {
   std::vector<char> fine;
-  for (const Contact& contact : contacts) {
+  for (const Constraint& contact : contacts) {
     fine.push_back(static_cast<char>(body.facts[contact.node].fine));
   }
   const Resolution resolution{report.constraint_level, reinterpret_cast<const bool*>(fine.data())};
@@ -244,23 +243,25 @@ struct Slide {
 
 // a patch that moves on by a node in every step
 Slide slide(const TestModel& model, std::uint64_t budget, std::uint64_t refining_work, std::uint32_t steps) {
-  const Limits limits{.max_contacts = 32, .refining_work = refining_work};
+  const Elastostatic::Limits limits{.max_contacts = 32, .refining_work = refining_work};
   TestBody body(model, limits), exact(model, {.max_contacts = 32, .glide_cycles = 1});
   const std::uint32_t finest = model.view().levels - 1;
   Slide result;
   for (std::uint32_t step = 0; step < steps; ++step) {
     const auto contacts = patch(model, step, 32);
     REQUIRE(exact.step(contacts, any_budget).status == Status::ok);
-    const StepReport report = body.step(contacts, budget);
-    REQUIRE(report.status <= Status::coarser);
+    const Elastostatic::StepReport report = body.step(contacts, budget);
+    REQUIRE(answered(report.status));
     CHECK(report.work <= budget);
     CHECK(report.work <= body.requirement().worst_work[report.constraint_level]);
-    CHECK((report.finer_level == report.constraint_level) == (report.finer_contacts == contacts.size()));
-    const bool mixed = report.finer_level != report.constraint_level;
-    CHECK((!mixed || (report.finer_level == finest && report.status == Status::coarser)));
+    CHECK((report.details.finer_level == report.constraint_level) ==
+          (report.details.finer_contacts == contacts.size()));
+    const bool mixed = report.details.finer_level != report.constraint_level;
+    CHECK((!mixed || (report.details.finer_level == finest && report.status == Status::coarser)));
     result.mixed += mixed ? 1 : 0;
     result.finest += report.constraint_level == finest ? 1 : 0;
-    result.fine_contacts = mixed ? std::max(result.fine_contacts, report.finer_contacts) : result.fine_contacts;
+    result.fine_contacts =
+        mixed ? std::max<std::uint32_t>(result.fine_contacts, report.details.finer_contacts) : result.fine_contacts;
     result.error += distance(body.force(), exact.force()) / steps;
     result.digest = hash_step(result.digest, report, body.force(), body.field());
   }
@@ -294,10 +295,10 @@ TEST_CASE("a mixed factor that followed its contacts is that of its set") {
   std::uint32_t changed = 0;
   for (std::uint32_t step = 0; step < 40; ++step) {
     const auto contacts = patch(model, step, 32);
-    const StepReport report = stepped.step(contacts, budget);
-    if (report.finer_level > report.constraint_level) {
+    const Elastostatic::StepReport report = stepped.step(contacts, budget);
+    if (report.details.finer_level > report.constraint_level) {
       ++mixed;
-      changed += report.changed_nodes > 0 ? 1 : 0;
+      changed += report.details.changed_nodes > 0 ? 1 : 0;
       CHECK(agrees(body, report, contacts, stepped.force(), *placed.body));
     }
   }
@@ -309,18 +310,18 @@ TEST_CASE("contacts that stay keep their mixture until the factor of the finest 
   const TestModel model({.levels = 5, .touchable_above = 0.3});
   TestBody body(model, {.max_contacts = 32});
   const std::uint64_t budget = TestBody(model, {.max_contacts = 32}).step(patch(model, 0, 32), any_budget).work / 2;
-  StepReport report;
+  Elastostatic::StepReport report;
   std::uint32_t at = 0;
   do {
     REQUIRE(at < 40);
     report = body.step(patch(model, at++, 32), budget);
-  } while (report.finer_level == report.constraint_level);
-  const std::uint32_t fine = report.finer_contacts;
+  } while (report.details.finer_level == report.constraint_level);
+  const std::uint32_t fine = report.details.finer_contacts;
   std::uint32_t stays = 0;
   while ((report = body.step(patch(model, at - 1, 32), budget)).constraint_level < 4) {
     REQUIRE(++stays < 100);
-    CHECK(report.finer_contacts == fine);
-    CHECK(report.cached_factor);
+    CHECK(report.details.finer_contacts == fine);
+    CHECK(report.details.cached_factor);
   }
   MESSAGE("finest level after ", stays, " steps more");
 }

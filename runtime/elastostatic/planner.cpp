@@ -5,7 +5,7 @@ namespace {
 
 // what the planner knows of a step
 struct Task {
-  std::span<const Contact> contacts;
+  std::span<const Constraint> contacts;
   std::uint64_t budget = 0;
   bool wants_field = false;
 };
@@ -19,7 +19,7 @@ std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
 // touches the coefficients of the set
 void touch_set(Body& body, Plan& plan) {
   clear(body.touched);
-  touch(body.refinement, body.set.column, body.set.columns, body.touched);
+  touch(body.refinement, body.planned.column, body.planned.columns, body.touched);
   plan.counts.coefficients = body.touched.coefficients();
   plan.counts.visits = body.touched.visits;
   plan.work += touch_work(plan.counts);
@@ -28,12 +28,12 @@ void touch_set(Body& body, Plan& plan) {
 // resolves the contacts, looks for the factor, and touches the coefficients unless only forces by a cached one are
 // wanted
 void plan_set(Body& body, const Task& task, const Resolution& resolution, Plan& plan) {
-  resolve_contacts(task.contacts, *body.view, body.facts, resolution, body.set);
+  resolve_contacts(task.contacts, *body.view, body.facts, resolution, body.resolution, body.planned);
   plan.resolution = resolution;
   plan.counts = {};
   plan.counts.contacts = task.contacts.size();
-  plan.counts.columns = body.set.columns;
-  plan.cached = body.cache.find(body.set);
+  plan.counts.columns = body.planned.columns;
+  plan.cached = body.cache.find(body.planned.all());
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;
   plan.update = false;
@@ -51,8 +51,8 @@ bool holds_answer(const Task& task, const Plan& plan) {
 
 // chooses how to make the factor of the set
 void choose_factor(Body& body, Plan& plan) {
-  count_factor(body.set, body.touched, body.cost, body.stored, plan.counts);
-  find_changes(body.cache, body.set, body.changes);
+  count_factor(body.planned.all(), body.touched, body.cost, body.stored, plan.counts);
+  find_changes(body.cache, body.planned.all(), body.changes);
   plan.work += find_changes_work(body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
   if (body.changes.base != nullptr) {
@@ -60,7 +60,7 @@ void choose_factor(Body& body, Plan& plan) {
     plan.update = update < plan.factor;
     plan.factor = plan.update ? update : plan.factor;
   }
-  plan.factor += drop_batch_work(body.pending);
+  plan.factor += drop_batch_work(body.job);
 }
 
 // work of the answer that is planned, deciding included
@@ -161,14 +161,14 @@ Choice with_group(const Body& body, const Task& task, std::uint32_t g, Choice ch
 bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   Choice choice;
   choice.set.contacts = task.contacts.size();
-  for (std::uint32_t k = 0; k < body.set.columns; ++k) {
-    choice.add(body, body.set.column[k]);
+  for (std::uint32_t k = 0; k < body.planned.columns; ++k) {
+    choice.add(body, body.planned.column[k]);
   }
   if ((!room.grows && !body.mixture.has_last()) || !holds(body, plan, room, choice)) {
     return false;
   }
   plan.work += Mixture::choose_work(task.contacts.size());
-  body.mixture.rank(task.contacts, body.set, body.facts, body.glide);
+  body.mixture.rank(task.contacts, body.planned, body.facts, body.last);
   bool chosen = false;
   for (std::uint32_t g = 0; g < body.mixture.groups(); ++g) {
     const Choice finer = with_group(body, task, g, choice);
@@ -191,7 +191,7 @@ std::uint64_t least_planning_work(const ModelCounts& model, std::uint64_t contac
 // puts contacts of a coarser set to the finest level if that fits as well
 void refine(Body& body, const Task& task, Plan& plan) {
   // contacts that stay reach the finest level sooner by slices: they keep the mixture that they have
-  const bool contacts_stay = body.glide.stays(task.contacts);
+  const bool contacts_stay = body.last.stays(task.contacts);
   if ((contacts_stay || body.glide.under_way()) && !body.mixture.has_last()) {
     return;
   }
@@ -238,7 +238,7 @@ std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexc
   return Mixture::choose_work(set.contacts) + resolve_work(model, set) + plan_set_work(model, set);
 }
 
-Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field,
+Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, bool wants_field,
                std::uint32_t finest_displaced) noexcept {
   const Task task{contacts, budget, wants_field};
   const std::uint32_t finest = body.counts.levels - 1;
@@ -251,7 +251,8 @@ Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budg
       plan_factor(body, task, plan);
     }
   }
-  if (plan.fits && plan.wanted.exists && plan.wanted.level == finest && body.glide.persists(contacts)) {
+  if (body.counts.mixtures && plan.fits && plan.wanted.exists && plan.wanted.level == finest &&
+      body.last.persists(contacts)) {
     refine(body, task, plan);
   }
   while (!plan.fits && wants_field && plan.field_levels.details > 0) {

@@ -5,12 +5,11 @@
 
 #include "runtime/elastostatic/body.hpp"
 #include "runtime/elastostatic/step_work.hpp"
-#include "runtime/factor/factor_update.hpp"
 
 namespace greenloop {
 
-/// How a step will be answered. Its contacts are resolved in body.set, whose coefficients are touched unless its factor
-/// is cached and no field is wanted.
+/// How a step will be answered. Its contacts are resolved in body.planned, whose coefficients are touched unless its
+/// factor is cached and no field is wanted.
 struct Plan {
   Resolution resolution;
   SetCounts counts;
@@ -46,7 +45,7 @@ struct Plan {
 /// contacts of the level that fits are put there, as many as a factor at hand can take (Mixture). If no level fits, the
 /// coarsest with as many details in the field as fit. finest_displaced: level of the nodes that are displaced. For the
 /// loop; work: Plan::work.
-[[nodiscard]] Plan make_plan(Body& body, std::span<const Contact> contacts, std::uint64_t budget, bool wants_field,
+[[nodiscard]] Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, bool wants_field,
                              std::uint32_t finest_displaced) noexcept;
 
 }  // namespace greenloop

@@ -1,11 +1,9 @@
 #include "runtime/elastostatic/requirement.hpp"
 
 #include "runtime/elastostatic/planner.hpp"
-#include "runtime/factor/factor_update.hpp"
-#include "runtime/factor/pending_factor.hpp"
+#include "runtime/factor/factor_job.hpp"
 #include "runtime/wavelet/domain.hpp"
 #include "runtime/wavelet/point_support.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
 
 namespace greenloop {
 namespace {
@@ -13,7 +11,7 @@ namespace {
 // byte offsets of nodes are kept in 32 bits
 constexpr std::uint32_t most_nodes = 0xffffffff / sizeof(Float4);
 
-void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) {
+void count_model(const ModelView& view, const Elastostatic::Limits& limits, BodySizes& sizes) {
   ModelCounts& counts = sizes.counts;
   counts.levels = view.levels;
   counts.max_contacts = limits.max_contacts;
@@ -22,6 +20,7 @@ void count_model(const ModelView& view, const Limits& limits, BodySizes& sizes) 
   counts.refining_work = limits.refining_work;
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
+  counts.mixtures = limits.mixtures;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
       sizes.most_neighbours[q] = count_lifting(view, q).most_neighbours;
@@ -74,8 +73,8 @@ std::uint64_t fresh_forces_work(const ModelCounts& model, const SetCounts& most,
   return other.dropped + factor_work(model, most) + force_work(most);
 }
 
-void bound_work(const ModelView& view, const Limits& limits, const MostCounts* most_of, const MostCounts* mixed_of,
-                const BodySizes& sizes, Requirement& requirement) {
+void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const MostCounts* most_of,
+                const MostCounts* mixed_of, const BodySizes& sizes, Elastostatic::Requirement& requirement) {
   const ModelCounts& counts = sizes.counts;
   const std::uint32_t finest = view.levels - 1;
   const auto field = [&](const MostCounts& most, std::uint32_t field_level) {
@@ -98,7 +97,7 @@ void bound_work(const ModelView& view, const Limits& limits, const MostCounts* m
     const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
     std::uint64_t answer = forces + field(most_of[c], finest);
     std::uint64_t mixed_factor = 0;
-    if (c < finest) {
+    if (limits.mixtures && c < finest) {
       const SetCounts& mixed = mixed_of[c].set;
       other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
       const std::uint64_t mixed_answer = all_plans + force_work(mixed) + field(mixed_of[c], finest);
@@ -114,12 +113,13 @@ void bound_work(const ModelView& view, const Limits& limits, const MostCounts* m
 
 }  // namespace
 
-bool in_range(const Limits& limits) noexcept {
+bool in_range(const Elastostatic::Limits& limits) noexcept {
   return limits.max_contacts >= 1 && limits.max_contacts <= 4096 && limits.cached_factors >= 1 &&
          limits.cached_factors <= 1024 && limits.glide_cycles >= 1 && limits.glide_cycles <= 256;
 }
 
-void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes, Requirement& requirement) noexcept {
+void measure_body(const ModelView& view, const Elastostatic::Limits& limits, BodySizes& sizes,
+                  Elastostatic::Requirement& requirement) noexcept {
   if (!in_range(limits) || view.node_count > most_nodes) {
     return;
   }

@@ -20,9 +20,10 @@ struct BodySizes {
 };
 
 /// Whether each limit is within the range that Limits states.
-[[nodiscard]] bool in_range(const Limits& limits) noexcept;
+[[nodiscard]] bool in_range(const Elastostatic::Limits& limits) noexcept;
 
 /// Start-up; work: that of bound_reach, count_lifting and count_couplings.
-void measure_body(const ModelView& view, const Limits& limits, BodySizes& sizes, Requirement& requirement) noexcept;
+void measure_body(const ModelView& view, const Elastostatic::Limits& limits, BodySizes& sizes,
+                  Elastostatic::Requirement& requirement) noexcept;
 
 }  // namespace greenloop

@@ -1,6 +1,7 @@
 #include "runtime/elastostatic/step_work.hpp"
 
 #include "runtime/algebra/cholesky.hpp"
+#include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/factor/factor_cache.hpp"
 #include "runtime/wavelet/domain.hpp"
@@ -27,30 +28,6 @@ std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexc
          FactorCache::find_work(model.cached_factors, set.columns);
 }
 
-std::uint64_t touch_work(const SetCounts& set) noexcept {
-  return 2 * set.visits + 8 * set.coefficients + count_field_work(set);
-}
-
-CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
-  return {.prediction = model.prediction,
-          .columns = set.columns,
-          .rows = set.columns,
-          .slots = set.slots,
-          .set_visits = set.visits,
-          .stored = set.stored,
-          .visits = set.column.visits,
-          .coefficients = set.column.coefficients,
-          .blocks = set.column.blocks,
-          .room = model.capacitance_room,
-          .bounds = set.bounds};
-}
-
-std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  const auto order = static_cast<std::uint32_t>(3 * set.columns);
-  return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
-         assemble_capacitance_work(capacitance_counts(model, set)) + cholesky_factor_work(order);
-}
-
 std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept {
   return resolve_contacts_work(contacts) + FactorCache::find_work(model.cached_factors, contacts) +
          solve_work(contacts, contacts);
@@ -64,8 +41,6 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
   return solve_work(set.contacts, set.columns) + Glide::blend_work(set.contacts);
 }
 
-std::uint64_t count_field_work(const SetCounts& set) noexcept { return set.coefficients; }
-
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
   constexpr std::uint64_t coefficient_work = 60;  // its scale, and where its blocks stand
@@ -76,21 +51,6 @@ std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const F
          inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details,
                                 model.prediction) +
          4 * set.contacts;
-}
-
-void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
-                  SetCounts& counts) noexcept {
-  counts.coefficients = touched.coefficients();
-  counts.visits = touched.visits;
-  counts.slots = count_slots({set.columns, set.column}, touched);
-  for (std::uint32_t k = 0; k < set.columns; ++k) {
-    counts.column.add(cost.of(set.column[k]));
-  }
-  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      counts.stored += stored[touched.list[q][k]];
-    }
-  }
 }
 
 std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touched,

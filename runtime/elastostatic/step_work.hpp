@@ -3,54 +3,15 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
-#include "runtime/compliance/capacitance.hpp"
 #include "runtime/compliance/couplings.hpp"
 #include "runtime/compliance/field.hpp"
-#include "runtime/elastostatic/contact_set.hpp"
+#include "runtime/factor/factor_work.hpp"
 #include "runtime/wavelet/point_support.hpp"
-#include "runtime/wavelet/sparse_forces.hpp"
 
 namespace greenloop {
 
-/// Counts of a model and its limits that the work of a step follows from.
-struct ModelCounts {
-  std::uint32_t levels = 0;
-  std::uint32_t max_contacts = 0;
-  std::uint32_t cached_factors = 0;
-  std::uint32_t glide_cycles = 1;
-  std::uint64_t refining_work = 0;
-  std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
-  Prediction prediction{};
-  bool forces_only = false;
-  std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
-  std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F
-};
-
-/// What a set of columns holds.
-struct SetCounts {
-  std::uint64_t contacts = 0;
-  std::uint64_t columns = 0;
-  // what follows only if a field is wanted or a factor is to be made
-  std::uint64_t coefficients = 0;  ///< that the columns touch, none counted twice
-  std::uint64_t visits = 0;        ///< of touching them
-  // and this only for a factor
-  std::uint64_t slots = 0;   ///< of the capacitance matrix
-  std::uint64_t stored = 0;  ///< blocks of all layers in those columns
-  ColumnSums column;         ///< over all columns
-  bool bounds = false;       ///< of any set that holds no more, not of one
-};
-
 /// Work units of resolving contacts at a level, counting the blocks of their field and asking the cache.
 [[nodiscard]] std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept;
-
-/// Work units of finding the coefficients that a set touches and counting what its factor takes.
-[[nodiscard]] std::uint64_t touch_work(const SetCounts& set) noexcept;
-
-/// What the whole capacitance matrix of a set takes.
-[[nodiscard]] CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept;
-
-/// Work units of a capacitance factor.
-[[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
 /// Work units of solving for the forces of a set with its factor.
 [[nodiscard]] std::uint64_t solve_work(std::uint64_t contacts, std::uint64_t columns) noexcept;
@@ -61,17 +22,9 @@ struct SetCounts {
 /// Work units of the forces, given the factor, and of their glide.
 [[nodiscard]] std::uint64_t force_work(const SetCounts& set) noexcept;
 
-/// Work units of counting the blocks of a field.
-[[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
-
 /// Work units of a field that sums `blocks` blocks.
 [[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                                        std::uint64_t blocks) noexcept;
-
-/// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. stored: [domain] blocks of
-/// all layers in each coefficient's column.
-void count_factor(const ContactSet& set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
-                  SetCounts& counts) noexcept;
 
 /// Blocks that the field of forces on touched coefficients sums with details up to `field_level`. For the loop; work:
 /// one unit per coefficient.

@@ -8,30 +8,21 @@ namespace greenloop {
 namespace {
 
 // FNV-1a over whole words, never 0
-std::uint64_t key_of(const ContactSet& set) {
+std::uint64_t key_of(ColumnSet set) {
   constexpr std::uint64_t prime = 0x100000001b3;
   std::uint64_t key = 0xcbf29ce484222325;
-  for (std::uint32_t k = 0; k < set.columns; ++k) {
+  for (std::uint32_t k = 0; k < set.count; ++k) {
     key = (key ^ set.column[k]) * prime;
     key ^= key >> 29;
   }
   return key == 0 ? 1 : key;
 }
 
-bool belongs_to(const Factor& factor, const ContactSet& set) {
-  return factor.columns == set.columns &&
-         std::memcmp(factor.column, set.column, sizeof(std::uint32_t) * set.columns) == 0;
+bool belongs_to(const Factor& factor, ColumnSet set) {
+  return factor.columns == set.count && std::memcmp(factor.column, set.column, sizeof(std::uint32_t) * set.count) == 0;
 }
 
 }  // namespace
-
-void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
-  const std::uint64_t stride = padded_order(3 * columns_of_a_set);
-  column = arena.take<std::uint32_t>(columns_of_a_set);
-  node = arena.take<std::uint32_t>(columns_of_a_set);
-  position = arena.take<std::uint32_t>(columns_of_a_set);
-  matrix = arena.take<Float4>(stride * stride / 4);
-}
 
 void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept {
   stride_ = padded_order(3 * columns);
@@ -46,7 +37,7 @@ void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t colum
   }
 }
 
-Factor* FactorCache::find(const ContactSet& set) const noexcept {
+Factor* FactorCache::find(ColumnSet set) const noexcept {
   const std::uint64_t key = key_of(set);
   for (std::uint32_t i = 0; i < factors_; ++i) {
     if (factor_[i].key == key) {
@@ -57,7 +48,7 @@ Factor* FactorCache::find(const ContactSet& set) const noexcept {
   return nullptr;
 }
 
-Factor& FactorCache::make_room(const ContactSet& set) noexcept {
+Factor& FactorCache::make_room(ColumnSet set) noexcept {
   const std::uint64_t key = key_of(set);
   Factor* oldest = factor_;
   for (std::uint32_t i = 0; i < factors_; ++i) {
@@ -72,11 +63,11 @@ Factor& FactorCache::make_room(const ContactSet& set) noexcept {
   return *oldest;
 }
 
-void FactorCache::keep(Factor& factor, const ContactSet& set) noexcept {
+void FactorCache::keep(Factor& factor, ColumnSet set) noexcept {
   factor.key = key_of(set);
   use(factor);
-  factor.columns = set.columns;
-  std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.columns);
+  factor.columns = set.count;
+  std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.count);
 }
 
 }  // namespace greenloop

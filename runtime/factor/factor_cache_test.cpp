@@ -24,7 +24,7 @@ class SmallCache {
   }
   // what a step does
   void use(std::vector<std::uint32_t> columns, std::uint32_t level = 2) {
-    const ContactSet set = set_of(columns, level);
+    const ColumnSet set = set_of(columns, level);
     Factor* found = cache.find(set);
     cache.keep(found != nullptr ? *found : cache.make_room(set), set);
   }
@@ -32,14 +32,11 @@ class SmallCache {
   FactorCache cache;
 
  private:
-  static ContactSet set_of(std::vector<std::uint32_t>& columns, std::uint32_t level) {
-    ContactSet set;
+  static ColumnSet set_of(std::vector<std::uint32_t>& columns, std::uint32_t level) {
     for (std::uint32_t& column : columns) {
       column = make_column(level, column);
     }
-    set.columns = static_cast<std::uint32_t>(columns.size());
-    set.column = columns.data();
-    return set;
+    return {static_cast<std::uint32_t>(columns.size()), columns.data()};
   }
   AlignedBytes memory_;
 };
@@ -81,11 +78,8 @@ TEST_CASE("level, length and order of the key all count") {
 TEST_CASE("room that was made but not kept is empty") {
   SmallCache cache(1);
   cache.use({1});
-  std::uint32_t column = 2;
-  ContactSet set;
-  set.columns = 1;
-  set.column = &column;
-  static_cast<void>(cache.cache.make_room(set));
+  const std::uint32_t column = 2;
+  static_cast<void>(cache.cache.make_room({1, &column}));
   CHECK_FALSE(cache.has({1}));
   CHECK_FALSE(cache.has({2}));
 }

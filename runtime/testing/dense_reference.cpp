@@ -109,7 +109,7 @@ Eigen::Matrix3d dense_block(const DenseReference& reference, std::uint32_t i, st
 }  // namespace
 
 DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, const Resolution& resolution,
-                        std::span<const Contact> contacts) {
+                        std::span<const Constraint> contacts) {
   std::map<std::uint32_t, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool fine = resolution.fine != nullptr && resolution.fine[i];
@@ -124,7 +124,7 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
     used.middleCols<3>(3 * j) = reference.field(column_level(column)).middleCols<3>(Index{3} * column_place(column));
     for (const std::size_t i : of_column) {
       for (Index r = 0; r < 3; ++r) {
-        prescribed(3 * j + r) += double{contacts[i].displacement[r]} / static_cast<double>(of_column.size());
+        prescribed(3 * j + r) += double{contacts[i].value[r]} / static_cast<double>(of_column.size());
       }
     }
     Index i = 0;
@@ -150,7 +150,7 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
           force.segment<3>(3 * j) / static_cast<double>(of_column.size());
       if (column_level(column) + 1 == view.levels) {
         for (Index r = 0; r < 3; ++r) {
-          answer.displacement(Index{3} * contacts[k].node + r) = contacts[k].displacement[r];
+          answer.displacement(Index{3} * contacts[k].node + r) = contacts[k].value[r];
         }
       }
     }

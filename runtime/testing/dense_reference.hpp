@@ -47,6 +47,6 @@ struct DenseAnswer {
 
 /// The capacitance matrix algorithm on dense matrices in double precision with a complete factorisation.
 [[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference,
-                                      const Resolution& resolution, std::span<const Contact> contacts);
+                                      const Resolution& resolution, std::span<const Constraint> contacts);
 
 }  // namespace greenloop

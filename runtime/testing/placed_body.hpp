@@ -9,7 +9,7 @@ namespace greenloop {
 class PlacedBody {
  public:
   explicit PlacedBody(const ModelView& view, std::uint32_t max_contacts = 1) {
-    Requirement requirement;
+    Elastostatic::Requirement requirement;
     measure_body(view, {.max_contacts = max_contacts, .cached_factors = 1}, sizes_, requirement);
     Arena counting;
     place_body(counting, view, sizes_);

@@ -26,7 +26,7 @@ std::vector<std::uint32_t> TestModel::touchable() const {
   return nodes;
 }
 
-TestBody::TestBody(const TestModel& model, const Limits& limits)
+TestBody::TestBody(const TestModel& model, const Elastostatic::Limits& limits)
     : requirement_(Elastostatic::required(model.model(), limits)),
       arena_(requirement_.bytes),
       field_(std::size_t{16} * model.model().node_count()) {
@@ -37,14 +37,14 @@ TestBody::TestBody(const TestModel& model, const Limits& limits)
   body_ = created.body;
 }
 
-StepReport TestBody::step(std::span<const Contact> contacts, std::uint64_t work, bool with_field) {
+Elastostatic::StepReport TestBody::step(std::span<const Constraint> contacts, std::uint64_t work, bool with_field) {
   force_.resize(3 * contacts.size());
   return body_.step(contacts, {work}, {force_, with_field ? field() : std::span<float>()});
 }
 
-std::vector<Contact> patch(const TestModel& model, std::size_t first, std::size_t count) {
+std::vector<Constraint> patch(const TestModel& model, std::size_t first, std::size_t count) {
   const auto nodes = model.touchable();
-  std::vector<Contact> contacts;
+  std::vector<Constraint> contacts;
   for (std::size_t i = first; i < first + count; ++i) {
     const auto u = static_cast<float>(1 + i % 5);
     contacts.push_back({nodes[i % nodes.size()], {1e-4F * u, -2e-4F, 5e-5F * u}});
@@ -77,15 +77,15 @@ std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes) {
   return hash;
 }
 
-std::uint64_t hash_step(std::uint64_t hash, const StepReport& report, std::span<const float> force,
+std::uint64_t hash_step(std::uint64_t hash, const Elastostatic::StepReport& report, std::span<const float> force,
                         std::span<const float> field) {
   const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status),
                                  report.constraint_level,
-                                 report.finer_level,
-                                 report.finer_contacts,
+                                 report.details.finer_level,
+                                 report.details.finer_contacts,
                                  report.field_level,
                                  report.work,
-                                 report.cached_factor ? 1U : 0U};
+                                 report.details.cached_factor ? 1U : 0U};
   hash = hash_bytes(hash, std::as_bytes(std::span(facts)));
   hash = hash_bytes(hash, std::as_bytes(force));
   return hash_bytes(hash, std::as_bytes(field));

@@ -30,18 +30,18 @@ class TestModel {
 /// A body with its own arena and response buffers. Throws std::runtime_error if it cannot be created.
 class TestBody {
  public:
-  TestBody(const TestModel& model, const Limits& limits);
+  TestBody(const TestModel& model, const Elastostatic::Limits& limits);
 
   /// Steps with a force buffer of the right size and, if wanted, the field.
-  StepReport step(std::span<const Contact> contacts, std::uint64_t work, bool with_field = true);
+  Elastostatic::StepReport step(std::span<const Constraint> contacts, std::uint64_t work, bool with_field = true);
 
-  [[nodiscard]] const Requirement& requirement() const { return requirement_; }
+  [[nodiscard]] const Elastostatic::Requirement& requirement() const { return requirement_; }
   [[nodiscard]] std::span<const float> force() const { return force_; }
   [[nodiscard]] std::span<float> field() { return {reinterpret_cast<float*>(field_.data()), field_.size() / 4}; }
   [[nodiscard]] Elastostatic& body() { return body_; }
 
  private:
-  Requirement requirement_;
+  Elastostatic::Requirement requirement_;
   AlignedBytes arena_;
   AlignedBytes field_;
   std::vector<float> force_;
@@ -49,7 +49,7 @@ class TestBody {
 };
 
 /// `count` touchable nodes from the `first` on, held at displacements that differ.
-[[nodiscard]] std::vector<Contact> patch(const TestModel& model, std::size_t first, std::size_t count);
+[[nodiscard]] std::vector<Constraint> patch(const TestModel& model, std::size_t first, std::size_t count);
 
 /// A model whose couplings on the finest level are too strong for their scales: there, neighbours in the file have no
 /// positive definite capacitance matrix.
@@ -59,7 +59,7 @@ class TestBody {
 std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes);
 
 /// Chains the whole of a step's outcome.
-std::uint64_t hash_step(std::uint64_t hash, const StepReport& report, std::span<const float> force,
+std::uint64_t hash_step(std::uint64_t hash, const Elastostatic::StepReport& report, std::span<const float> force,
                         std::span<const float> field);
 
 inline constexpr std::uint64_t empty_hash = 0xcbf29ce484222325;

@@ -17,6 +17,12 @@ constexpr std::uint32_t make_column(std::uint32_t level, std::uint32_t place) {
   return level << column_place_bits | place;
 }
 constexpr std::uint32_t column_level(std::uint32_t column) { return column >> column_place_bits; }
+/// Some columns, in place.
+struct ColumnSet {
+  std::uint32_t count = 0;
+  const std::uint32_t* column = nullptr;  ///< [count]
+};
+
 constexpr std::uint32_t column_place(std::uint32_t column) { return column & ((1U << column_place_bits) - 1); }
 
 }  // namespace greenloop

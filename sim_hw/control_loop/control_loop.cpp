@@ -51,7 +51,7 @@ bool ControlLoop::read(const messages::device_state& state) noexcept {
 
 void ControlLoop::step(std::int64_t cycle) noexcept {
   field_is_new_ = cycle % setup_.field_every == 0;
-  Response response{.force = {force_.data(), 3 * contacts_.size()}, .displacement = {}};
+  Elastostatic::Response response{.force = {force_.data(), 3 * contacts_.size()}, .displacement = {}};
   if (field_is_new_) response.displacement = {field_data(), 4 * field_.size()};
   if (cycle == setup_.overrun_cycle) {
     overrun(response);
@@ -61,7 +61,7 @@ void ControlLoop::step(std::int64_t cycle) noexcept {
 }
 
 /// Repeats the step without a limit until more than the budget is spent.
-void ControlLoop::overrun(const Response& response) noexcept {
+void ControlLoop::overrun(const Elastostatic::Response& response) noexcept {
   constexpr Budget unlimited{std::numeric_limits<std::uint64_t>::max()};
   std::uint64_t work = 0;
   do {

@@ -35,10 +35,10 @@ class ControlLoop {
   /// Writes the answer to the last cycle and adds its response to the digest.
   void answer(messages::loop_command& command) noexcept;
 
-  [[nodiscard]] const StepReport& report() const noexcept { return report_; }
+  [[nodiscard]] const Elastostatic::StepReport& report() const noexcept { return report_; }
   [[nodiscard]] std::span<const Probe> probes() const noexcept { return {probe_.data(), probe_count_}; }
   [[nodiscard]] std::span<const Vec3> hand_force() const noexcept { return {hand_force_.data(), probe_count_}; }
-  [[nodiscard]] std::span<const Contact> contacts() const noexcept { return contacts_; }
+  [[nodiscard]] std::span<const Constraint> contacts() const noexcept { return contacts_; }
   /// [4 * node_count] m, as of the last cycle that asked for it.
   [[nodiscard]] std::span<const float> field() const noexcept { return {field_data(), 4 * field_.size()}; }
   [[nodiscard]] bool field_is_new() const noexcept { return field_is_new_; }
@@ -55,7 +55,7 @@ class ControlLoop {
   [[nodiscard]] float* field_data() noexcept { return static_cast<float*>(static_cast<void*>(field_.data())); }
   [[nodiscard]] bool read(const messages::device_state& state) noexcept;
   void step(std::int64_t cycle) noexcept;
-  void overrun(const Response& response) noexcept;
+  void overrun(const Elastostatic::Response& response) noexcept;
   void sum_hand_force() noexcept;
   [[nodiscard]] std::span<const float> force() const noexcept { return {force_.data(), 3 * contacts_.size()}; }
 
@@ -66,11 +66,11 @@ class ControlLoop {
   std::array<Vec3, messages::device_state::max_probes> hand_force_{};
   std::size_t probe_count_ = 0;
   std::int64_t cycle_ = 0;
-  std::span<const Contact> contacts_;
+  std::span<const Constraint> contacts_;
   std::vector<float> force_;
   std::vector<NodeDisplacement> field_;
   bool field_is_new_ = false;
-  StepReport report_;
+  Elastostatic::StepReport report_;
   Fnv1a digest_;
 };
 

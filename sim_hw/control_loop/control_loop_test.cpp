@@ -103,7 +103,7 @@ TEST_CASE("the contacts lie on the probe in the deformed field, and no touchable
     return norm(bench.surface.position[node] + Vec3{moved[0], moved[1], moved[2]} - centre);
   };
   REQUIRE_FALSE(bench.loop->contacts().empty());
-  for (const Contact& contact : bench.loop->contacts()) {
+  for (const Constraint& contact : bench.loop->contacts()) {
     CHECK(distance(contact.node) == doctest::Approx(probe_radius).epsilon(0.01));
   }
   for (std::uint32_t node = 0; node < bench.surface.position.size(); ++node) {

@@ -27,7 +27,7 @@ ProbeContacts::ProbeContacts(const BodySurface& surface, double radius, std::uin
       contact_(max_contacts),
       holder_(max_contacts) {}
 
-std::span<const Contact> ProbeContacts::find(std::span<const Probe> probes, std::span<const float> field) noexcept {
+std::span<const Constraint> ProbeContacts::find(std::span<const Probe> probes, std::span<const float> field) noexcept {
   candidate_count_ = 0;
   for (std::size_t p = 0; p < probes.size(); ++p) gather(probes[p], static_cast<std::uint8_t>(p), field);
   choose_deepest();

@@ -30,7 +30,7 @@ class ProbeContacts {
 
   /// The contacts of this cycle by increasing node. `field`: [4 * node_count] m, the displacement last known.
   /// Loop-safe. Work: for every probe the touchable nodes near it, and sorting these.
-  [[nodiscard]] std::span<const Contact> find(std::span<const Probe> probes, std::span<const float> field) noexcept;
+  [[nodiscard]] std::span<const Constraint> find(std::span<const Probe> probes, std::span<const float> field) noexcept;
 
   /// Remembers which of the last contacts were pushed. `force`: [3 * contacts] N, what holds them. Loop-safe.
   void settle(std::span<const Probe> probes, std::span<const float> force) noexcept;
@@ -58,7 +58,7 @@ class ProbeContacts {
   std::vector<std::uint8_t> pushed_by_;  ///< [node] the probe that pushed it in the last cycle
   std::vector<Candidate> candidate_;     ///< room for every touchable node and probe
   std::size_t candidate_count_ = 0;
-  std::vector<Contact> contact_;
+  std::vector<Constraint> contact_;
   std::vector<std::uint8_t> holder_;
   std::size_t count_ = 0;
 };

@@ -31,7 +31,7 @@ Probe pressed(double depth, double x = 0) { return {{x, 0, radius - depth}, {0, 
 struct Bench {
   explicit Bench(std::uint32_t max_contacts = 256) : contacts(surface, radius, max_contacts) {}
 
-  std::span<const Contact> find(const std::vector<Probe>& probes) { return contacts.find(probes, field); }
+  std::span<const Constraint> find(const std::vector<Probe>& probes) { return contacts.find(probes, field); }
   void settle(const std::vector<Probe>& probes, const std::vector<float>& force) { contacts.settle(probes, force); }
 
   BodySurface surface = table();
@@ -56,12 +56,12 @@ TEST_CASE("the nodes inside the sphere are held where it leaves them, along its 
   REQUIRE(found.size() == expected.size());
   CHECK(found.size() == 25);  // nearer than 3 cm
   auto next = expected.begin();
-  for (const Contact& contact : found) {
+  for (const Constraint& contact : found) {
     CHECK(contact.node == *next++);
-    CHECK(contact.displacement[0] == 0);
-    CHECK(contact.displacement[1] == 0);
-    CHECK(contact.displacement[2] < 0);
-    const Vec3 held = bench.surface.position[contact.node] + Vec3{0, 0, contact.displacement[2]};
+    CHECK(contact.value[0] == 0);
+    CHECK(contact.value[1] == 0);
+    CHECK(contact.value[2] < 0);
+    const Vec3 held = bench.surface.position[contact.node] + Vec3{0, 0, contact.value[2]};
     CHECK(norm(held - probe.centre) == doctest::Approx(radius).epsilon(1e-6));
   }
 }
@@ -110,12 +110,12 @@ TEST_CASE("a contact that had to be pulled is released in the next cycle, a push
   std::vector<float> force(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
     force[3 * i + 2] = i == 0 ? 1.0F : -1.0F;  // up pulls, down pushes
-    for (std::size_t c = 0; c < 3; ++c) bench.field[std::size_t{4} * found[i].node + c] = found[i].displacement[c];
+    for (std::size_t c = 0; c < 3; ++c) bench.field[std::size_t{4} * found[i].node + c] = found[i].value[c];
   }
   bench.settle(probes, force);
   const auto next = bench.find(probes);
   CHECK(next.size() == count - 1);
-  for (const Contact& contact : next) CHECK(contact.node != pulled);
+  for (const Constraint& contact : next) CHECK(contact.node != pulled);
 }
 
 TEST_CASE("a released node comes back when its deformed place lies inside the probe") {
@@ -123,10 +123,10 @@ TEST_CASE("a released node comes back when its deformed place lies inside the pr
   const std::vector<Probe> probes{pressed(0.01)};
   const std::uint32_t middle = 220;
   bench.field[4 * middle + 2] = -0.0101F;
-  for (const Contact& contact : bench.find(probes)) CHECK(contact.node != middle);
+  for (const Constraint& contact : bench.find(probes)) CHECK(contact.node != middle);
   bench.field[4 * middle + 2] = -0.009F;
   bool back = false;
-  for (const Contact& contact : bench.find(probes)) back = back || contact.node == middle;
+  for (const Constraint& contact : bench.find(probes)) back = back || contact.node == middle;
   CHECK(back);
 }
 

@@ -15,7 +15,7 @@ struct CycleRecord {
   std::array<Vec3, messages::device_state::max_probes> centre{};      ///< m, of the probes
   std::array<Vec3, messages::device_state::max_probes> hand_force{};  ///< N, on the probes
   std::uint32_t contacts = 0;
-  StepReport report;
+  Elastostatic::StepReport report;
   double cpu_us = 0;  ///< thread CPU time of the cycle
 
   /// N, sum of the magnitudes: two fingers of a grasp do not cancel.

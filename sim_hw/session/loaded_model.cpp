@@ -17,7 +17,7 @@ LoadedModel load_model(const std::filesystem::path& file) {
   return loaded;
 }
 
-LoadedBody create_body(const Model& model, const Limits& limits) {
+LoadedBody create_body(const Model& model, const Elastostatic::Limits& limits) {
   LoadedBody loaded{AlignedBytes(Elastostatic::required(model, limits).bytes), {}};
   const auto created = Elastostatic::create(model, limits, {loaded.arena.data(), loaded.arena.size()});
   if (!created) {

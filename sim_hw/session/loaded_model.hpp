@@ -24,6 +24,6 @@ struct LoadedBody {
 };
 
 /// Throws std::runtime_error if the limits are refused.
-[[nodiscard]] LoadedBody create_body(const Model& model, const Limits& limits);
+[[nodiscard]] LoadedBody create_body(const Model& model, const Elastostatic::Limits& limits);
 
 }  // namespace greenloop

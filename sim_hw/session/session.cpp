@@ -16,14 +16,14 @@
 namespace greenloop {
 namespace {
 
-Limits limits_of(const Model& model) {
+Elastostatic::Limits limits_of(const Model& model) {
   constexpr std::uint32_t most = messages::loop_command::max_contacts;
-  Limits limits = Elastostatic::intended(model).limits;
+  Elastostatic::Limits limits = Elastostatic::intended(model).limits;
   limits.max_contacts = std::min(limits.max_contacts, most);
   return limits;
 }
 
-Budget budget_of(const SessionOptions& options, const Model& model, const Requirement& need) {
+Budget budget_of(const SessionOptions& options, const Model& model, const Elastostatic::Requirement& need) {
   const std::uint64_t own = Elastostatic::intended(model).budget.work;
   const std::uint64_t finest = need.worst_work[model.level_count() - 1];
   const std::uint64_t whole = options.budget != 0 ? options.budget : own != 0 ? own : finest;
@@ -109,8 +109,8 @@ void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& re
 SessionResult run_session(const SessionOptions& options) {
   const LoadedModel loaded = load_model(options.model);
   const Model& model = loaded.model;
-  const Limits limits = limits_of(model);
-  const Requirement need = Elastostatic::required(model, limits);
+  const Elastostatic::Limits limits = limits_of(model);
+  const Elastostatic::Requirement need = Elastostatic::required(model, limits);
   SessionResult result;
   result.least_work = need.least_work;
   result.budget = budget_of(options, model, need);

@@ -29,7 +29,7 @@ constexpr std::uint32_t most_steps_to_the_finest = 40;
 constexpr std::size_t most_nodes = 300;
 alignas(64) std::byte arena[128 * 1024];
 alignas(16) float field[4 * most_nodes];
-Requirement requirement;
+Elastostatic::Requirement requirement;
 RecordedRun recorded;
 
 struct Neighbour {
@@ -137,7 +137,8 @@ int run_loop(bool slow) {
                                 {"a node in 16 ms", 16, false},
                                 {"a node in every step", 1, false},
                                 {"pressed at the finest level", 0, true}};
-  constexpr Limits limits{.max_contacts = contacts_per_step, .cached_factors = 4, .refining_work = refining_work};
+  constexpr Elastostatic::Limits limits{
+      .max_contacts = contacts_per_step, .cached_factors = 4, .refining_work = refining_work};
   const auto opened = Model::open(std::as_bytes(std::span(body_model)));
   if (!opened || opened.model.node_count() > most_nodes) {
     return does_not_run;

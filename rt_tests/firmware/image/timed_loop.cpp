@@ -17,7 +17,7 @@ struct Loop {
   Motion motion{};
   std::uint32_t steps_per_cycle = 1;
   Timing timing;
-  std::array<Contact, contacts_per_step> contact{};
+  std::array<Constraint, contacts_per_step> contact{};
   std::array<float, 3 * contacts_per_step> force{};
   std::array<std::uint32_t, timed_cycles> instructions{};
 };
@@ -33,20 +33,20 @@ void move_contacts() {
   }
 }
 
-void note(const StepReport& report, std::uint32_t instructions) {
+void note(const Elastostatic::StepReport& report, std::uint32_t instructions) {
   Timing& timing = loop.timing;
   if (report.status == Status::ok && timing.finest++ == 0) {
     timing.refined = cycle;
   }
-  timing.mixed += report.finer_level > report.constraint_level ? 1 : 0;
-  timing.held += report.status > Status::coarser ? 1 : 0;
+  timing.mixed += report.details.finer_level > report.constraint_level ? 1 : 0;
+  timing.held += !answered(report.status) ? 1 : 0;
   timing.worst_work = std::max(timing.worst_work, report.work);
   loop.instructions[cycle] = instructions;
 }
 
 void run_cycle() {
   move_contacts();
-  StepReport report;
+  Elastostatic::StepReport report;
   const std::uint64_t begin = instructions();
   for (std::uint32_t k = 0; k < loop.steps_per_cycle; ++k) {
     report = loop.body->step(loop.contact, loop.budget, {loop.force, loop.field});

@@ -3,14 +3,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-int c_control_loop(const void* file, size_t size, int (*sense)(greenloop_contact*), void (*actuate)(const float*));
+int c_control_loop(const void* file, size_t size, int (*sense)(greenloop_constraint*), void (*actuate)(const float*));
 
 static int cycles = 0;
 static uint32_t touched_node = 0;
 static double total_force = 0;
 
-static int sense(greenloop_contact* contact) {
-  const greenloop_contact pressed = {touched_node, {0.0F, 0.0F, 1e-6F * (float)cycles}};
+static int sense(greenloop_constraint* contact) {
+  const greenloop_constraint pressed = {touched_node, {0.0F, 0.0F, 1e-6F * (float)cycles}, GREENLOOP_HOLD};
   *contact = pressed;
   return cycles++ < 100;
 }

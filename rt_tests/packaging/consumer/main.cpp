@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-int control_loop(std::span<const std::byte> file, bool (*sense)(greenloop::Contact&), void (*actuate)(const float*));
+int control_loop(std::span<const std::byte> file, bool (*sense)(greenloop::Constraint&), void (*actuate)(const float*));
 
 namespace {
 
@@ -15,7 +15,7 @@ int cycles = 0;
 double total_force = 0;
 std::uint32_t touched_node = 0;
 
-bool sense(greenloop::Contact& contact) {
+bool sense(greenloop::Constraint& contact) {
   contact = {touched_node, {0.0F, 0.0F, 1e-6F * static_cast<float>(cycles)}};
   return cycles++ < 100;
 }

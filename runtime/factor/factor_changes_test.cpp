@@ -1,4 +1,4 @@
-#include "runtime/factor/factor_update.hpp"
+#include "runtime/factor/factor_changes.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,8 +13,8 @@ namespace greenloop {
 namespace {
 
 // a window of the touchable nodes, pressed
-std::vector<Contact> window(const std::vector<std::uint32_t>& nodes, std::size_t first, std::size_t count) {
-  std::vector<Contact> contacts;
+std::vector<Constraint> window(const std::vector<std::uint32_t>& nodes, std::size_t first, std::size_t count) {
+  std::vector<Constraint> contacts;
   for (std::size_t i = 0; i < count; ++i) {
     const auto u = static_cast<float>(1 + i % 5);
     contacts.push_back({nodes[(first + i) % nodes.size()], {1e-4F * u, -2e-4F, 5e-5F * u}});
@@ -41,7 +41,7 @@ TEST_CASE("a factor that follows a sliding contact holds it with the forces of a
   const auto nodes = model.touchable();
   for (const std::uint32_t factors : {1U, 3U}) {
     CAPTURE(factors);
-    const Limits limits{.max_contacts = 40, .cached_factors = factors};
+    const Elastostatic::Limits limits{.max_contacts = 40, .cached_factors = factors};
     TestBody body(model, limits);
     TestBody fresh(model, {.max_contacts = 40, .cached_factors = 1});
     std::mt19937_64 random(5);
@@ -50,16 +50,16 @@ TEST_CASE("a factor that follows a sliding contact holds it with the forces of a
     for (int step = 0; step < 200; ++step) {
       first += random() % 3;
       const auto contacts = window(nodes, first, 24 + random() % 12);
-      const StepReport report = body.step(contacts, any_budget);
+      const Elastostatic::StepReport report = body.step(contacts, any_budget);
       REQUIRE(report.status == Status::ok);
       fresh.step(window(nodes, first + nodes.size() / 2, 1), any_budget);  // of it nothing can be made
-      const StepReport expected = fresh.step(contacts, any_budget);
-      REQUIRE(expected.changed_nodes == 0);
+      const Elastostatic::StepReport expected = fresh.step(contacts, any_budget);
+      REQUIRE(expected.details.changed_nodes == 0);
       CHECK(difference(body.force(), fresh.force(), 3 * contacts.size()) <= 2e-4);
-      if (report.changed_nodes > 0) {
+      if (report.details.changed_nodes > 0) {
         ++updates;
         CHECK(report.work < expected.work);
-        CHECK_FALSE(report.cached_factor);
+        CHECK_FALSE(report.details.cached_factor);
       }
     }
     CHECK(updates > 150);
@@ -72,10 +72,10 @@ TEST_CASE("what a factor changed into is cached, and what it came from as well")
   TestBody body(model, {.max_contacts = 30, .cached_factors = 2});
   const auto before = window(nodes, 0, 30);
   const auto after = window(nodes, 1, 30);
-  CHECK(body.step(before, any_budget).changed_nodes == 0);
-  CHECK(body.step(after, any_budget).changed_nodes == 2);
-  CHECK(body.step(after, any_budget).cached_factor);
-  CHECK(body.step(before, any_budget).cached_factor);
+  CHECK(body.step(before, any_budget).details.changed_nodes == 0);
+  CHECK(body.step(after, any_budget).details.changed_nodes == 2);
+  CHECK(body.step(after, any_budget).details.cached_factor);
+  CHECK(body.step(before, any_budget).details.cached_factor);
 }
 
 TEST_CASE("changes are what two sets differ by, and too many are none") {
@@ -86,13 +86,10 @@ TEST_CASE("changes are what two sets differ by, and too many are none") {
   Arena arena(memory.data());
   cache.carve(arena, 2, 64);
   std::vector<std::uint32_t> columns = {3, 5, 8, 13, 21};
-  ContactSet set;
-  set.column = columns.data();
-  set.columns = 5;
+  ColumnSet set{5, columns.data()};
   cache.keep(cache.make_room(set), set);
   std::vector<std::uint32_t> other = {1, 5, 8, 14, 21, 30};
-  set.column = other.data();
-  set.columns = 6;
+  set = {6, other.data()};
   FactorChanges changes;
   find_changes(cache, set, changes);
   REQUIRE(changes.base != nullptr);
@@ -104,8 +101,7 @@ TEST_CASE("changes are what two sets differ by, and too many are none") {
   for (std::uint32_t i = 0; i < far.size(); ++i) {
     far[i] = 100 + i;
   }
-  set.column = far.data();
-  set.columns = static_cast<std::uint32_t>(far.size());
+  set = {static_cast<std::uint32_t>(far.size()), far.data()};
   find_changes(cache, set, changes);
   CHECK(changes.base == nullptr);
 }

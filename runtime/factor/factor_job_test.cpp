@@ -1,4 +1,4 @@
-#include "runtime/factor/pending_factor.hpp"
+#include "runtime/factor/factor_job.hpp"
 
 #include <doctest/doctest.h>
 
@@ -27,15 +27,15 @@ double difference(std::span<const float> a, std::span<const float> b) {
 }
 
 // resolves contacts at the finest level; returns what their factor takes
-SetCounts resolve(Body& body, const std::vector<Contact>& contacts) {
+SetCounts resolve(Body& body, const std::vector<Constraint>& contacts) {
   const std::uint32_t finest = body.view->levels - 1;
-  resolve_contacts(contacts, *body.view, body.facts, {finest}, body.set);
+  resolve_contacts(contacts, *body.view, body.facts, {finest}, body.resolution, body.planned);
   clear(body.touched);
-  touch(body.refinement, body.set.column, body.set.columns, body.touched);
+  touch(body.refinement, body.planned.column, body.planned.columns, body.touched);
   SetCounts counts;
   counts.contacts = contacts.size();
-  counts.columns = body.set.columns;
-  count_factor(body.set, body.touched, body.cost, body.stored, counts);
+  counts.columns = body.planned.columns;
+  count_factor(body.planned.all(), body.touched, body.cost, body.stored, counts);
   return counts;
 }
 
@@ -57,13 +57,13 @@ std::uint64_t largest_piece(const Body& body, const SetCounts& whole) {
 
 // solution of the set's matrix for a right-hand side of ones, in the order of the set
 std::vector<float> solve_ones(const Body& body, const Factor& factor) {
-  const std::uint32_t order = 3 * body.set.columns;
+  const std::uint32_t order = 3 * body.planned.columns;
   std::vector<Float4> b(padded_order(order) / 4);
   auto* x = reinterpret_cast<float*>(b.data());
   std::fill_n(x, order, 1.0F);
   cholesky_solve(order, body.cache.stride(), factor.matrix, b.data());
   std::vector<float> solution;
-  for (std::uint32_t k = 0; k < body.set.columns; ++k) {
+  for (std::uint32_t k = 0; k < body.planned.columns; ++k) {
     const float* at = x + std::size_t{3} * factor.position[k];
     solution.insert(solution.end(), at, at + 3);
   }
@@ -78,8 +78,8 @@ TEST_CASE("a factor is complete after as many slices as its work holds, each wit
   const PlacedBody other(model.view(), 40);
   Body& fresh = *other.body;
   resolve(fresh, patch(model, 7, 40));
-  Factor& expected = fresh.cache.make_room(fresh.set);
-  assemble_capacitance(fresh.refinement, {40, fresh.set.column}, fresh.touched, fresh.capacitance, fresh.force,
+  Factor& expected = fresh.cache.make_room(fresh.planned.all());
+  assemble_capacitance(fresh.refinement, fresh.planned.all(), fresh.touched, fresh.capacitance, fresh.force,
                        fresh.cache.stride(), expected.matrix);
   REQUIRE(cholesky_factor(120, fresh.cache.stride(), expected.matrix));
   for (std::uint32_t k = 0; k < 40; ++k) {
@@ -95,9 +95,9 @@ TEST_CASE("a factor is complete after as many slices as its work holds, each wit
     const std::uint64_t compare = compare_factors_work(1, 40) + 2 * whole.coefficients;
     const std::uint64_t piece = largest_piece(body, whole);
     const std::uint64_t allowance = compare + piece + all / part;
-    std::vector<PendingProgress> slices;
+    std::vector<FactorProgress> slices;
     do {
-      slices.push_back(continue_factor(body, whole, allowance));
+      slices.push_back(continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance));
       REQUIRE(slices.back().work <= allowance);
       CHECK((slices.back().pending == 0 || slices.back().work + piece > allowance - compare));
     } while (slices.back().pending > 0 && slices.size() < 1000);
@@ -111,7 +111,7 @@ TEST_CASE("a factor is complete after as many slices as its work holds, each wit
     CHECK(all <= 2 * follows);
     MESSAGE("allowance ", allowance, " of ", all, " units: ", slices.size(), " slices, ", follows, " units");
     CHECK(slices.size() <= (all + allowance - compare - piece - 1) / (allowance - compare - piece));
-    const Factor* const factor = body.cache.find(body.set);
+    const Factor* const factor = body.cache.find(body.planned.all());
     REQUIRE(factor != nullptr);
     CHECK(difference(solve_ones(body, *factor), right) <= 2e-4);
   }
@@ -124,11 +124,13 @@ TEST_CASE("less than a piece makes no progress, and says so") {
   const SetCounts whole = resolve(body, patch(model, 0, 12));
   const std::uint64_t begin = compare_factors_work(1, whole.columns) + begin_batch_work(body.counts, whole, 0);
   for (const std::uint64_t allowance : {std::uint64_t{0}, std::uint64_t{100}, begin - 1}) {
-    const PendingProgress progress = continue_factor(body, whole, allowance);
+    const FactorProgress progress =
+        continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance);
     CHECK(progress.work <= allowance);
     CHECK(progress.pending == pending_work(body.counts, whole));
   }
-  CHECK(continue_factor(body, whole, begin).pending < pending_work(body.counts, whole));
+  CHECK(continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, begin).pending <
+        pending_work(body.counts, whole));
 }
 
 TEST_CASE("a factor in the making follows its contacts, and begins anew for others") {
@@ -137,83 +139,85 @@ TEST_CASE("a factor in the making follows its contacts, and begins anew for othe
   Body& body = *placed.body;
   SetCounts whole = resolve(body, patch(model, 0, 40));
   const std::uint64_t allowance = pending_work(body.counts, whole) / 20;
-  for (std::uint32_t slice = 0; slice < 20 && body.pending.factor.columns < 20; ++slice) {
-    continue_factor(body, whole, allowance);
+  for (std::uint32_t slice = 0; slice < 20 && body.job.factor.columns < 20; ++slice) {
+    continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance);
   }
-  REQUIRE(body.pending.factor.columns >= 20);
-  const std::uint32_t made = body.pending.factor.columns;
+  REQUIRE(body.job.factor.columns >= 20);
+  const std::uint32_t made = body.job.factor.columns;
   whole = resolve(body, patch(model, 2, 40));
   std::uint32_t slices = 0;
-  while (continue_factor(body, whole, allowance).pending > 0) {
+  while (continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance).pending > 0) {
     REQUIRE(++slices < 20);
-    CHECK(body.pending.factor.columns + 2 >= made);
+    CHECK(body.job.factor.columns + 2 >= made);
   }
-  CHECK(body.cache.find(body.set) != nullptr);
+  CHECK(body.cache.find(body.planned.all()) != nullptr);
   whole = resolve(body, patch(model, 200, 40));
-  CHECK(continue_factor(body, whole, allowance).pending > pending_work(body.counts, whole) / 2);
+  CHECK(continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance).pending >
+        pending_work(body.counts, whole) / 2);
   whole = resolve(body, patch(model, 2, 40));
-  drop_batch(body);
-  CHECK(body.cache.find(body.set) != nullptr);
+  drop_batch(body.job, body.capacitance);
+  CHECK(body.cache.find(body.planned.all()) != nullptr);
 }
 
 TEST_CASE("a matrix that is not positive definite is given up until the contacts change") {
   const SyntheticOptions options{.levels = 4};
-  const Limits limits{.max_contacts = 24, .cached_factors = 2};
+  const Elastostatic::Limits limits{.max_contacts = 24, .cached_factors = 2};
   const TestModel definite(options);
   const std::size_t first = definite.touchable().size() - 30;
   const std::uint64_t budget = TestBody(definite, limits).step(patch(definite, first, 24), any_budget).work / 4;
   const TestModel model(encode(indefinite_model(options)));
   TestBody body(model, limits);
   const auto singular = patch(model, first, 24);
-  StepReport report = body.step(singular, budget);
-  CHECK(report.pending_work > 0);
-  for (std::uint32_t step = 0; step < 40 && report.pending_work > 0; ++step) {
+  Elastostatic::StepReport report = body.step(singular, budget);
+  CHECK(report.details.pending_work > 0);
+  for (std::uint32_t step = 0; step < 40 && report.details.pending_work > 0; ++step) {
     report = body.step(singular, budget);
     REQUIRE(report.status == Status::coarser);
     CHECK(report.work <= budget);
   }
-  CHECK(report.pending_work == 0);
+  CHECK(report.details.pending_work == 0);
   const std::uint64_t held = report.work;
   for (std::uint32_t step = 0; step < 40; ++step) {
     report = body.step(singular, budget);
     CHECK(report.status == Status::coarser);
-    CHECK(report.pending_work == 0);
+    CHECK(report.details.pending_work == 0);
   }
   CHECK(report.work <= held);
-  CHECK(body.step(patch(model, 0, 24), budget).pending_work > 0);
+  CHECK(body.step(patch(model, 0, 24), budget).details.pending_work > 0);
 }
 
 TEST_CASE("no script of budgets and contacts exceeds a budget or the worst work, and it gives the same bits again") {
   const TestModel model({.levels = 4, .touchable_above = 0.2});
   const std::uint32_t finest = model.view().levels - 1;
-  for (const Limits& limits : {Limits{.max_contacts = 1, .cached_factors = 1}, Limits{.max_contacts = 20},
-                               Limits{.max_contacts = 20, .refining_work = 60'000},
-                               Limits{.max_contacts = 20, .cached_factors = 1, .forces_only = true}}) {
+  for (const Elastostatic::Limits& limits :
+       {Elastostatic::Limits{.max_contacts = 1, .cached_factors = 1}, Elastostatic::Limits{.max_contacts = 20},
+        Elastostatic::Limits{.max_contacts = 20, .refining_work = 60'000},
+        Elastostatic::Limits{.max_contacts = 20, .cached_factors = 1, .forces_only = true}}) {
     CAPTURE(limits.max_contacts);
     const std::uint64_t whole =
         TestBody(model, limits).step(patch(model, 0, limits.max_contacts), any_budget, false).work;
     std::uint64_t digest[2] = {empty_hash, empty_hash};
     for (std::uint64_t& of_run : digest) {
       TestBody body(model, limits);
-      const Requirement& need = body.requirement();
+      const Elastostatic::Requirement& need = body.requirement();
       std::mt19937_64 random(17);
       std::uint32_t pending = 0;
       std::uint32_t refined = 0;
-      StepReport last;
-      std::vector<Contact> contacts;
+      Elastostatic::StepReport last;
+      std::vector<Constraint> contacts;
       for (std::uint32_t step = 0; step < 1500; ++step) {
         if (step % (1 + random() % 24) == 0 || contacts.empty()) {
           contacts = patch(model, random() % 40, 1 + random() % limits.max_contacts);
         }
         const std::uint64_t budget = need.least_work + random() % (random() % 8 == 0 ? 4 * whole : whole / 8 + 1);
         const bool with_field = !limits.forces_only && random() % 2 == 0;
-        const StepReport report = body.step(contacts, budget, with_field);
-        REQUIRE(report.status <= Status::coarser);
+        const Elastostatic::StepReport report = body.step(contacts, budget, with_field);
+        REQUIRE(answered(report.status));
         REQUIRE(report.work <= budget);
         REQUIRE(report.work <= need.worst_work[report.constraint_level]);
-        CHECK((report.constraint_level < finest || report.pending_work == 0));
-        pending += report.pending_work > 0 ? 1 : 0;
-        refined += last.pending_work > 0 && report.constraint_level > last.constraint_level ? 1 : 0;
+        CHECK((report.constraint_level < finest || report.details.pending_work == 0));
+        pending += report.details.pending_work > 0 ? 1 : 0;
+        refined += last.details.pending_work > 0 && report.constraint_level > last.constraint_level ? 1 : 0;
         last = report;
         of_run = hash_step(of_run, report, body.force(), {});
       }
@@ -232,16 +236,16 @@ TEST_CASE("held contacts reach the finest level on a budget that is too small fo
   const auto contacts = patch(model, 3, 32);
   for (const std::uint32_t factors : {1U, 2U, 4U}) {
     CAPTURE(factors);
-    const Limits limits{.max_contacts = 32, .cached_factors = factors};
+    const Elastostatic::Limits limits{.max_contacts = 32, .cached_factors = factors};
     TestBody finest(model, limits);
-    const StepReport whole = finest.step(contacts, any_budget, false);
+    const Elastostatic::StepReport whole = finest.step(contacts, any_budget, false);
     REQUIRE(whole.status == Status::ok);
     for (const std::uint64_t part : {2U, 4U, 8U, 16U}) {
       const std::uint64_t budget = whole.work / part;
       TestBody body(model, limits);
       std::uint32_t steps = 0;
       std::uint64_t pending = 0;
-      StepReport report;
+      Elastostatic::StepReport report;
       do {
         report = body.step(contacts, budget, false);
         ++steps;
@@ -249,11 +253,11 @@ TEST_CASE("held contacts reach the finest level on a budget that is too small fo
         REQUIRE(steps <= 40);
         CHECK(report.work <= budget);
         CHECK(report.work <= body.requirement().worst_work[report.constraint_level]);
-        pending = report.constraint_level < 4 ? report.pending_work : pending;
+        pending = report.constraint_level < 4 ? report.details.pending_work : pending;
       } while (report.constraint_level < 4);
       MESSAGE("finest level after ", steps, " steps of a ", part, "th of the work of a fresh factor");
       CHECK(pending == 0);
-      CHECK(report.cached_factor);
+      CHECK(report.details.cached_factor);
       for (std::uint32_t step = 1; step < limits.glide_cycles; ++step) {
         report = body.step(contacts, budget, false);
         CHECK(report.constraint_level == 4);
@@ -276,15 +280,16 @@ TEST_CASE("no more than the refining work of a step goes into a finer level") {
     }
     return steps;
   };
-  const std::uint32_t unbounded = steps_to_finest(Limits{}.refining_work);
+  const std::uint32_t unbounded = steps_to_finest(Elastostatic::Limits{}.refining_work);
   const std::uint32_t bounded = steps_to_finest(whole / 8);
   MESSAGE("finest level after ", unbounded, " steps; bounded, after ", bounded);
   CHECK(unbounded < bounded);
   CHECK(bounded <= 100);
   CHECK(steps_to_finest(1) == 101);
-  const Limits unbounded_limits{.max_contacts = 32};
-  const Requirement bounded_need = Elastostatic::required(model.model(), {.max_contacts = 32, .refining_work = 1});
-  const Requirement need = Elastostatic::required(model.model(), unbounded_limits);
+  const Elastostatic::Limits unbounded_limits{.max_contacts = 32};
+  const Elastostatic::Requirement bounded_need =
+      Elastostatic::required(model.model(), {.max_contacts = 32, .refining_work = 1});
+  const Elastostatic::Requirement need = Elastostatic::required(model.model(), unbounded_limits);
   for (std::uint32_t c = 0; c < 4; ++c) {
     CHECK(bounded_need.worst_work[c] < need.worst_work[c]);
   }
@@ -306,14 +311,14 @@ TEST_CASE("a comparison with many factors keeps no contact from the finest level
 
 TEST_CASE("a sliding contact reaches the finest level as well") {
   const TestModel model({.levels = 5, .touchable_above = 0.3});
-  const Limits limits{.max_contacts = 32, .cached_factors = 4};
+  const Elastostatic::Limits limits{.max_contacts = 32, .cached_factors = 4};
   TestBody finest(model, limits);
   const std::uint64_t budget = finest.step(patch(model, 0, 32), any_budget).work / 4;
   TestBody body(model, limits);
   std::uint32_t reached = 0;
   for (std::uint32_t step = 0; step < 200; ++step) {
-    const StepReport report = body.step(patch(model, step / 8, 32), budget);
-    REQUIRE(report.status <= Status::coarser);
+    const Elastostatic::StepReport report = body.step(patch(model, step / 8, 32), budget);
+    REQUIRE(answered(report.status));
     CHECK(report.work <= budget);
     reached += report.constraint_level == 4 ? 1 : 0;
   }

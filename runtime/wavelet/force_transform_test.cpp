@@ -1,4 +1,4 @@
-#include "runtime/wavelet/sparse_forces.hpp"
+#include "runtime/wavelet/force_transform.hpp"
 
 #include <doctest/doctest.h>
 

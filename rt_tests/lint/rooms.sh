@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Inside a folder too includes point downwards only, in the order of its rooms: a file includes those of its own room
+# and of rooms before it. What is not listed, the folder's door, comes last. A header of the door may be listed: it
+# declares what the rooms after it do.
+set -euo pipefail
+source "$(dirname "$0")/sources.sh"
+status=0
+downwards() {  # downwards FOLDER ROOM...
+  local folder=$1 upwards
+  shift
+  upwards=$(sources "$folder/*.hpp" "$folder/*.cpp" "$folder/*.h" | grep -vE '_test\.cpp$|/testing/' |
+    xargs -r grep -oHE "#include \"$folder/[^\"]+" | awk -v folder="$folder" -v rooms="$*" '
+      function rank(path, parts) {
+        sub("^" folder "/", "", path)
+        split(path, parts, "/")
+        return parts[1] in order ? order[parts[1]] : last
+      }
+      BEGIN {
+        last = split(rooms, room, " ") + 1
+        for (i = 1; i < last; ++i) order[room[i]] = i
+      }
+      {
+        file = $0; sub(/:#include.*/, "", file)
+        included = $0; sub(/.*"/, "", included)
+        if (rank(included) > rank(file)) print file " includes " included
+      }')
+  if [ -n "$upwards" ]; then
+    printf '%s: includes point upwards:\n%s\n' "$folder" "$upwards"
+    status=1
+  fi
+  for room in $(sources "$folder/*/*" | cut -d/ -f2 | sort -u); do
+    case " $* testing packaging examples messages " in
+      *" $room "*) ;;
+      *) printf '%s/%s has no place in the order of rooms (%s)\n' "$folder" "$room" "$0"; status=1 ;;
+    esac
+  done
+}
+downwards formats layout.hpp view.hpp verify.hpp stored_blocks.hpp verify write transport mesh store
+downwards runtime loop.hpp constraint.hpp model.hpp memory algebra wavelet compliance factor elastostatic.hpp elastostatic
+downwards offline surface remesh scene solve compress pipeline report figures cli
+downwards sim_hw guard body device transport control_loop session
+exit $status

@@ -1,0 +1,58 @@
+#include "runtime/factor/factor.hpp"
+
+#include <cstddef>
+#include <cstring>
+
+#include "runtime/algebra/cholesky.hpp"
+
+namespace greenloop {
+
+void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
+  const std::uint64_t stride = padded_order(3 * columns_of_a_set);
+  column = arena.take<std::uint32_t>(columns_of_a_set);
+  node = arena.take<std::uint32_t>(columns_of_a_set);
+  position = arena.take<std::uint32_t>(columns_of_a_set);
+  matrix = arena.take<Float4>(stride * stride / 4);
+}
+
+void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept {
+  const std::uint32_t order = padded_order(3 * from.columns);
+  for (std::uint32_t j = 0; j < order; ++j) {
+    const std::size_t begin = std::size_t{j} * stride / 4 + j / 4;
+    std::memcpy(to.matrix + begin, from.matrix + begin, sizeof(Float4) * (order / 4 - j / 4));
+  }
+  std::memcpy(to.node, from.node, sizeof(std::uint32_t) * from.columns);
+  to.columns = from.columns;
+  to.changes = from.changes;
+}
+
+void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
+  std::uint32_t at = 0;
+  while (factor.node[at] != node) {
+    ++at;
+  }
+  cholesky_remove(3 * factor.columns, 3 * at, 3, stride, factor.matrix, border);
+  --factor.columns;
+  std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
+}
+
+bool append_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
+  if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, border)) {
+    return false;
+  }
+  factor.node[factor.columns++] = node;
+  return true;
+}
+
+void list_positions(ColumnSet set, std::uint32_t* index_of_place, Factor& factor) noexcept {
+  for (std::uint32_t i = 0; i < factor.columns; ++i) {
+    index_of_place[column_place(factor.node[i])] = i;
+  }
+  for (std::uint32_t k = 0; k < set.count; ++k) {
+    std::uint32_t& index = index_of_place[column_place(set.column[k])];
+    factor.position[k] = index;
+    index = layout::none;
+  }
+}
+
+}  // namespace greenloop

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/algebra/float4.hpp"
+#include "runtime/memory/arena.hpp"
+#include "runtime/wavelet/column.hpp"
+
+namespace greenloop {
+
+/// The factors of one capacitance matrix and the set of columns they belong to.
+struct Factor {
+  std::uint64_t key = 0;   ///< of the columns; 0: empty
+  std::uint64_t used = 0;  ///< when it was last used
+  std::uint32_t columns = 0;
+  std::uint32_t changes = 0;          ///< nodes that came and went since it was made afresh
+  std::uint32_t* column = nullptr;    ///< [columns] increasing
+  std::uint32_t* node = nullptr;      ///< [columns] the same in the order of the matrix
+  std::uint32_t* position = nullptr;  ///< [columns] of each column in the matrix
+  Float4* matrix = nullptr;           ///< see cholesky_factor
+
+  /// Arrays out of `arena` for sets of so many columns; null while it counts.
+  void carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept;
+};
+
+/// Copies what a factor holds into another with room for it. For the loop; work: half the square of its order.
+void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept;
+
+/// Takes a node out of a factor by rank-one updates. border: [3 * stride / 4] scratch. For the loop; work:
+/// cholesky_remove_work, and a unit a column.
+void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
+
+/// Borders a factor by a node. border: its rows of the capacitance matrix of the factor's nodes and itself, up to the
+/// diagonal. False if it is not positive definite; then it is spoilt. For the loop; work: cholesky_append_work.
+[[nodiscard]] bool append_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
+
+/// Lists where the set's columns stand in its factor. index_of_place: [domain], layout::none before and after. For the
+/// loop; work: two units a column.
+void list_positions(ColumnSet set, std::uint32_t* index_of_place, Factor& factor) noexcept;
+
+}  // namespace greenloop

@@ -1,0 +1,114 @@
+#include "runtime/factor/factor_work.hpp"
+
+#include "runtime/algebra/cholesky.hpp"
+
+namespace greenloop {
+namespace {
+
+// bounds for any batch of a set
+CapacitanceCounts batch_counts(const ModelCounts& model, const SetCounts& whole) {
+  CapacitanceCounts counts = capacitance_counts(model, whole);
+  counts.bounds = counts.bounds || !has_panel(counts.room, counts.slots, counts.rows);
+  return counts;
+}
+
+}  // namespace
+
+std::uint64_t touch_work(const SetCounts& set) noexcept {
+  return 2 * set.visits + 8 * set.coefficients + count_field_work(set);
+}
+
+std::uint64_t count_field_work(const SetCounts& set) noexcept { return set.coefficients; }
+
+CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
+  return {.prediction = model.prediction,
+          .columns = set.columns,
+          .rows = set.columns,
+          .slots = set.slots,
+          .set_visits = set.visits,
+          .stored = set.stored,
+          .visits = set.column.visits,
+          .coefficients = set.column.coefficients,
+          .blocks = set.column.blocks,
+          .room = model.capacitance_room,
+          .bounds = set.bounds};
+}
+
+std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
+  const auto order = static_cast<std::uint32_t>(3 * set.columns);
+  return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
+         assemble_capacitance_work(capacitance_counts(model, set)) + cholesky_factor_work(order);
+}
+
+void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
+                  SetCounts& counts) noexcept {
+  counts.coefficients = touched.coefficients();
+  counts.visits = touched.visits;
+  counts.slots = count_slots(set, touched);
+  for (std::uint32_t k = 0; k < set.count; ++k) {
+    counts.column.add(cost.of(set.column[k]));
+  }
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      counts.stored += stored[touched.list[q][k]];
+    }
+  }
+}
+
+std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set, const ChangeCounts& changes) noexcept {
+  const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
+  CapacitanceCounts capacitance = capacitance_counts(model, set);
+  capacitance.rows = changes.added;
+  capacitance.visits = changes.entering.visits;
+  capacitance.coefficients = changes.entering.coefficients;
+  capacitance.blocks = changes.entering.blocks;
+  return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
+         changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
+}
+
+std::uint64_t most_in_a_batch(const ModelCounts& model, const SetCounts& whole) noexcept {
+  return batch_width(model.capacitance_room, whole.coefficients > 0 ? whole.coefficients : 1);
+}
+
+std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns) noexcept {
+  return find_changes_work(factors + 4, columns);
+}
+
+std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set, std::uint64_t removed) noexcept {
+  const std::uint64_t columns = set.columns + removed;
+  const auto order = static_cast<std::uint32_t>(3 * columns);
+  return std::uint64_t{order} * order / 2 + removed * (2 * columns + cholesky_remove_work(order, 0, 3)) + 12 * columns +
+         touch_work(set) + begin_capacitance_work(batch_counts(model, set));
+}
+
+std::uint64_t enter_work(const SetCounts& set, std::uint64_t columns_before) noexcept {
+  return store_capacitance_work(set.columns) + columns_before +
+         cholesky_append_work(static_cast<std::uint32_t>(3 * columns_before), 3);
+}
+
+std::uint64_t most_slice_work(const ModelCounts& model, const SetCounts& whole) noexcept {
+  const std::uint64_t fresh = factor_work(model, whole);
+  const std::uint64_t begin = begin_batch_work(model, whole, FactorChanges::most);
+  return compare_factors_work(model.cached_factors, whole.columns) + (fresh > begin ? fresh : begin);
+}
+
+std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole, const FactorChanges& changes) noexcept {
+  const std::uint64_t missing = changes.missing;
+  const std::uint64_t most = most_in_a_batch(model, whole);
+  const std::uint64_t adding = (missing + most - 1) / most;
+  const std::uint64_t batches = adding == 0 && changes.removed > 0 ? 1 : adding;
+  CapacitanceCounts counts = batch_counts(model, whole);
+  const std::uint64_t once = add_capacitance_blocks_work(counts);
+  counts.blocks = counts.rows = 0;  // each row is in one batch
+  const std::uint64_t blocks = adding > 0 ? once + (adding - 1) * add_capacitance_blocks_work(counts) : 0;
+  return batches * begin_batch_work(model, whole, changes.removed) + blocks +
+         missing * enter_work(whole, whole.columns);
+}
+
+std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole) noexcept {
+  FactorChanges changes;
+  changes.missing = static_cast<std::uint32_t>(whole.columns);
+  return pending_work(model, whole, changes);
+}
+
+}  // namespace greenloop

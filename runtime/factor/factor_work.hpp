@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/compliance/capacitance.hpp"
+#include "runtime/factor/factor_changes.hpp"
+
+namespace greenloop {
+
+/// Counts of a model and its limits that the work of a step follows from.
+struct ModelCounts {
+  std::uint32_t levels = 0;
+  std::uint32_t max_contacts = 0;
+  std::uint32_t cached_factors = 0;
+  std::uint32_t glide_cycles = 1;
+  std::uint64_t refining_work = 0;
+  std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
+  Prediction prediction{};
+  bool forces_only = false;
+  bool mixtures = true;
+  std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
+  std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F
+};
+
+/// What a set of columns holds.
+struct SetCounts {
+  std::uint64_t contacts = 0;
+  std::uint64_t columns = 0;
+  // what follows only if a field is wanted or a factor is to be made
+  std::uint64_t coefficients = 0;  ///< that the columns touch, none counted twice
+  std::uint64_t visits = 0;        ///< of touching them
+  // and this only for a factor
+  std::uint64_t slots = 0;   ///< of the capacitance matrix
+  std::uint64_t stored = 0;  ///< blocks of all layers in those columns
+  ColumnSums column;         ///< over all columns
+  bool bounds = false;       ///< of any set that holds no more, not of one
+};
+
+/// Work units of finding the coefficients that a set touches and counting what its factor takes.
+[[nodiscard]] std::uint64_t touch_work(const SetCounts& set) noexcept;
+
+/// Work units of counting the blocks of a field.
+[[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
+
+/// What the whole capacitance matrix of a set takes.
+[[nodiscard]] CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept;
+
+/// Work units of a capacitance factor.
+[[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;
+
+/// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. stored: [domain] blocks of
+/// all layers in each coefficient's column.
+void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
+                  SetCounts& counts) noexcept;
+
+/// Work units of make_factor from a base, the columns of the new nodes included.
+[[nodiscard]] std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set,
+                                               const ChangeCounts& changes) noexcept;
+
+// The pieces of continue_factor (factor_job.hpp).
+
+/// Work units of comparing a set with the factors that there are.
+[[nodiscard]] std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns) noexcept;
+
+/// Nodes that enter a factor together: as many rows of their matrix as the scratch has room for.
+[[nodiscard]] std::uint64_t most_in_a_batch(const ModelCounts& model, const SetCounts& whole) noexcept;
+
+/// Work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of the batch.
+[[nodiscard]] std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set,
+                                             std::uint64_t removed) noexcept;
+
+/// Work units of bordering the factor of a whole set by a node.
+[[nodiscard]] std::uint64_t enter_work(const SetCounts& set, std::uint64_t columns_before) noexcept;
+
+/// Work units that a slice may spend, beside giving up a batch: every piece of it fits.
+[[nodiscard]] std::uint64_t most_slice_work(const ModelCounts& model, const SetCounts& whole) noexcept;
+
+/// Bound of the work units until a factor has the changes, and all the missing nodes, of `whole`; 0: there are none.
+[[nodiscard]] std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole,
+                                         const FactorChanges& changes) noexcept;
+
+/// The same of a factor that is not begun.
+[[nodiscard]] std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole) noexcept;
+
+}  // namespace greenloop
