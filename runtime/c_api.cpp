@@ -168,7 +168,8 @@ Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) {
   Elastostatic::Limits same{.max_contacts = limits.max_contacts,
                             .cached_factors = limits.cached_factors,
                             .forces_only = limits.forces_only != 0,
-                            .mixtures = limits.no_mixtures == 0};
+                            .mixtures = limits.no_mixtures == 0,
+                            .keep_capacitance = limits.keep_capacitance != 0};
   same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
   same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
   return same;
@@ -180,7 +181,7 @@ greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_mo
   const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
   const Elastostatic::Limits& limits = intent.limits;
   return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.mixtures ? 0 : 1,
-           limits.glide_cycles, limits.refining_work},
+           limits.keep_capacitance ? 1 : 0, limits.glide_cycles, limits.refining_work},
           intent.budget.work,
           intent.rate};
 }
@@ -219,6 +220,12 @@ greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic
           report.error,
           {details.cached_factor ? 1 : 0, details.finer_level, details.finer_contacts, details.changed_nodes,
            details.glide, details.level_difference, details.switch_work, details.pending_work}};
+}
+
+int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32_t i, uint32_t j, float* block) {
+  const auto* const in_arena = reinterpret_cast<const Body*>(body);
+  const auto same = std::bit_cast<Elastostatic>(in_arena);
+  return same.compliance(i, j, std::span<float, 9>(block, 9)) ? 1 : 0;
 }
 
 const char* greenloop_rule_text(greenloop_rule rule) { return rule_text(static_cast<VerifyRule>(rule)).meaning; }

@@ -43,7 +43,12 @@ Factor* find_factor(Body& body, const Plan& plan) {
     return plan.cached;
   }
   drop_batch(body.job, body.capacitance);
-  return make_factor(body.factor_tools(), body.planned.all(), body.touched, plan.update ? &body.changes : nullptr);
+  Factor* const made =
+      make_factor(body.factor_tools(), body.planned.all(), body.touched, plan.update ? &body.changes : nullptr);
+  if (made != nullptr) {
+    body.cache.keep(*made, body.planned.all());
+  }
+  return made;
 }
 
 // three numbers of each column, between the order of the set and that of a factor
@@ -175,9 +180,10 @@ void report_levels(const Body& body, const Plan& plan, Elastostatic::StepReport&
   const ContactSet& set = body.planned;
   report.constraint_level = set.coarsest();
   report.details.finer_level = static_cast<std::uint8_t>(set.finest());
-  std::uint32_t finer = 0;
-  for (std::uint32_t k = 0; k < set.columns; ++k) {
-    finer += column_level(set.column[k]) == set.finest() ? set.members[k] : 0;
+  std::uint64_t finer = set.coarsest() == set.finest() ? plan.counts.contacts : 0;
+  for (std::uint32_t k = set.columns; finer < plan.counts.contacts && column_level(set.column[k - 1]) == set.finest();
+       --k) {
+    finer += set.members[k - 1];
   }
   report.details.finer_contacts = static_cast<std::uint16_t>(finer);
   report.field_level = plan.field_levels.details;
@@ -192,7 +198,6 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   if (factor == nullptr) {
     return held(Status::held_singular, work);
   }
-  body.cache.keep(*factor, set.all());
   work += force_work(plan.counts);
   if (!solve_forces(body, contacts, set, *factor, body.column_force)) {
     return held(Status::held_overflow, work);
@@ -213,6 +218,7 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   const bool finest =
       report.constraint_level + 1 == body.view->levels && plan.field_levels.details == plan.field_levels.nodes;
   report.status = finest && report.details.glide == 1 ? Status::ok : Status::coarser;
+  body.answered = true;
   return report;
 }
 
@@ -287,12 +293,34 @@ Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts
   } else {
     const bool wants_field = !response.displacement.empty();
     const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
+    body.answered = false;
     const Plan plan = make_plan(body, contacts, budget.work - report.work, wants_field, displaced);
     report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, budget.work, response)
                        : held(Status::held_over_budget, report.work + plan.work);
   }
   assert(Arena::intact(body.last_red_zone));
   return report;
+}
+
+bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept {
+  const Body& body = *body_;
+  const ContactSet& set = body.planned;
+  if (!body.answered || i >= body.last.contacts() || j >= body.last.contacts()) {
+    return false;
+  }
+  const Factor* const factor = body.cache.find(set.all());
+  if (factor == nullptr || factor->capacitance == nullptr) {
+    return false;
+  }
+  const std::size_t row = std::size_t{3} * factor->position[set.place[i]];
+  const std::size_t column = std::size_t{3} * factor->position[set.place[j]];
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      const std::size_t a = row + r, b = column + c;
+      block[3 * c + r] = factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b];
+    }
+  }
+  return true;
 }
 
 }  // namespace greenloop

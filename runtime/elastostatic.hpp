@@ -21,6 +21,7 @@ class Elastostatic {
     std::uint32_t cached_factors = 8;  ///< 1..1024, capacitance factors kept
     bool forces_only = false;          ///< no fields: little memory, and no couplings to be mirrored
     bool mixtures = true;              ///< whether sets may mix constraint levels
+    bool keep_capacitance = false;     ///< capacitance matrices beside their factors, for `compliance`
     std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
   };
@@ -84,6 +85,13 @@ class Elastostatic {
   /// exception or clock; same model, limits, history, constraints and budget give the same bits. Work: at most
   /// budget.work.
   StepReport step(std::span<const Constraint> constraints, Budget budget, const Response& response) noexcept;
+
+  /// The compliance between two constraints, by their places among those of the last answer, as it was answered with:
+  /// the displacement of i per force at j, m/N, of nodes that share a column the column's. block: 3 c + r, displacement
+  /// r per force c. False, and nothing is written, unless the capacitance is kept (Limits), the last step was answered
+  /// and its factor is still in the cache, which one factor of a finer level may replace. For the loop; work:
+  /// constant but for a look into the cache.
+  bool compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept;
 
  private:
   Body* body_ = nullptr;

@@ -6,7 +6,7 @@
  * Threads: a greenloop_model does not change once it is open, so any number of threads may use one at once, each with a
  * body and an arena of its own. A body is for one thread at a time; so are the buffers of a step.
  *
- * Only greenloop_elastostatic_step is for the loop; the rest is for start-up. */
+ * What is said to be for the loop may be called there; the rest is for start-up. */
 #ifndef GREENLOOP_H
 #define GREENLOOP_H
 /* NOLINTBEGIN(modernize-use-using, modernize-deprecated-headers): this header is C */
@@ -116,6 +116,7 @@ typedef struct greenloop_elastostatic_limits {
   uint32_t cached_factors; /* 1..1024, capacitance factors kept */
   int forces_only;         /* 1: no fields, little memory */
   int no_mixtures;         /* 1: sets do not mix constraint levels */
+  int keep_capacitance;    /* 1: capacitance matrices beside their factors, for greenloop_elastostatic_compliance */
   uint32_t glide_cycles;   /* 1..256, steps in which the forces go over to another level; 1: at once; 0: 16 */
   uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
 } greenloop_elastostatic_limits;
@@ -213,11 +214,17 @@ greenloop_elastostatic_created greenloop_elastostatic_create(const greenloop_mod
 /* One cycle of the loop: the forces that hold `count` contacts where they are, and the displacement of the first
  * `nodes` nodes, all or those of the coarser levels (greenloop_node_count_to). force: 3 * count floats [N], in the
  * order of the contacts. displacement: 4 * nodes floats [m], x y z 0 per node, 16-byte aligned; null and 0 if no field
- * is wanted, which then costs nothing. Spends at most `work` units. */
+ * is wanted, which then costs nothing. Spends at most `work` units. For the loop. */
 greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic* body,
                                                           const greenloop_constraint* contacts, size_t count,
                                                           uint64_t work, float* force, float* displacement,
                                                           uint32_t nodes);
+
+/* The compliance between two constraints, by their places among those of the last answer, as it was answered with: the
+ * displacement of i per force at j [m/N], of nodes that share a column the column's. block: 9 floats, 3 c + r,
+ * displacement r per force c. 0, and nothing is written, unless the capacitance is kept (limits), the last step was
+ * answered and its factor is still in the cache, which one factor of a finer level may replace. For the loop. */
+int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32_t i, uint32_t j, float* block);
 
 /* One sentence each; static storage. */
 const char* greenloop_rule_text(greenloop_rule rule);

@@ -92,7 +92,7 @@ void check_loop(const test::Body& body, const ExactContacts& exact, layout::Wave
          work < 2 * static_cast<double>(need.worst_work[file.view.levels - 1]); work *= 1.5) {
       const Answer answer(opened.model, contacts, static_cast<std::uint64_t>(work));
       const Elastostatic::StepReport& report = answer.report;
-      REQUIRE(answered(report.status));
+      REQUIRE(greenloop::answered(report.status));
       if (report.details.finer_level != report.constraint_level || report.field_level + 1 < file.view.levels) continue;
       levels.insert(report.constraint_level);
       const Eigen::VectorXd found =

@@ -70,7 +70,7 @@ StressReport stress(const Arguments& arguments) {
     throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
   }
   StressReport report{.model = arguments.model, .options = arguments.options, .result = {}};
-  greenloop::Limits& limits = report.options.limits;
+  greenloop::Elastostatic::Limits& limits = report.options.limits;
   if (limits.max_contacts == 0) {
     limits.max_contacts = opened.model.view().info->max_contacts;
   }

@@ -168,8 +168,8 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.older_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
-  body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns);
-  body.job.carve(arena, view, sizes.set_columns);
+  body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
+  body.job.carve(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.mixture.carve(arena, sizes.counts.max_contacts);
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
   body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);

@@ -55,6 +55,7 @@ struct Body {
   FactorCache cache;
   FactorJob job;  ///< the factor of a finer level
   LastAnswer last;
+  bool answered = false;  ///< `planned` is the set of the last answer
   Glide glide;
   Mixture mixture;
   const std::byte* last_red_zone = nullptr;

@@ -39,7 +39,8 @@ void Glide::turn_back(std::uint32_t contacts) noexcept {
 void Glide::advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept {
   const std::uint32_t level = set.coarsest() == set.finest() ? set.coarsest() : mixed;
   const bool persist = last.persists(contacts);
-  const bool changes = persist && (level != to_ || moves(contacts, set, last));
+  // contacts change places between two levels only where both sets are mixed
+  const bool changes = persist && (level != to_ || (level == mixed && moves(contacts, set, last)));
   const bool returns = changes && left_ > 0 && !kept_ && level == from_ && level != mixed;
   fresh_ = changes && !returns;
   moving_ = persist && (changes || left_ > 0);

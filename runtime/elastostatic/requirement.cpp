@@ -21,6 +21,7 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
   counts.mixtures = limits.mixtures;
+  counts.keeps_capacitance = limits.keep_capacitance;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
       sizes.most_neighbours[q] = count_lifting(view, q).most_neighbours;

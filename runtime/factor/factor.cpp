@@ -7,12 +7,51 @@
 
 namespace greenloop {
 
-void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set) noexcept {
+namespace {
+
+// Lower triangles of matrices by columns, `stride` floats apart.
+
+void copy_lower(std::uint32_t order, std::uint32_t stride, const float* from, float* to) {
+  for (std::size_t j = 0; j < order; ++j) {
+    std::memcpy(to + j * stride + j, from + j * stride + j, sizeof(float) * (order - j));
+  }
+}
+
+void remove_rows(std::uint32_t order, std::uint32_t first, std::uint32_t removed, std::uint32_t stride, float* a) {
+  const std::size_t end = std::size_t{first} + removed;
+  for (std::size_t j = 0; j < first; ++j) {
+    std::memmove(a + j * stride + first, a + j * stride + end, sizeof(float) * (order - end));
+  }
+  for (std::size_t j = end; j < order; ++j) {
+    const std::size_t to = j - removed;
+    std::memmove(a + to * stride + to, a + j * stride + j, sizeof(float) * (order - j));
+  }
+}
+
+// rows: `stride` floats apart, up to the diagonal
+void append_rows(std::uint32_t order, std::uint32_t added, std::uint32_t stride, const float* rows, float* a) {
+  for (std::size_t r = 0; r < added; ++r) {
+    for (std::size_t j = 0; j <= order + r; ++j) {
+      a[j * stride + order + r] = rows[r * stride + j];
+    }
+  }
+}
+
+}  // namespace
+
+void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set, bool keeps_capacitance) noexcept {
   const std::uint64_t stride = padded_order(3 * columns_of_a_set);
   column = arena.take<std::uint32_t>(columns_of_a_set);
   node = arena.take<std::uint32_t>(columns_of_a_set);
   position = arena.take<std::uint32_t>(columns_of_a_set);
   matrix = arena.take<Float4>(stride * stride / 4);
+  capacitance = keeps_capacitance ? arena.take<float>(stride * stride) : nullptr;
+}
+
+void keep_capacitance(std::uint32_t columns, std::uint32_t stride, Factor& factor) noexcept {
+  if (factor.capacitance != nullptr) {
+    copy_lower(3 * columns, stride, reinterpret_cast<const float*>(factor.matrix), factor.capacitance);
+  }
 }
 
 void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept {
@@ -20,6 +59,9 @@ void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept 
   for (std::uint32_t j = 0; j < order; ++j) {
     const std::size_t begin = std::size_t{j} * stride / 4 + j / 4;
     std::memcpy(to.matrix + begin, from.matrix + begin, sizeof(Float4) * (order / 4 - j / 4));
+  }
+  if (from.capacitance != nullptr) {
+    copy_lower(3 * from.columns, stride, from.capacitance, to.capacitance);
   }
   std::memcpy(to.node, from.node, sizeof(std::uint32_t) * from.columns);
   to.columns = from.columns;
@@ -32,11 +74,17 @@ void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float
     ++at;
   }
   cholesky_remove(3 * factor.columns, 3 * at, 3, stride, factor.matrix, border);
+  if (factor.capacitance != nullptr) {
+    remove_rows(3 * factor.columns, 3 * at, 3, stride, factor.capacitance);
+  }
   --factor.columns;
   std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
 }
 
 bool append_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
+  if (factor.capacitance != nullptr) {
+    append_rows(3 * factor.columns, 3, stride, reinterpret_cast<const float*>(border), factor.capacitance);
+  }
   if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, border)) {
     return false;
   }

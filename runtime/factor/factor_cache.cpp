@@ -24,13 +24,13 @@ bool belongs_to(const Factor& factor, ColumnSet set) {
 
 }  // namespace
 
-void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept {
+void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns, bool keeps_capacitance) noexcept {
   stride_ = padded_order(3 * columns);
   factors_ = factors;
   factor_ = arena.take_zeroed<Factor>(factors);
   for (std::uint32_t i = 0; i < factors; ++i) {
     Factor factor;
-    factor.carve(arena, columns);
+    factor.carve(arena, columns, keeps_capacitance);
     if (factor_ != nullptr) {
       factor_[i] = factor;
     }
@@ -49,7 +49,7 @@ Factor* FactorCache::find(ColumnSet set) const noexcept {
 }
 
 Factor& FactorCache::make_room(ColumnSet set) noexcept {
-  const std::uint64_t key = key_of(set);
+  const std::uint64_t key = room_key_ = key_of(set);
   Factor* oldest = factor_;
   for (std::uint32_t i = 0; i < factors_; ++i) {
     if (factor_[i].key == key) {
@@ -64,7 +64,7 @@ Factor& FactorCache::make_room(ColumnSet set) noexcept {
 }
 
 void FactorCache::keep(Factor& factor, ColumnSet set) noexcept {
-  factor.key = key_of(set);
+  factor.key = room_key_;
   use(factor);
   factor.columns = set.count;
   std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.count);

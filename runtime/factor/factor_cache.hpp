@@ -12,7 +12,7 @@ namespace greenloop {
 class FactorCache {
  public:
   /// Room for `factors` sets of `columns` each, out of `arena`; null arrays while it counts.
-  void carve(Arena& arena, std::uint32_t factors, std::uint32_t columns) noexcept;
+  void carve(Arena& arena, std::uint32_t factors, std::uint32_t columns, bool keeps_capacitance = false) noexcept;
 
   /// Floats from column to column of a factor's matrix.
   [[nodiscard]] std::uint32_t stride() const noexcept { return stride_; }
@@ -34,7 +34,7 @@ class FactorCache {
   /// Marks a factor as the most recently used.
   void use(Factor& factor) noexcept { factor.used = ++uses_; }
 
-  /// Marks the factors of `set` as complete and the most recently used.
+  /// Marks the factors of `set`, for which room was made last, as complete and the most recently used.
   void keep(Factor& factor, ColumnSet set) noexcept;
 
  private:
@@ -42,6 +42,7 @@ class FactorCache {
   std::uint32_t factors_ = 0;
   std::uint32_t stride_ = 0;
   std::uint64_t uses_ = 0;
+  std::uint64_t room_key_ = 0;  ///< of the set that room was made for
 };
 
 }  // namespace greenloop

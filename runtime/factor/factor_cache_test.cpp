@@ -26,7 +26,11 @@ class SmallCache {
   void use(std::vector<std::uint32_t> columns, std::uint32_t level = 2) {
     const ColumnSet set = set_of(columns, level);
     Factor* found = cache.find(set);
-    cache.keep(found != nullptr ? *found : cache.make_room(set), set);
+    if (found != nullptr) {
+      cache.use(*found);
+    } else {
+      cache.keep(cache.make_room(set), set);
+    }
   }
 
   FactorCache cache;

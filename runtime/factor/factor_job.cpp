@@ -63,6 +63,7 @@ Factor* make_fresh(const FactorTools& tools, ColumnSet set, const Touched& touch
   Factor& factor = tools.cache.make_room(set);
   assemble_capacitance(tools.refinement, set, touched, tools.capacitance, tools.force, tools.cache.stride(),
                        factor.matrix);
+  keep_capacitance(set.count, tools.cache.stride(), factor);
   factor.changes = 0;
   for (std::uint32_t k = 0; k < set.count; ++k) {
     factor.node[k] = set.column[k];
@@ -228,7 +229,7 @@ bool continue_batch(FactorJob& job, const FactorTools& tools, std::uint64_t allo
   std::uint64_t work = add_capacitance_blocks(tools.refinement, job.touched, tools.capacitance, allowance, job.batch);
   bool holds = !job.batch.has_blocks_left();
   while (holds && job.entered < job.batch.computed) {
-    const std::uint64_t node = enter_work(job.counts, job.factor.columns);
+    const std::uint64_t node = enter_work(tools.counts, job.counts, job.factor.columns);
     holds = node <= allowance - work;
     if (holds) {
       enter_next(job, tools);
@@ -286,8 +287,9 @@ void hand_over(FactorJob& job, const FactorTools& tools, ColumnSet set) {
 
 }  // namespace
 
-void FactorJob::carve(Arena& arena, const ModelView& view, std::uint32_t columns_of_a_set) noexcept {
-  factor.carve(arena, columns_of_a_set);
+void FactorJob::carve(Arena& arena, const ModelView& view, std::uint32_t columns_of_a_set,
+                      bool keeps_capacitance) noexcept {
+  factor.carve(arena, columns_of_a_set, keeps_capacitance);
   column = arena.take<std::uint32_t>(columns_of_a_set);
   touched.carve(arena, view);
 }

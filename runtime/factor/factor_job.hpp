@@ -54,7 +54,7 @@ struct FactorJob {
   FactorChanges changes;    ///< what tells the factor from the set, within a step
 
   /// Arrays out of `arena` for sets of `columns`; null while it counts.
-  void carve(Arena& arena, const ModelView& view, std::uint32_t columns_of_a_set) noexcept;
+  void carve(Arena& arena, const ModelView& view, std::uint32_t columns_of_a_set, bool keeps_capacitance) noexcept;
 };
 
 /// Makes the factor of a set in the place of the least recently used one, from changes.base or, where `changes` is

@@ -52,7 +52,8 @@ std::uint64_t largest_piece(const Body& body, const SetCounts& whole) {
   const Prediction& prediction = body.counts.prediction;
   const std::uint64_t blocks = longest * (88 + prediction.weight_work * 2 * whole.columns);
   const std::uint64_t pair = prediction.pair_work * whole.visits + 6 * whole.columns;
-  return std::max({blocks, pair, begin_batch_work(body.counts, whole, 0), enter_work(whole, whole.columns)});
+  return std::max(
+      {blocks, pair, begin_batch_work(body.counts, whole, 0), enter_work(body.counts, whole, whole.columns)});
 }
 
 // solution of the set's matrix for a right-hand side of ones, in the order of the set
@@ -324,6 +325,75 @@ TEST_CASE("a sliding contact reaches the finest level as well") {
   }
   MESSAGE(reached, " of 200 steps at the finest level");
   CHECK(reached > 100);
+}
+
+// worst difference of C f from the displacements, over the largest: distinct columns, one compliance
+double residual(const TestBody& body, const std::vector<Constraint>& contacts) {
+  double worst = 0, largest = 0;
+  for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+    double sum[3] = {};
+    for (std::uint32_t j = 0; j < contacts.size(); ++j) {
+      float block[9];
+      REQUIRE(body.body().compliance(i, j, block));
+      for (std::size_t e = 0; e < 9; ++e) {
+        sum[e % 3] += double{block[e]} * body.force()[3 * j + e / 3];
+      }
+    }
+    for (std::size_t r = 0; r < 3; ++r) {
+      worst = std::max(worst, std::abs(sum[r] - contacts[i].value[r]));
+      largest = std::max(largest, std::abs(double{contacts[i].value[r]}));
+    }
+  }
+  return worst / largest;
+}
+
+TEST_CASE("the capacitance that is kept is that of the answer, however its factor was made") {
+  const TestModel model({.levels = 5, .touchable_above = 0.5});
+  const Elastostatic::Limits limits{
+      .max_contacts = 24, .cached_factors = 2, .mixtures = false, .keep_capacitance = true, .glide_cycles = 1};
+  TestBody body(model, limits);
+  const std::uint64_t fresh_work = body.step(patch(model, 0, 24), any_budget).work;
+  CHECK(residual(body, patch(model, 0, 24)) < 1e-4);
+  int updates = 0;
+  for (std::size_t first = 1; first < 60; first += 1 + first % 3) {
+    const auto contacts = patch(model, first, 16 + first % 9);
+    updates += body.step(contacts, any_budget).details.changed_nodes > 0 ? 1 : 0;
+    CHECK(residual(body, contacts) < 1e-4);
+  }
+  CHECK(updates > 20);
+  // in slices
+  TestBody slow(model, limits);
+  const auto contacts = patch(model, 100, 24);
+  Elastostatic::StepReport report;
+  int steps = 0;
+  do {
+    report = slow.step(contacts, fresh_work / 2);
+    REQUIRE(answered(report.status));
+  } while (report.status != Status::ok && ++steps < 500);
+  REQUIRE(report.status == Status::ok);
+  CHECK(steps > 0);
+  CHECK(residual(slow, contacts) < 1e-4);
+}
+
+TEST_CASE("there is no compliance where none is kept, nothing was answered or a place is out of range") {
+  const TestModel model({.levels = 3});
+  TestBody without(model, {.max_contacts = 4, .cached_factors = 1});
+  TestBody with(model, {.max_contacts = 4, .cached_factors = 1, .keep_capacitance = true});
+  float block[9] = {7};
+  CHECK_FALSE(with.body().compliance(0, 0, block));
+  const auto contacts = patch(model, 0, 4);
+  without.step(contacts, any_budget);
+  CHECK_FALSE(without.body().compliance(0, 0, block));
+  with.step(contacts, any_budget);
+  CHECK_FALSE(with.body().compliance(0, 4, block));
+  CHECK(block[0] == 7);
+  CHECK(with.body().compliance(0, 3, block));
+  float transposed[9];
+  CHECK(with.body().compliance(3, 0, transposed));
+  CHECK(block[1] == transposed[3]);
+  with.step({}, any_budget);
+  CHECK_FALSE(with.body().compliance(0, 0, block));
+  CHECK(with.requirement().bytes > without.requirement().bytes);
 }
 
 }  // namespace

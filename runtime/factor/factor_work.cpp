@@ -5,6 +5,11 @@
 namespace greenloop {
 namespace {
 
+// of copying the capacitance matrix of so many rows where it is kept
+std::uint64_t kept_work(const ModelCounts& model, std::uint64_t order) {
+  return model.keeps_capacitance ? order * order / 2 : 0;
+}
+
 // bounds for any batch of a set
 CapacitanceCounts batch_counts(const ModelCounts& model, const SetCounts& whole) {
   CapacitanceCounts counts = capacitance_counts(model, whole);
@@ -37,7 +42,8 @@ CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& 
 std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
   return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
-         assemble_capacitance_work(capacitance_counts(model, set)) + cholesky_factor_work(order);
+         assemble_capacitance_work(capacitance_counts(model, set)) + kept_work(model, order) +
+         cholesky_factor_work(order);
 }
 
 void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
@@ -62,8 +68,11 @@ std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set,
   capacitance.visits = changes.entering.visits;
   capacitance.coefficients = changes.entering.coefficients;
   capacitance.blocks = changes.entering.blocks;
-  return std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
-         changes.added * cholesky_append_work(order, 3) + assemble_capacitance_work(capacitance) + 6 * set.columns;
+  const std::uint64_t kept = (1 + changes.removed) * kept_work(model, order);
+  const std::uint64_t appended = model.keeps_capacitance ? 3 * std::uint64_t{order} : 0;
+  return kept + std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
+         changes.added * (appended + cholesky_append_work(order, 3)) + assemble_capacitance_work(capacitance) +
+         6 * set.columns;
 }
 
 std::uint64_t most_in_a_batch(const ModelCounts& model, const SetCounts& whole) noexcept {
@@ -77,12 +86,14 @@ std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns)
 std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set, std::uint64_t removed) noexcept {
   const std::uint64_t columns = set.columns + removed;
   const auto order = static_cast<std::uint32_t>(3 * columns);
-  return std::uint64_t{order} * order / 2 + removed * (2 * columns + cholesky_remove_work(order, 0, 3)) + 12 * columns +
-         touch_work(set) + begin_capacitance_work(batch_counts(model, set));
+  return (1 + removed) * kept_work(model, order) + std::uint64_t{order} * order / 2 +
+         removed * (2 * columns + cholesky_remove_work(order, 0, 3)) + 12 * columns + touch_work(set) +
+         begin_capacitance_work(batch_counts(model, set));
 }
 
-std::uint64_t enter_work(const SetCounts& set, std::uint64_t columns_before) noexcept {
-  return store_capacitance_work(set.columns) + columns_before +
+std::uint64_t enter_work(const ModelCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {
+  const std::uint64_t kept = model.keeps_capacitance ? 9 * (columns_before + 1) : 0;
+  return kept + store_capacitance_work(set.columns) + columns_before +
          cholesky_append_work(static_cast<std::uint32_t>(3 * columns_before), 3);
 }
 
@@ -102,7 +113,7 @@ std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole, con
   counts.blocks = counts.rows = 0;  // each row is in one batch
   const std::uint64_t blocks = adding > 0 ? once + (adding - 1) * add_capacitance_blocks_work(counts) : 0;
   return batches * begin_batch_work(model, whole, changes.removed) + blocks +
-         missing * enter_work(whole, whole.columns);
+         missing * enter_work(model, whole, whole.columns);
 }
 
 std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole) noexcept {

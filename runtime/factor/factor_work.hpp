@@ -18,6 +18,7 @@ struct ModelCounts {
   Prediction prediction{};
   bool forces_only = false;
   bool mixtures = true;
+  bool keeps_capacitance = false;
   std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
   std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F
 };
@@ -70,7 +71,8 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
                                              std::uint64_t removed) noexcept;
 
 /// Work units of bordering the factor of a whole set by a node.
-[[nodiscard]] std::uint64_t enter_work(const SetCounts& set, std::uint64_t columns_before) noexcept;
+[[nodiscard]] std::uint64_t enter_work(const ModelCounts& model, const SetCounts& set,
+                                       std::uint64_t columns_before) noexcept;
 
 /// Work units that a slice may spend, beside giving up a batch: every piece of it fits.
 [[nodiscard]] std::uint64_t most_slice_work(const ModelCounts& model, const SetCounts& whole) noexcept;

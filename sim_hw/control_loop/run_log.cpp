@@ -108,6 +108,8 @@ const char* name(Status status) {
       return "held_singular";
     case Status::held_overflow:
       return "held_overflow";
+    case Status::held_unsupported:
+      return "held_unsupported";
   }
   return "unknown";
 }
