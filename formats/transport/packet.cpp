@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "formats/transport/coupling_blocks.hpp"
@@ -15,23 +14,40 @@ namespace {
 using layout::SectionEntry;
 using layout::SectionKind;
 
-bool is(const PacketSection& section, SectionKind kind) {
-  return section.entry.kind == static_cast<std::uint32_t>(kind);
+constexpr std::uint32_t word_bytes = sizeof(std::uint32_t);
+
+// How a kind is coded.
+enum class Coding { bytes, words, refinement, predictions, nodes, representatives, scales, couplings };
+
+Coding coding_of(const SectionEntry& entry) {
+  switch (static_cast<SectionKind>(entry.kind)) {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding)                                               \
+  case SectionKind::kind:                                                                                         \
+    static_assert(Coding::coding != Coding::words || layout::element_bytes(SectionKind::kind) % word_bytes == 0); \
+    return Coding::coding;
+    GREENLOOP_SECTION_KINDS(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+  }
+  return Coding::bytes;
 }
 
 // parents before positions before what needs positions
 int rank(const PacketSection& section) {
-  switch (static_cast<SectionKind>(section.entry.kind)) {
-    case SectionKind::nodes:
+  switch (coding_of(section.entry)) {
+    case Coding::bytes:
+    case Coding::words:
+    case Coding::refinement:
+    case Coding::predictions:
+      break;
+    case Coding::nodes:
       return 1;
-    case SectionKind::representatives:
-    case SectionKind::scales:
+    case Coding::representatives:
+    case Coding::scales:
       return 2;
-    case SectionKind::couplings:
+    case Coding::couplings:
       return 3;
-    default:
-      return 0;
   }
+  return 0;
 }
 
 std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t layer) {
@@ -67,10 +83,10 @@ void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std:
 
   std::vector<PacketSection*> couplings;
   for (PacketSection* const section : order) {
-    if (is(*section, SectionKind::couplings) && section->entry.a == q) {
+    if (coding_of(section->entry) == Coding::couplings && section->entry.a == q) {
       couplings.push_back(section);
-    } else {
-      code_section(coder, q, *section);
+    } else if (!code_records(coder, q, *section)) {
+      bytes_.code(coder, section->bytes);
     }
   }
   if (!couplings.empty()) code_couplings(coder, q, couplings, model);
@@ -82,14 +98,15 @@ void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<Pac
   const std::uint64_t count = table_.code(coder, sections.size(), 0);
   if (count > room / sizeof(SectionEntry)) throw DamagedPacket("more sections than fit in it");
   sections.resize(static_cast<std::size_t>(count));
-  std::uint64_t end = extent.begin, kind = 0;
+  std::uint64_t end = extent.begin;
+  bool after_couplings = false;
   for (PacketSection& section : sections) {
     SectionEntry& entry = section.entry;
     const std::uint64_t gap = table_.code(coder, entry.offset - aligned(end), 1);
     if (gap > room) throw DamagedPacket("a section beyond its end");
     entry.offset = aligned(end) + gap;
-    kind = table_.code(coder, entry.kind, 2 + static_cast<std::uint32_t>(kind == 11));
-    entry.kind = static_cast<std::uint32_t>(kind);
+    entry.kind = static_cast<std::uint32_t>(table_.code(coder, entry.kind, after_couplings ? 3 : 2));
+    after_couplings = coding_of(entry) == Coding::couplings;
     entry.a = static_cast<std::uint16_t>(table_.code(coder, entry.a, 4));
     entry.b = static_cast<std::uint16_t>(table_.code(coder, entry.b, 5));
     entry.bytes = table_.code(coder, entry.bytes, 6);
@@ -103,29 +120,35 @@ void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<Pac
   for (PacketSection& section : sections) section.bytes.resize(static_cast<std::size_t>(section.entry.bytes));
 }
 
-void PacketModel::code_section(BitCoder& coder, std::uint32_t q, PacketSection& section) {
-  const auto [kind, a, b] = std::tuple(static_cast<SectionKind>(section.entry.kind), section.entry.a, section.entry.b);
+bool PacketModel::code_records(BitCoder& coder, std::uint32_t q, PacketSection& section) {
+  const auto [a, b] = std::pair(section.entry.a, section.entry.b);
+  const std::uint32_t element = layout::element_bytes(static_cast<SectionKind>(section.entry.kind));
   const std::span bytes(section.bytes);
-  const auto holds = [&](std::size_t record) { return bytes.size() % record == 0; };
-  if (kind == SectionKind::refinement && a == q && holds(sizeof(layout::RefinementRecord))) {
-    mesh_.code_refinement(coder, q, bytes);
-  } else if (kind == SectionKind::stencils && holds(sizeof(layout::StencilRecord))) {
-    mesh_.code_words(coder, sizeof(layout::StencilRecord) / sizeof(std::uint32_t), bytes);
-  } else if (kind == SectionKind::predictions && a == q) {
-    code_predictions(coder, bytes);
-  } else if (kind == SectionKind::nodes && a == q && holds(sizeof(layout::NodeRecord))) {
-    mesh_.code_nodes(coder, q, bytes);
-  } else if (kind == SectionKind::representatives && a <= q && b <= q && holds(sizeof(std::uint32_t))) {
-    mesh_.code_representatives(coder, a, b, bytes);
-  } else if (kind == SectionKind::scales && a == q && holds(sizeof(layout::Scale))) {
-    mesh_.code_scales(coder, q, bytes);
-  } else if (kind == SectionKind::patterns && holds(sizeof(layout::PatternRecord))) {
-    mesh_.code_words(coder, sizeof(layout::PatternRecord) / sizeof(std::uint32_t), bytes);
-  } else if (kind == SectionKind::base_triangles && holds(3 * sizeof(std::uint32_t))) {
-    mesh_.code_words(coder, 3, bytes);
-  } else {
-    bytes_.code(coder, bytes);
+  if (element == 0 || bytes.size() % element != 0) return false;
+  switch (coding_of(section.entry)) {
+    case Coding::bytes:
+    case Coding::couplings:
+      return false;
+    case Coding::words:
+      mesh_.code_words(coder, element / word_bytes, bytes);
+      return true;
+    case Coding::refinement:
+      if (a == q) mesh_.code_refinement(coder, q, bytes);
+      return a == q;
+    case Coding::predictions:
+      if (a == q) code_predictions(coder, bytes);
+      return a == q;
+    case Coding::nodes:
+      if (a == q) mesh_.code_nodes(coder, q, bytes);
+      return a == q;
+    case Coding::representatives:
+      if (a <= q && b <= q) mesh_.code_representatives(coder, a, b, bytes);
+      return a <= q && b <= q;
+    case Coding::scales:
+      if (a == q) mesh_.code_scales(coder, q, bytes);
+      return a == q;
   }
+  return false;
 }
 
 void PacketModel::code_predictions(BitCoder& coder, std::span<std::byte> bytes) {

@@ -40,7 +40,8 @@ class PacketModel {
 
  private:
   void code_table(BitCoder& coder, FileExtent extent, std::vector<PacketSection>& sections);
-  void code_section(BitCoder& coder, std::uint32_t q, PacketSection& section);
+  // whether the section is one of level q that is coded by what it means, and not byte by byte
+  bool code_records(BitCoder& coder, std::uint32_t q, PacketSection& section);
   void code_predictions(BitCoder& coder, std::span<std::byte> bytes);
   void code_couplings(BitCoder& coder, std::uint32_t q, std::span<PacketSection*> layers, const ModelView* model);
 

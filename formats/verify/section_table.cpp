@@ -13,25 +13,6 @@ using layout::SectionKind;
 
 constexpr Section whole_file{};
 
-bool is_known(std::uint32_t kind) {
-  switch (static_cast<SectionKind>(kind)) {
-    case SectionKind::info:
-    case SectionKind::provenance:
-    case SectionKind::level:
-    case SectionKind::nodes:
-    case SectionKind::base_triangles:
-    case SectionKind::refinement:
-    case SectionKind::representatives:
-    case SectionKind::scales:
-    case SectionKind::couplings:
-    case SectionKind::stencils:
-    case SectionKind::patterns:
-    case SectionKind::predictions:
-      return true;
-  }
-  return false;
-}
-
 bool is_same(const SectionEntry& entry, SectionKind kind, std::uint32_t a, std::uint32_t b) {
   return entry.kind == static_cast<std::uint32_t>(kind) && entry.a == a && entry.b == b;
 }
@@ -110,8 +91,9 @@ bool SectionTable::check_entry(std::uint32_t i, std::uint64_t end_of_previous, V
     return refuse_entry(result, rule, entry, field, i, static_cast<double>(value), static_cast<double>(limit));
   };
   if (reserved_is_zero()) {
-    const auto last_kind = static_cast<std::uint32_t>(SectionKind::predictions);
-    if (!is_known(entry.kind)) return refuse(VerifyRule::bad_enum, "section.kind", entry.kind, last_kind);
+    if (!layout::is_section_kind(entry.kind)) {
+      return refuse(VerifyRule::bad_enum, "section.kind", entry.kind, layout::last_section_kind());
+    }
     if (entry.reserved != 0) return refuse(VerifyRule::reserved_not_zero, "section.reserved", entry.reserved, 0);
   }
   if (entry.offset % layout::alignment != 0) {
@@ -155,7 +137,7 @@ bool SectionTable::check_entries(VerifyResult& result) const {
 }
 
 void SectionTable::skip_unknown() {
-  while (next_ < count() && !is_known(entries()[next_].kind)) ++next_;
+  while (next_ < count() && !layout::is_section_kind(entries()[next_].kind)) ++next_;
 }
 
 bool SectionTable::take(SectionKind kind, std::uint32_t a, std::uint32_t b, Section& section, VerifyResult& result) {

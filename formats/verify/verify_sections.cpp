@@ -15,8 +15,9 @@ using layout::StencilRecord;
 constexpr std::uint32_t known_flags =
     layout::node_domain | layout::node_touchable | layout::node_fixed | layout::node_read;
 
-bool require_size(SectionCheck& check, const Section& section, std::uint64_t count, std::uint64_t record_bytes) {
-  const std::uint64_t expected = count * record_bytes;  // a 32-bit count times a small constant: no overflow
+bool require_size(SectionCheck& check, const Section& section, std::uint64_t count) {
+  // a 32-bit count times a small constant: no overflow
+  const std::uint64_t expected = count * layout::element_bytes(section.kind);
   return check.require(section.bytes == expected, VerifyRule::section_size, "bytes", 0,
                        static_cast<double>(section.bytes), static_cast<double>(expected));
 }
@@ -81,7 +82,7 @@ bool verify_box(SectionCheck& check, const layout::Info& info) {
 
 bool verify_info(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  if (!require_size(check, section, 1, sizeof(layout::Info))) return false;
+  if (!require_size(check, section, sizeof(layout::Info))) return false;
   const auto& info = *section.as<layout::Info>();
   const std::uint32_t present = context.view.header->levels;
   context.view.info = &info;
@@ -174,7 +175,7 @@ std::uint32_t domain_of_mesh(const ModelView& view, std::uint32_t q) {
 
 bool verify_level(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  if (!require_size(check, section, 1, sizeof(layout::Level))) return false;
+  if (!require_size(check, section, sizeof(layout::Level))) return false;
   const auto& counts = *section.as<layout::Level>();
   const bool unused = counts.reserved == 0;
   if (!verify_level_counts(check, counts, section, context.view) || !verify_level_errors(check, counts) ||
@@ -220,7 +221,7 @@ bool verify_nodes(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   LevelView& level = context.view.level[section.a];
   const auto* nodes = section.as<NodeRecord>();
-  if (!require_size(check, section, level.counts->node_count, sizeof(NodeRecord))) return false;
+  if (!require_size(check, section, level.counts->node_count)) return false;
   for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
     if (!verify_node(check, *context.view.info, nodes[i], i, i < level.counts->domain_count)) return false;
   }
@@ -232,7 +233,7 @@ bool verify_base_triangles(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   const layout::Level& counts = *context.view.level[0].counts;
   const auto* corners = section.as<std::uint32_t>();
-  if (!require_size(check, section, counts.base_triangle_count, 3 * sizeof(std::uint32_t))) return false;
+  if (!require_size(check, section, counts.base_triangle_count)) return false;
   for (std::uint64_t t = 0; t < counts.base_triangle_count; ++t) {
     const std::uint32_t* corner = corners + 3 * t;
     for (std::uint64_t k = 0; k < 3; ++k) {
@@ -270,7 +271,7 @@ bool verify_refinement(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   LevelView& level = context.view.level[section.a];
   const auto* records = section.as<RefinementRecord>();
-  if (!require_size(check, section, level.counts->node_count, sizeof(RefinementRecord))) return false;
+  if (!require_size(check, section, level.counts->node_count)) return false;
   for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
     const bool in_domain = i < level.counts->domain_count;
     for (std::uint32_t k = 0; k < 2; ++k) {
@@ -313,7 +314,7 @@ bool verify_stencils(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   LevelView& level = context.view.level[section.a];
   const auto* stencils = section.as<StencilRecord>();
-  if (!require_size(check, section, level.counts->domain_count, sizeof(StencilRecord))) return false;
+  if (!require_size(check, section, level.counts->domain_count)) return false;
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     if (!verify_stencil(check, context.view, stencils[i], i, level.node_begin)) return false;
   }
@@ -344,7 +345,7 @@ bool verify_representatives(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   const std::uint32_t node_count = context.view.level[section.b].counts->node_count;
   const auto* representatives = section.as<std::uint32_t>();
-  if (!require_size(check, section, node_count, sizeof(std::uint32_t))) return false;
+  if (!require_size(check, section, node_count)) return false;
   for (std::uint32_t i = 0; i < node_count; ++i) {
     if (!verify_representative(check, context.view, section.a, section.b, i, representatives[i])) return false;
   }
@@ -377,7 +378,7 @@ bool verify_scales(const Section& section, VerifyContext& context) {
   LevelView& level = context.view.level[section.a];
   const std::uint32_t count = level.counts->domain_count;
   const auto* scales = section.as<Scale>();
-  if (!require_size(check, section, count, sizeof(Scale))) return false;
+  if (!require_size(check, section, count)) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!verify_positive_definite(check, "root", scales[i].root, i) ||
         !verify_positive_definite(check, "diagonal", scales[i].diagonal, i)) {
