@@ -40,6 +40,9 @@ namespace greenloop::layout {
 inline constexpr std::uint32_t layers = 4;
 inline constexpr std::uint32_t value_bits[layers] = {16, 16, 8, 4};  ///< of one element of a block
 
+/// Bytes of zero behind the blocks of a section: a wide load of the last block stays inside it.
+inline constexpr std::uint64_t tail_bytes = 16;
+
 enum class Wavelet : std::uint32_t {
   lifted_linear = 1,
   linear = 2,
@@ -152,6 +155,19 @@ static_assert(sizeof(PredictionsHeader) == 64);
 
 inline constexpr std::uint32_t most_prediction_terms = 8;
 inline constexpr float prediction_unit = 0x1p-12F;
+
+/// Where the arrays of a Predictions section stand, in bytes from its start. No overflow if there are at most
+/// most_prediction_terms.
+struct PredictionsExtent {
+  std::uint64_t index, index_end, weight, weight_end;
+
+  explicit constexpr PredictionsExtent(const PredictionsHeader& header) : index(sizeof(header)) {
+    const std::uint64_t blocks = std::uint64_t{header.nodes} * header.terms;
+    index_end = index + blocks * header.index_bytes;
+    weight = aligned(index_end);
+    weight_end = weight + blocks * 9 * sizeof(std::int16_t);
+  }
+};
 
 /// What people do to a body: contacts that a model's answers are measured on.
 enum class PatternKind : std::uint32_t {

@@ -26,6 +26,9 @@ inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
 inline constexpr std::uint32_t none = 0xffffffff;  ///< no node
 
+/// The first multiple of the alignment at or after an offset.
+constexpr std::uint64_t aligned(std::uint64_t offset) { return (offset + alignment - 1) / alignment * alignment; }
+
 struct Header {
   char magic[8];
   std::uint32_t endian;
@@ -53,6 +56,7 @@ static_assert(sizeof(SectionEntry) == 32);
 
 /// What a model answers. A reader refuses a problem that it does not know.
 enum class Problem : std::uint32_t { elastostatic = 1 };
+inline constexpr std::uint32_t problems = 1;  ///< numbered from 1
 
 /// How Info begins, whatever the problem; the rest is the problem's own.
 struct InfoStart {

@@ -6,7 +6,6 @@
 
 #include "formats/transport/coupling_blocks.hpp"
 #include "formats/verify/crc32c.hpp"
-#include "formats/verify/section_extent.hpp"
 
 namespace greenloop::transport {
 namespace {
@@ -102,9 +101,9 @@ void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<Pac
   bool after_couplings = false;
   for (PacketSection& section : sections) {
     SectionEntry& entry = section.entry;
-    const std::uint64_t gap = table_.code(coder, entry.offset - aligned(end), 1);
+    const std::uint64_t gap = table_.code(coder, entry.offset - layout::aligned(end), 1);
     if (gap > room) throw DamagedPacket("a section beyond its end");
-    entry.offset = aligned(end) + gap;
+    entry.offset = layout::aligned(end) + gap;
     entry.kind = static_cast<std::uint32_t>(table_.code(coder, entry.kind, after_couplings ? 3 : 2));
     after_couplings = coding_of(entry) == Coding::couplings;
     entry.a = static_cast<std::uint16_t>(table_.code(coder, entry.a, 4));
@@ -116,7 +115,7 @@ void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<Pac
     }
     end = entry.offset + entry.bytes;
   }
-  if (aligned(end) != extent.end) throw DamagedPacket("fewer bytes than it announces");
+  if (layout::aligned(end) != extent.end) throw DamagedPacket("fewer bytes than it announces");
   for (PacketSection& section : sections) section.bytes.resize(static_cast<std::size_t>(section.entry.bytes));
 }
 
