@@ -7,9 +7,9 @@
 //   offset 64   SectionEntry    32 bytes each, header.section_count of them, in file order
 //   then        the sections    coarse to fine:
 //
-//     Info, Provenance                global facts, of the problem's own form; text (JSON) of where the model comes
-//     from for q = 0 .. levels-1:
-//       Level(q) and what it counts   of the problem's own kinds: elastostatic.hpp
+//     Info, Provenance               facts of the problem's own; text (JSON) of where the model comes from
+//     for q = 0 .. levels-1:
+//       Level(q) and what is of it   in the form and order of the problem: elastostatic.hpp
 //
 // So the first sections of a file, cut after any level, are again a valid and coarser model once the header says so.
 

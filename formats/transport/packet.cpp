@@ -31,7 +31,7 @@ Coding coding_of(const SectionEntry& entry) {
 }
 
 // parents before positions before what needs positions
-int rank(const PacketSection& section) {
+int rank(const SectionBytes& section) {
   switch (coding_of(section.entry)) {
     case Coding::bytes:
     case Coding::words:
@@ -55,7 +55,7 @@ std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t l
 }
 
 // whether the sections are what the writer makes of the blocks
-bool are_reproduced(const CouplingBlocks& joined, std::span<PacketSection*> layers) {
+bool are_reproduced(const CouplingBlocks& joined, std::span<SectionBytes*> layers) {
   if (layers.size() != layout::layers) return false;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     if (layers[layer]->entry.b != layer || layer_bytes(joined, layer) != layers[layer]->bytes) return false;
@@ -65,23 +65,23 @@ bool are_reproduced(const CouplingBlocks& joined, std::span<PacketSection*> laye
 
 }  // namespace
 
-std::uint32_t content_crc(std::span<const PacketSection> sections) {
+std::uint32_t content_crc(std::span<const SectionBytes> sections) {
   std::uint32_t crc = 0;
-  for (const PacketSection& section : sections) crc = crc32c(std::as_bytes(std::span(&section.entry, 1)), crc);
-  for (const PacketSection& section : sections) crc = crc32c(section.bytes, crc);
+  for (const SectionBytes& section : sections) crc = crc32c(std::as_bytes(std::span(&section.entry, 1)), crc);
+  for (const SectionBytes& section : sections) crc = crc32c(section.bytes, crc);
   return crc;
 }
 
-void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std::vector<PacketSection>& sections,
+void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std::vector<SectionBytes>& sections,
                        const ModelView* model) {
   code_table(coder, extent, sections);
-  std::vector<PacketSection*> order;
+  std::vector<SectionBytes*> order;
   order.reserve(sections.size());
-  for (PacketSection& section : sections) order.push_back(&section);
+  for (SectionBytes& section : sections) order.push_back(&section);
   std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return rank(*a) < rank(*b); });
 
-  std::vector<PacketSection*> couplings;
-  for (PacketSection* const section : order) {
+  std::vector<SectionBytes*> couplings;
+  for (SectionBytes* const section : order) {
     if (coding_of(section->entry) == Coding::couplings && section->entry.a == q) {
       couplings.push_back(section);
     } else if (!code_records(coder, q, *section)) {
@@ -89,17 +89,17 @@ void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std:
     }
   }
   if (!couplings.empty()) code_couplings(coder, q, couplings, model);
-  for (PacketSection& section : sections) section.entry.crc = crc32c(section.bytes);
+  for (SectionBytes& section : sections) section.entry.crc = crc32c(section.bytes);
 }
 
-void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<PacketSection>& sections) {
+void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<SectionBytes>& sections) {
   const std::uint64_t room = extent.end - extent.begin;
   const std::uint64_t count = table_.code(coder, sections.size(), 0);
   if (count > room / sizeof(SectionEntry)) throw DamagedPacket("more sections than fit in it");
   sections.resize(static_cast<std::size_t>(count));
   std::uint64_t end = extent.begin;
   bool after_couplings = false;
-  for (PacketSection& section : sections) {
+  for (SectionBytes& section : sections) {
     SectionEntry& entry = section.entry;
     const std::uint64_t gap = table_.code(coder, entry.offset - layout::aligned(end), 1);
     if (gap > room) throw DamagedPacket("a section beyond its end");
@@ -116,10 +116,10 @@ void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<Pac
     end = entry.offset + entry.bytes;
   }
   if (layout::aligned(end) != extent.end) throw DamagedPacket("fewer bytes than it announces");
-  for (PacketSection& section : sections) section.bytes.resize(static_cast<std::size_t>(section.entry.bytes));
+  for (SectionBytes& section : sections) section.bytes.resize(static_cast<std::size_t>(section.entry.bytes));
 }
 
-bool PacketModel::code_records(BitCoder& coder, std::uint32_t q, PacketSection& section) {
+bool PacketModel::code_records(BitCoder& coder, std::uint32_t q, SectionBytes& section) {
   const auto [a, b] = std::pair(section.entry.a, section.entry.b);
   const std::uint32_t element = layout::element_bytes(static_cast<SectionKind>(section.entry.kind));
   const std::span bytes(section.bytes);
@@ -160,7 +160,7 @@ void PacketModel::code_predictions(BitCoder& coder, std::span<std::byte> bytes) 
   bytes_.code(coder, behind);
 }
 
-void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<PacketSection*> layers,
+void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<SectionBytes*> layers,
                                  const ModelView* model) {
   const std::vector<Coefficient> coefficients = mesh_.coefficients(q);
   const std::uint32_t columns = mesh_.own_coefficients(q);
@@ -171,7 +171,7 @@ void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<Pac
     if (joined && !are_reproduced(*joined, layers)) joined.reset();
   }
   if (coder.code_plain(joined.has_value() ? 1 : 0, 1) == 0) {
-    for (PacketSection* const section : layers) bytes_.code(coder, section->bytes);
+    for (SectionBytes* const section : layers) bytes_.code(coder, section->bytes);
     return;
   }
   if (layers.size() != layout::layers) throw DamagedPacket("more or fewer layers of couplings than there are");

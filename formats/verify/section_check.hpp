@@ -22,7 +22,7 @@ struct Section {
   }
 };
 
-/// Writes down what is wrong with one section. Both functions return whether all is well, so that checks chain by &&.
+/// Writes down what is wrong with one section. Each function returns whether all is well, so that checks chain by &&.
 class SectionCheck {
  public:
   SectionCheck(const Section& section, VerifyResult& result) : section_(section), result_(result) {}
