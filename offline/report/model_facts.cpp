@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <span>
 #include <string_view>
 
 #include "formats/stored_blocks.hpp"
@@ -18,10 +17,6 @@ namespace greenloop::offline {
 namespace {
 
 using layout::SectionKind;
-
-std::span<const layout::SectionEntry> section_entries(const ModelView& model) {
-  return {reinterpret_cast<const layout::SectionEntry*>(model.header + 1), model.header->section_count};
-}
 
 /// "base triangles" for BaseTriangles.
 std::string in_words(std::string_view name) {
