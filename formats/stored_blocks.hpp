@@ -15,7 +15,7 @@ namespace greenloop {
 inline std::uint32_t block_count(const CouplingsView& view) { return view.begin[view.columns]; }
 
 /// Blocks of layers first .. end-1, over all levels. Work: a read per section.
-inline std::uint64_t block_count(const ModelView& view, std::uint32_t first, std::uint32_t end) {
+inline std::uint64_t block_count(const ElastostaticView& view, std::uint32_t first, std::uint32_t end) {
   std::uint64_t blocks = 0;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     for (std::uint32_t layer = first; layer < end; ++layer) {

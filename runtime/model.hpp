@@ -18,6 +18,8 @@ class Model {
   [[nodiscard]] static Opened open(std::span<const std::byte> bytes) noexcept;
 
   [[nodiscard]] const ModelView& view() const noexcept { return view_; }
+  /// What the model answers: a solver takes models of its own problem.
+  [[nodiscard]] layout::Problem problem() const noexcept { return view_.problem; }
   [[nodiscard]] std::uint32_t node_count() const noexcept { return view_.node_count; }
   /// Nodes of mesh levels 0..level, which come first; level below level_count().
   [[nodiscard]] std::uint32_t node_count(std::uint32_t level) const noexcept;

@@ -60,6 +60,11 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
+void refuse_extension(const std::filesystem::path& file, const std::string& expected) {
+  throw MeshFileError(file.string() + ": found extension " + in_quotes(file.extension().string()) + ", expected " +
+                      expected);
+}
+
 void append_number(std::string& text, double value) { append(text, value); }
 void append_number(std::string& text, std::int64_t value) { append(text, value); }
 

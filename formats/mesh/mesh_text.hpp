@@ -28,6 +28,9 @@ void write_file(const std::filesystem::path& file, std::string_view bytes);
 /// The extension in lower case with its dot, "" if none.
 [[nodiscard]] std::string lower_extension(const std::filesystem::path& file);
 
+/// Throws MeshFileError: the extension found, and the kind of file expected.
+[[noreturn]] void refuse_extension(const std::filesystem::path& file, const std::string& expected);
+
 /// Appends the shortest decimal form that reads back as the same double.
 void append_number(std::string& text, double value);
 void append_number(std::string& text, std::int64_t value);

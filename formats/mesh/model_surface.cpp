@@ -4,7 +4,7 @@
 
 namespace greenloop {
 
-SemiRegularMesh semi_regular_surface(const ModelView& view) {
+SemiRegularMesh semi_regular_surface(const ElastostaticView& view) {
   SemiRegularMesh mesh;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
@@ -28,7 +28,7 @@ SemiRegularMesh semi_regular_surface(const ModelView& view) {
   return mesh;
 }
 
-TriangleMesh finest_surface(const ModelView& view) {
+TriangleMesh finest_surface(const ElastostaticView& view) {
   const SemiRegularMesh mesh = semi_regular_surface(view);
   return {mesh.positions, triangles_of_level(mesh, mesh.finest_level())};
 }

@@ -7,10 +7,10 @@
 namespace greenloop {
 
 /// The undeformed surface of a verified model, vertex i being the node of file index i. Offline only.
-[[nodiscard]] SemiRegularMesh semi_regular_surface(const ModelView& view);
+[[nodiscard]] SemiRegularMesh semi_regular_surface(const ElastostaticView& view);
 
 /// Its finest level present as plain triangles, in metres. Work: linear in the nodes, times a logarithm.
 /// Throws std::invalid_argument if the nodes' parents do not make up a subdivided surface.
-[[nodiscard]] TriangleMesh finest_surface(const ModelView& view);
+[[nodiscard]] TriangleMesh finest_surface(const ElastostaticView& view);
 
 }  // namespace greenloop

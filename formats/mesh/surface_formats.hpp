@@ -24,4 +24,7 @@ namespace greenloop {
 /// Appends a polygon as a fan of triangles around its first vertex.
 void append_fan(TriangleMesh& mesh, std::span<const int> polygon);
 
+/// Appends the body of OFF and of ASCII PLY: a line of coordinates for each vertex, then "3 a b c" for each triangle.
+void append_corner_lists(std::string& text, const TriangleMesh& mesh);
+
 }  // namespace greenloop

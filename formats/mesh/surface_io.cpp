@@ -7,16 +7,23 @@
 namespace greenloop {
 namespace {
 
-[[noreturn]] void refuse_extension(const std::filesystem::path& file) {
-  throw MeshFileError(file.string() + ": found extension " + in_quotes(file.extension().string()) +
-                      ", expected a surface file: .off, .obj, .stl or .ply");
-}
+constexpr const char* surface_file = "a surface file: .off, .obj, .stl or .ply";
 
 }  // namespace
 
 void append_fan(TriangleMesh& mesh, std::span<const int> polygon) {
   for (std::size_t i = 2; i < polygon.size(); ++i) {
     mesh.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+  }
+}
+
+void append_corner_lists(std::string& text, const TriangleMesh& mesh) {
+  for (const auto& vertex : mesh.vertices) {
+    append_point(text, vertex);
+    text += '\n';
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    text += "3 " + std::to_string(a) + ' ' + std::to_string(b) + ' ' + std::to_string(c) + '\n';
   }
 }
 
@@ -28,7 +35,7 @@ TriangleMesh read_surface(const std::filesystem::path& file) {
                       : extension == ".ply" ? parse_ply
                                             : nullptr;
   if (parse == nullptr) {
-    refuse_extension(file);
+    refuse_extension(file, surface_file);
   }
   auto mesh = parse(file, read_file(file));
   if (mesh.triangles.empty()) {
@@ -45,7 +52,7 @@ void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh) 
                        : extension == ".ply" ? format_ply
                                              : nullptr;
   if (format == nullptr) {
-    refuse_extension(file);
+    refuse_extension(file, surface_file);
   }
   write_file(file, format(mesh));
 }

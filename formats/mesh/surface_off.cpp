@@ -53,13 +53,7 @@ TriangleMesh parse_off(const std::filesystem::path& file, std::string content) {
 std::string format_off(const TriangleMesh& mesh) {
   std::string text =
       "OFF\n" + std::to_string(mesh.vertices.size()) + ' ' + std::to_string(mesh.triangles.size()) + " 0\n";
-  for (const auto& vertex : mesh.vertices) {
-    append_point(text, vertex);
-    text += '\n';
-  }
-  for (const auto& [a, b, c] : mesh.triangles) {
-    text += "3 " + std::to_string(a) + ' ' + std::to_string(b) + ' ' + std::to_string(c) + '\n';
-  }
+  append_corner_lists(text, mesh);
   return text;
 }
 

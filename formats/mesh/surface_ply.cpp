@@ -284,13 +284,7 @@ std::string format_ply(const TriangleMesh& mesh) {
   std::string text = "ply\nformat ascii 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
                      "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
                      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
-  for (const auto& vertex : mesh.vertices) {
-    append_point(text, vertex);
-    text += '\n';
-  }
-  for (const auto& [a, b, c] : mesh.triangles) {
-    text += "3 " + std::to_string(a) + ' ' + std::to_string(b) + ' ' + std::to_string(c) + '\n';
-  }
+  append_corner_lists(text, mesh);
   return text;
 }
 

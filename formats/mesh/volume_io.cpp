@@ -15,11 +15,6 @@ namespace {
 /// |det| up to this part of the longest edge cubed is flat.
 constexpr double flatness = 1e-12;
 
-[[noreturn]] void refuse_extension(const std::filesystem::path& file, const std::string& supported) {
-  throw MeshFileError(file.string() + ": found extension " + in_quotes(file.extension().string()) +
-                      ", expected a file of tetrahedra: " + supported);
-}
-
 /// -1, 0 (flat) or +1.
 int orientation(const TetrahedralMesh& mesh, const std::array<int, 4>& tetrahedron) {
   const auto& [i, j, k, l] = tetrahedron;
@@ -151,7 +146,7 @@ TetrahedralMesh read_volume(const std::filesystem::path& file) {
                       : extension == ".node" || extension == ".ele" ? parse_tetgen
                                                                     : nullptr;
   if (parse == nullptr) {
-    refuse_extension(file, ".msh, .mesh, .vtk, .vtu, .node, .ele or .veg");
+    refuse_extension(file, "a file of tetrahedra: .msh, .mesh, .vtk, .vtu, .node, .ele or .veg");
   }
   return parse(file, read_file(file));
 }
@@ -163,7 +158,7 @@ void write_volume(const std::filesystem::path& file, const TetrahedralMesh& mesh
                        : extension == ".vtk"  ? format_vtk
                                               : nullptr;
   if (format == nullptr) {
-    refuse_extension(file, ".msh, .mesh or .vtk");
+    refuse_extension(file, "a file of tetrahedra: .msh, .mesh or .vtk");
   }
   write_file(file, format(mesh));
 }

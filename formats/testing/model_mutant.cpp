@@ -7,11 +7,6 @@
 #include "formats/write/describe.hpp"
 
 namespace greenloop {
-namespace {
-
-std::size_t aligned(std::size_t size) { return (size + layout::alignment - 1) / layout::alignment * layout::alignment; }
-
-}  // namespace
 
 std::span<layout::SectionEntry> ModelMutant::table() {
   return {reinterpret_cast<layout::SectionEntry*>(bytes_.data() + sizeof(layout::Header)), header().section_count};
@@ -33,11 +28,11 @@ void ModelMutant::rebuild(const std::function<void(std::vector<SectionCopy>&)>& 
   }
   edit(sections);
 
-  std::size_t size = aligned(sizeof(layout::Header) + sections.size() * sizeof(layout::SectionEntry));
+  std::size_t size = layout::aligned(sizeof(layout::Header) + sections.size() * sizeof(layout::SectionEntry));
   for (SectionCopy& section : sections) {
     section.entry.offset = size;
     section.entry.bytes = section.bytes.size();
-    size = aligned(size + section.bytes.size());
+    size = layout::aligned(size + section.bytes.size());
   }
   AlignedBytes file(size);
   std::memcpy(file.data(), bytes_.data(), sizeof(layout::Header));

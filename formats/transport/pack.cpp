@@ -19,23 +19,19 @@ void append_sealed(std::vector<std::byte>& stream, Header header) {
 }
 
 // the sections of each level
-std::vector<std::vector<PacketSection>> sections_by_level(std::span<const std::byte> model,
-                                                          const layout::Header& header) {
-  std::vector<std::vector<PacketSection>> levels(1);
-  for (std::uint32_t i = 0; i < header.section_count; ++i) {
-    PacketSection section;
-    std::memcpy(&section.entry, model.data() + sizeof(header) + i * sizeof(section.entry), sizeof(section.entry));
-    const auto bytes = model.subspan(section.entry.offset, section.entry.bytes);
-    section.bytes.assign(bytes.begin(), bytes.end());
-    const bool next = section.entry.kind == static_cast<std::uint32_t>(layout::SectionKind::level);
-    if (next && section.entry.a > 0) levels.emplace_back();
-    levels.back().push_back(std::move(section));
+std::vector<std::vector<SectionBytes>> sections_by_level(std::span<const std::byte> model, const FileView& view) {
+  std::vector<std::vector<SectionBytes>> levels(1);
+  for (const layout::SectionEntry& entry : section_entries(view)) {
+    const auto bytes = model.subspan(entry.offset, entry.bytes);
+    const bool next = entry.kind == static_cast<std::uint32_t>(layout::SectionKind::level);
+    if (next && entry.a > 0) levels.emplace_back();
+    levels.back().push_back({entry, {bytes.begin(), bytes.end()}});
   }
   return levels;
 }
 
-std::uint64_t end_of(const PacketSection& section) {
-  return (section.entry.offset + section.entry.bytes + layout::alignment - 1) / layout::alignment * layout::alignment;
+std::uint64_t end_of(const SectionBytes& section) {
+  return layout::aligned(section.entry.offset + section.entry.bytes);
 }
 
 }  // namespace
@@ -52,15 +48,15 @@ std::vector<std::byte> pack(std::span<const std::byte> model) {
   header.major = version_major;
   header.model_major = view.header->major;
   header.model_minor = view.header->minor;
-  header.levels = static_cast<std::uint16_t>(view.levels);
+  header.levels = static_cast<std::uint16_t>(view.header->levels);
   header.model_bytes = model.size();
   std::memcpy(header.model_reserved, view.header->reserved, sizeof(header.model_reserved));
   append_sealed(stream, header);
 
   PacketModel packets;
-  auto levels = sections_by_level(file.span(), *view.header);
+  auto levels = sections_by_level(file.span(), view);
   FileExtent extent;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
+  for (std::uint32_t q = 0; q < view.header->levels; ++q) {
     extent.end = end_of(levels[q].back());
     RangeEncoder encoder;
     packets.code(encoder, q, extent, levels[q], &view);

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "formats/transport/coupling_blocks.hpp"
 #include "formats/verify/crc32c.hpp"
-#include "formats/verify/section_extent.hpp"
 
 namespace greenloop::transport {
 namespace {
@@ -15,23 +13,40 @@ namespace {
 using layout::SectionEntry;
 using layout::SectionKind;
 
-bool is(const PacketSection& section, SectionKind kind) {
-  return section.entry.kind == static_cast<std::uint32_t>(kind);
+constexpr std::uint32_t word_bytes = sizeof(std::uint32_t);
+
+// How a kind is coded.
+enum class Coding { bytes, words, refinement, predictions, nodes, representatives, scales, couplings };
+
+Coding coding_of(const SectionEntry& entry) {
+  switch (static_cast<SectionKind>(entry.kind)) {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding)                                               \
+  case SectionKind::kind:                                                                                         \
+    static_assert(Coding::coding != Coding::words || layout::element_bytes(SectionKind::kind) % word_bytes == 0); \
+    return Coding::coding;
+    GREENLOOP_SECTION_KINDS(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+  }
+  return Coding::bytes;
 }
 
 // parents before positions before what needs positions
-int rank(const PacketSection& section) {
-  switch (static_cast<SectionKind>(section.entry.kind)) {
-    case SectionKind::nodes:
+int rank(const SectionBytes& section) {
+  switch (coding_of(section.entry)) {
+    case Coding::bytes:
+    case Coding::words:
+    case Coding::refinement:
+    case Coding::predictions:
+      break;
+    case Coding::nodes:
       return 1;
-    case SectionKind::representatives:
-    case SectionKind::scales:
+    case Coding::representatives:
+    case Coding::scales:
       return 2;
-    case SectionKind::couplings:
+    case Coding::couplings:
       return 3;
-    default:
-      return 0;
   }
+  return 0;
 }
 
 std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t layer) {
@@ -40,7 +55,7 @@ std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t l
 }
 
 // whether the sections are what the writer makes of the blocks
-bool are_reproduced(const CouplingBlocks& joined, std::span<PacketSection*> layers) {
+bool are_reproduced(const CouplingBlocks& joined, std::span<SectionBytes*> layers) {
   if (layers.size() != layout::layers) return false;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     if (layers[layer]->entry.b != layer || layer_bytes(joined, layer) != layers[layer]->bytes) return false;
@@ -50,46 +65,47 @@ bool are_reproduced(const CouplingBlocks& joined, std::span<PacketSection*> laye
 
 }  // namespace
 
-std::uint32_t content_crc(std::span<const PacketSection> sections) {
+std::uint32_t content_crc(std::span<const SectionBytes> sections) {
   std::uint32_t crc = 0;
-  for (const PacketSection& section : sections) crc = crc32c(std::as_bytes(std::span(&section.entry, 1)), crc);
-  for (const PacketSection& section : sections) crc = crc32c(section.bytes, crc);
+  for (const SectionBytes& section : sections) crc = crc32c(std::as_bytes(std::span(&section.entry, 1)), crc);
+  for (const SectionBytes& section : sections) crc = crc32c(section.bytes, crc);
   return crc;
 }
 
-void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std::vector<PacketSection>& sections,
+void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std::vector<SectionBytes>& sections,
                        const ModelView* model) {
   code_table(coder, extent, sections);
-  std::vector<PacketSection*> order;
+  std::vector<SectionBytes*> order;
   order.reserve(sections.size());
-  for (PacketSection& section : sections) order.push_back(&section);
+  for (SectionBytes& section : sections) order.push_back(&section);
   std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return rank(*a) < rank(*b); });
 
-  std::vector<PacketSection*> couplings;
-  for (PacketSection* const section : order) {
-    if (is(*section, SectionKind::couplings) && section->entry.a == q) {
+  std::vector<SectionBytes*> couplings;
+  for (SectionBytes* const section : order) {
+    if (coding_of(section->entry) == Coding::couplings && section->entry.a == q) {
       couplings.push_back(section);
-    } else {
-      code_section(coder, q, *section);
+    } else if (!code_records(coder, q, *section)) {
+      bytes_.code(coder, section->bytes);
     }
   }
   if (!couplings.empty()) code_couplings(coder, q, couplings, model);
-  for (PacketSection& section : sections) section.entry.crc = crc32c(section.bytes);
+  for (SectionBytes& section : sections) section.entry.crc = crc32c(section.bytes);
 }
 
-void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<PacketSection>& sections) {
+void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<SectionBytes>& sections) {
   const std::uint64_t room = extent.end - extent.begin;
   const std::uint64_t count = table_.code(coder, sections.size(), 0);
   if (count > room / sizeof(SectionEntry)) throw DamagedPacket("more sections than fit in it");
   sections.resize(static_cast<std::size_t>(count));
-  std::uint64_t end = extent.begin, kind = 0;
-  for (PacketSection& section : sections) {
+  std::uint64_t end = extent.begin;
+  bool after_couplings = false;
+  for (SectionBytes& section : sections) {
     SectionEntry& entry = section.entry;
-    const std::uint64_t gap = table_.code(coder, entry.offset - aligned(end), 1);
+    const std::uint64_t gap = table_.code(coder, entry.offset - layout::aligned(end), 1);
     if (gap > room) throw DamagedPacket("a section beyond its end");
-    entry.offset = aligned(end) + gap;
-    kind = table_.code(coder, entry.kind, 2 + static_cast<std::uint32_t>(kind == 11));
-    entry.kind = static_cast<std::uint32_t>(kind);
+    entry.offset = layout::aligned(end) + gap;
+    entry.kind = static_cast<std::uint32_t>(table_.code(coder, entry.kind, after_couplings ? 3 : 2));
+    after_couplings = coding_of(entry) == Coding::couplings;
     entry.a = static_cast<std::uint16_t>(table_.code(coder, entry.a, 4));
     entry.b = static_cast<std::uint16_t>(table_.code(coder, entry.b, 5));
     entry.bytes = table_.code(coder, entry.bytes, 6);
@@ -99,33 +115,39 @@ void PacketModel::code_table(BitCoder& coder, FileExtent extent, std::vector<Pac
     }
     end = entry.offset + entry.bytes;
   }
-  if (aligned(end) != extent.end) throw DamagedPacket("fewer bytes than it announces");
-  for (PacketSection& section : sections) section.bytes.resize(static_cast<std::size_t>(section.entry.bytes));
+  if (layout::aligned(end) != extent.end) throw DamagedPacket("fewer bytes than it announces");
+  for (SectionBytes& section : sections) section.bytes.resize(static_cast<std::size_t>(section.entry.bytes));
 }
 
-void PacketModel::code_section(BitCoder& coder, std::uint32_t q, PacketSection& section) {
-  const auto [kind, a, b] = std::tuple(static_cast<SectionKind>(section.entry.kind), section.entry.a, section.entry.b);
+bool PacketModel::code_records(BitCoder& coder, std::uint32_t q, SectionBytes& section) {
+  const auto [a, b] = std::pair(section.entry.a, section.entry.b);
+  const std::uint32_t element = layout::element_bytes(static_cast<SectionKind>(section.entry.kind));
   const std::span bytes(section.bytes);
-  const auto holds = [&](std::size_t record) { return bytes.size() % record == 0; };
-  if (kind == SectionKind::refinement && a == q && holds(sizeof(layout::RefinementRecord))) {
-    mesh_.code_refinement(coder, q, bytes);
-  } else if (kind == SectionKind::stencils && holds(sizeof(layout::StencilRecord))) {
-    mesh_.code_words(coder, sizeof(layout::StencilRecord) / sizeof(std::uint32_t), bytes);
-  } else if (kind == SectionKind::predictions && a == q) {
-    code_predictions(coder, bytes);
-  } else if (kind == SectionKind::nodes && a == q && holds(sizeof(layout::NodeRecord))) {
-    mesh_.code_nodes(coder, q, bytes);
-  } else if (kind == SectionKind::representatives && a <= q && b <= q && holds(sizeof(std::uint32_t))) {
-    mesh_.code_representatives(coder, a, b, bytes);
-  } else if (kind == SectionKind::scales && a == q && holds(sizeof(layout::Scale))) {
-    mesh_.code_scales(coder, q, bytes);
-  } else if (kind == SectionKind::patterns && holds(sizeof(layout::PatternRecord))) {
-    mesh_.code_words(coder, sizeof(layout::PatternRecord) / sizeof(std::uint32_t), bytes);
-  } else if (kind == SectionKind::base_triangles && holds(3 * sizeof(std::uint32_t))) {
-    mesh_.code_words(coder, 3, bytes);
-  } else {
-    bytes_.code(coder, bytes);
+  if (element == 0 || bytes.size() % element != 0) return false;
+  switch (coding_of(section.entry)) {
+    case Coding::bytes:
+    case Coding::couplings:
+      return false;
+    case Coding::words:
+      mesh_.code_words(coder, element / word_bytes, bytes);
+      return true;
+    case Coding::refinement:
+      if (a == q) mesh_.code_refinement(coder, q, bytes);
+      return a == q;
+    case Coding::predictions:
+      if (a == q) code_predictions(coder, bytes);
+      return a == q;
+    case Coding::nodes:
+      if (a == q) mesh_.code_nodes(coder, q, bytes);
+      return a == q;
+    case Coding::representatives:
+      if (a <= q && b <= q) mesh_.code_representatives(coder, a, b, bytes);
+      return a <= q && b <= q;
+    case Coding::scales:
+      if (a == q) mesh_.code_scales(coder, q, bytes);
+      return a == q;
   }
+  return false;
 }
 
 void PacketModel::code_predictions(BitCoder& coder, std::span<std::byte> bytes) {
@@ -138,7 +160,7 @@ void PacketModel::code_predictions(BitCoder& coder, std::span<std::byte> bytes) 
   bytes_.code(coder, behind);
 }
 
-void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<PacketSection*> layers,
+void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<SectionBytes*> layers,
                                  const ModelView* model) {
   const std::vector<Coefficient> coefficients = mesh_.coefficients(q);
   const std::uint32_t columns = mesh_.own_coefficients(q);
@@ -149,7 +171,7 @@ void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<Pac
     if (joined && !are_reproduced(*joined, layers)) joined.reset();
   }
   if (coder.code_plain(joined.has_value() ? 1 : 0, 1) == 0) {
-    for (PacketSection* const section : layers) bytes_.code(coder, section->bytes);
+    for (SectionBytes* const section : layers) bytes_.code(coder, section->bytes);
     return;
   }
   if (layers.size() != layout::layers) throw DamagedPacket("more or fewer layers of couplings than there are");

@@ -13,14 +13,9 @@
 #include "formats/transport/range_coder.hpp"
 #include "formats/transport/section_models.hpp"
 #include "formats/view.hpp"
+#include "formats/write/section_file.hpp"
 
 namespace greenloop::transport {
-
-/// A section of a model file with its bytes.
-struct PacketSection {
-  layout::SectionEntry entry{};
-  std::vector<std::byte> bytes;
-};
 
 /// Where in a model file the sections of a packet lie.
 struct FileExtent {
@@ -35,14 +30,15 @@ class PacketModel {
   /// Codes the sections of level q. An encoder passes the sections and `model`, the view they were taken from; a
   /// decoder passes none and null, and gets them. Throws DamagedPacket if they do not fill `extent` exactly. Memory:
   /// that of the extent. Work: linear in the bytes; columns times rows for couplings.
-  void code(BitCoder& coder, std::uint32_t q, FileExtent extent, std::vector<PacketSection>& sections,
+  void code(BitCoder& coder, std::uint32_t q, FileExtent extent, std::vector<SectionBytes>& sections,
             const ModelView* model);
 
  private:
-  void code_table(BitCoder& coder, FileExtent extent, std::vector<PacketSection>& sections);
-  void code_section(BitCoder& coder, std::uint32_t q, PacketSection& section);
+  void code_table(BitCoder& coder, FileExtent extent, std::vector<SectionBytes>& sections);
+  // whether the section is one of level q that is coded by what it means, and not byte by byte
+  bool code_records(BitCoder& coder, std::uint32_t q, SectionBytes& section);
   void code_predictions(BitCoder& coder, std::span<std::byte> bytes);
-  void code_couplings(BitCoder& coder, std::uint32_t q, std::span<PacketSection*> layers, const ModelView* model);
+  void code_couplings(BitCoder& coder, std::uint32_t q, std::span<SectionBytes*> layers, const ModelView* model);
 
   AdaptiveInteger table_{8};
   ByteModel bytes_;
@@ -52,6 +48,6 @@ class PacketModel {
 };
 
 /// Checksum of what a packet decodes to: of the table's entries, then of the sections' bytes.
-[[nodiscard]] std::uint32_t content_crc(std::span<const PacketSection> sections);
+[[nodiscard]] std::uint32_t content_crc(std::span<const SectionBytes> sections);
 
 }  // namespace greenloop::transport

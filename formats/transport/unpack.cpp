@@ -54,7 +54,7 @@ class StreamReader {
   std::uint32_t packet_ = 0;          // number of those read
   std::uint64_t end_ = 0;             // of the model file so far
   std::optional<PacketModel> model_;  // made when there is something to decode
-  std::vector<PacketSection> sections_;
+  std::vector<SectionBytes> sections_;
 };
 
 template <class Header>
@@ -114,7 +114,7 @@ bool StreamReader::check_extent(const PacketHeader& packet, std::uint64_t at) {
 }
 
 bool StreamReader::decode(const PacketHeader& packet, std::span<const std::byte> coded) {
-  std::vector<PacketSection> sections;
+  std::vector<SectionBytes> sections;
   try {
     RangeDecoder decoder(coded);
     if (!model_) model_.emplace();
@@ -142,24 +142,19 @@ bool StreamReader::finish() {
 std::vector<std::byte> StreamReader::model() const {
   std::vector<std::byte> file(static_cast<std::size_t>(end_));
   std::byte* entry = file.data() + sizeof(layout::Header);
-  for (const PacketSection& section : sections_) {
+  for (const SectionBytes& section : sections_) {
     std::memcpy(entry, &section.entry, sizeof(section.entry));
     entry += sizeof(section.entry);
     std::copy(section.bytes.begin(), section.bytes.end(),
               file.begin() + static_cast<std::ptrdiff_t>(section.entry.offset));
   }
   layout::Header header{};
-  std::memcpy(header.magic, layout::magic, sizeof(header.magic));
-  header.endian = layout::endian_tag;
   header.major = header_.model_major;
   header.minor = header_.model_minor;
-  header.file_bytes = file.size();
   header.section_count = static_cast<std::uint32_t>(sections_.size());
   header.levels = packet_;
-  header.table_crc = crc32c(std::span(file).subspan(sizeof(header), sections_.size() * sizeof(layout::SectionEntry)));
   if (packet_ == header_.levels) std::memcpy(header.reserved, header_.model_reserved, sizeof(header.reserved));
-  header.header_crc = crc32c(std::as_bytes(std::span(&header, 1)).first(offsetof(layout::Header, header_crc)));
-  std::memcpy(file.data(), &header, sizeof(header));
+  seal(file, header);
   return file;
 }
 

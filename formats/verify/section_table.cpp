@@ -13,25 +13,6 @@ using layout::SectionKind;
 
 constexpr Section whole_file{};
 
-bool is_known(std::uint32_t kind) {
-  switch (static_cast<SectionKind>(kind)) {
-    case SectionKind::info:
-    case SectionKind::provenance:
-    case SectionKind::level:
-    case SectionKind::nodes:
-    case SectionKind::base_triangles:
-    case SectionKind::refinement:
-    case SectionKind::representatives:
-    case SectionKind::scales:
-    case SectionKind::couplings:
-    case SectionKind::stencils:
-    case SectionKind::patterns:
-    case SectionKind::predictions:
-      return true;
-  }
-  return false;
-}
-
 bool is_same(const SectionEntry& entry, SectionKind kind, std::uint32_t a, std::uint32_t b) {
   return entry.kind == static_cast<std::uint32_t>(kind) && entry.a == a && entry.b == b;
 }
@@ -44,17 +25,6 @@ bool refuse_entry(VerifyResult& result, VerifyRule rule, const SectionEntry& ent
 }
 
 }  // namespace
-
-bool all_zero(std::span<const std::byte> bytes) {
-  std::byte any{0};
-  for (const std::byte byte : bytes) any |= byte;
-  return any == std::byte{0};
-}
-
-bool SectionCheck::require_zero(std::uint64_t begin, std::uint64_t end) {
-  const std::span gap(section_.data + begin, static_cast<std::size_t>(end - begin));
-  return require(all_zero(gap), VerifyRule::padding_not_zero, "padding", begin, 1, 0);
-}
 
 const SectionEntry* SectionTable::entries() const {
   return reinterpret_cast<const SectionEntry*>(file_.data() + sizeof(layout::Header));
@@ -110,8 +80,9 @@ bool SectionTable::check_entry(std::uint32_t i, std::uint64_t end_of_previous, V
     return refuse_entry(result, rule, entry, field, i, static_cast<double>(value), static_cast<double>(limit));
   };
   if (reserved_is_zero()) {
-    const auto last_kind = static_cast<std::uint32_t>(SectionKind::predictions);
-    if (!is_known(entry.kind)) return refuse(VerifyRule::bad_enum, "section.kind", entry.kind, last_kind);
+    if (!layout::is_section_kind(entry.kind)) {
+      return refuse(VerifyRule::bad_enum, "section.kind", entry.kind, layout::last_section_kind());
+    }
     if (entry.reserved != 0) return refuse(VerifyRule::reserved_not_zero, "section.reserved", entry.reserved, 0);
   }
   if (entry.offset % layout::alignment != 0) {
@@ -155,7 +126,7 @@ bool SectionTable::check_entries(VerifyResult& result) const {
 }
 
 void SectionTable::skip_unknown() {
-  while (next_ < count() && !is_known(entries()[next_].kind)) ++next_;
+  while (next_ < count() && !layout::is_section_kind(entries()[next_].kind)) ++next_;
 }
 
 bool SectionTable::take(SectionKind kind, std::uint32_t a, std::uint32_t b, Section& section, VerifyResult& result) {

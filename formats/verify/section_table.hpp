@@ -5,48 +5,9 @@
 #include <span>
 
 #include "formats/verify.hpp"
+#include "formats/verify/section_check.hpp"
 
 namespace greenloop {
-
-/// One section of a file whose table is right: inside the file, aligned, checksum checked.
-struct Section {
-  layout::SectionKind kind = {};
-  std::uint16_t a = 0, b = 0;
-  const std::byte* data = nullptr;
-  std::uint64_t bytes = 0;
-
-  template <class Record>
-  [[nodiscard]] const Record* as() const {
-    return reinterpret_cast<const Record*>(data);
-  }
-};
-
-/// Writes down what is wrong with one section. Both functions return whether all is well, so that checks chain by &&.
-class SectionCheck {
- public:
-  SectionCheck(const Section& section, VerifyResult& result) : section_(section), result_(result) {}
-
-  bool refuse(VerifyRule rule, const char* field, std::uint64_t index, double value, double limit) {
-    result_ = {rule, section_.kind, section_.a, section_.b, field, index, value, limit};
-    return false;
-  }
-  bool require(bool right, VerifyRule rule, const char* field, std::uint64_t index, double value, double limit) {
-    return right || refuse(rule, field, index, value, limit);
-  }
-
-  /// An offset that its own header states.
-  bool require_offset(const char* field, std::uint64_t offset, std::uint64_t expected) {
-    return require(offset == expected, VerifyRule::inconsistent, field, 0, static_cast<double>(offset),
-                   static_cast<double>(expected));
-  }
-
-  /// Bytes begin..end-1 of the section.
-  bool require_zero(std::uint64_t begin, std::uint64_t end);
-
- private:
-  const Section& section_;
-  VerifyResult& result_;
-};
 
 /// The section table of a model file, read in file order.
 class SectionTable {
@@ -83,8 +44,5 @@ class SectionTable {
   std::span<const std::byte> file_;
   std::uint32_t next_ = 0;
 };
-
-/// True if every byte is zero. Work: linear.
-[[nodiscard]] bool all_zero(std::span<const std::byte> bytes);
 
 }  // namespace greenloop

@@ -1,5 +1,5 @@
-// The header, the section table, and files that must be accepted. One test per rule; see also verify_sections_test.cpp
-// and verify_couplings_test.cpp.
+// The header, the section table, and files that must be accepted. One test per rule; the sections have theirs beside
+// their verifiers.
 
 #include "formats/verify.hpp"
 
@@ -110,6 +110,29 @@ TEST_CASE("verify: the view shows every array where it stands") {
   }
   CHECK(view.node_count == nodes);
   CHECK(view.domain_count == domain);
+  CHECK(view.problem == layout::Problem::elastostatic);
+  CHECK(section_entries(view).data() == mutant.table().data());
+  CHECK(section_entries(view).size() == mutant.table().size());
+}
+
+TEST_CASE("verify refuses: an unknown problem, whatever its Info looks like otherwise") {
+  for (const std::uint32_t problem : {0u, layout::problems + 1, 0xffffffffu}) {
+    for (const std::size_t bytes : {sizeof(layout::InfoStart), sizeof(layout::Info), sizeof(layout::Info) + 64}) {
+      ModelMutant mutant = valid();
+      mutant.rebuild([&](std::vector<SectionCopy>& sections) {
+        sections[0].bytes.assign(bytes, std::byte{0});
+        std::memcpy(sections[0].bytes.data(), &problem, sizeof(problem));
+      });
+      check_refused(mutant, VerifyRule::bad_enum, SectionKind::info, 0, 0, "problem", 0);
+      CHECK(mutant.view().problem == layout::Problem{});
+    }
+  }
+}
+
+TEST_CASE("verify refuses: an Info too short to say its problem") {
+  ModelMutant mutant = valid();
+  mutant.rebuild([](std::vector<SectionCopy>& sections) { sections[0].bytes.resize(sizeof(layout::InfoStart) - 1); });
+  check_refused(mutant, VerifyRule::section_size, SectionKind::info, 0, 0, "bytes", 0);
 }
 
 TEST_CASE("verify accepts: every wavelet") {

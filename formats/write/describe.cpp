@@ -18,31 +18,10 @@ std::string place(const VerifyResult& result) {
 }  // namespace
 
 std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
-  switch (kind) {
-    case SectionKind::info:
-      return "Info";
-    case SectionKind::provenance:
-      return "Provenance";
-    case SectionKind::level:
-      return fmt::format("Level({})", a);
-    case SectionKind::nodes:
-      return fmt::format("Nodes({})", a);
-    case SectionKind::base_triangles:
-      return "BaseTriangles";
-    case SectionKind::refinement:
-      return fmt::format("Refinement({})", a);
-    case SectionKind::stencils:
-      return fmt::format("Stencils({})", a);
-    case SectionKind::predictions:
-      return fmt::format("Predictions({})", a);
-    case SectionKind::representatives:
-      return fmt::format("Representatives({}, {})", a, b);
-    case SectionKind::scales:
-      return fmt::format("Scales({})", a);
-    case SectionKind::couplings:
-      return fmt::format("Couplings({}, {})", a, b);
-    case SectionKind::patterns:
-      return fmt::format("Patterns({})", a);
+  for (const layout::SectionForm& form : layout::section_forms) {
+    if (form.kind != kind) continue;
+    if (form.indices == 0) return form.name;
+    return form.indices == 1 ? fmt::format("{}({})", form.name, a) : fmt::format("{}({}, {})", form.name, a, b);
   }
   return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);
 }

@@ -11,10 +11,11 @@
 #include <system_error>
 #include <utility>
 
+#include "formats/layout/elastostatic_order.hpp"
 #include "formats/verify.hpp"
-#include "formats/verify/crc32c.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/describe.hpp"
+#include "formats/write/section_file.hpp"
 
 namespace greenloop {
 namespace {
@@ -24,8 +25,6 @@ using layout::PredictionsHeader;
 using layout::SectionEntry;
 using layout::SectionKind;
 using Bytes = std::vector<std::byte>;
-
-constexpr std::size_t tail_bytes = 16;
 
 void require(bool right, const std::string& what) {
   if (!right) throw std::invalid_argument("model to be written: " + what);
@@ -39,8 +38,6 @@ template <class... Values>
 void require_size(const std::string& what, std::size_t size, std::size_t expected) {
   require(size == expected, fmt::format("{} has {} entries, expected {}", what, size, expected));
 }
-
-void pad(Bytes& bytes) { bytes.resize((bytes.size() + layout::alignment - 1) / layout::alignment * layout::alignment); }
 
 void append(Bytes& bytes, std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
 
@@ -106,20 +103,15 @@ Bytes encode_predictions(const PredictionsData& data, std::uint32_t nodes, std::
   Bytes bytes(sizeof(header));
   header.index_offset = bytes.size();
   append(bytes, encode_index(data.index, header.index_bytes, name + ".index"));
-  pad(bytes);
+  pad_to_alignment(bytes);
   header.weight_offset = bytes.size();
   append(bytes, bytes_of(data.weight));
-  bytes.resize(bytes.size() + tail_bytes);
+  bytes.resize(bytes.size() + layout::tail_bytes);
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes;
 }
 
-struct SectionBytes {
-  SectionEntry entry{};
-  Bytes bytes;
-};
-
-// The sections in the order of layout.hpp.
+// The sections of a model in the order of layout/elastostatic_order.hpp.
 class SectionList {
  public:
   explicit SectionList(const ModelData& model) : model_(model) {
@@ -128,87 +120,85 @@ class SectionList {
     for (std::uint32_t q = 0; q < levels(); ++q) add_level(q);
   }
 
-  [[nodiscard]] std::vector<SectionBytes>& sections() { return sections_; }
+  [[nodiscard]] std::vector<SectionBytes> take() && { return std::move(sections_); }
 
  private:
   [[nodiscard]] std::uint32_t levels() const { return static_cast<std::uint32_t>(model_.levels.size()); }
 
-  static SectionBytes section(SectionKind kind, std::uint32_t a, std::uint32_t b, Bytes bytes) {
+  void add(SectionKind kind, std::uint32_t a, std::uint32_t b, Bytes bytes) {
     SectionEntry entry{};
     entry.kind = static_cast<std::uint32_t>(kind);
     entry.a = static_cast<std::uint16_t>(a);
     entry.b = static_cast<std::uint16_t>(b);
-    entry.bytes = bytes.size();
-    entry.crc = crc32c(bytes);
-    return {entry, std::move(bytes)};
-  }
-  void add(SectionKind kind, std::uint32_t a, std::uint32_t b, Bytes bytes) {
-    sections_.push_back(section(kind, a, b, std::move(bytes)));
+    sections_.push_back({entry, std::move(bytes)});
   }
 
   void add_level(std::uint32_t q) {
-    const LevelData& level = model_.levels[q];
+    check_sizes(q);
     const std::size_t place = sections_.size();
-    add(SectionKind::level, q, 0, {});
-    add(SectionKind::nodes, q, 0, bytes_of(level.nodes));
-    if (q == 0) add(SectionKind::base_triangles, 0, 0, bytes_of(model_.base_triangles));
-    if (q > 0) {
-      require_size(fmt::format("levels[{}].refinement", q), level.refinement.size(), level.nodes.size());
-      add(SectionKind::refinement, q, 0, bytes_of(level.refinement));
+    layout::visit_elastostatic_level(model_.info, q, [&](SectionKind kind, std::uint32_t a, std::uint32_t b) {
+      add(kind, a, b, section_bytes(kind, a, b));
+      return true;
+    });
+    sections_[place].bytes = bytes_of_one(completed_counts(q));  // now they are known
+  }
+
+  void check_sizes(std::uint32_t q) const {
+    const LevelData& level = model_.levels[q];
+    const auto check = [q](const std::string& field, std::size_t size, std::size_t expected) {
+      require_size(fmt::format("levels[{}].{}", q, field), size, expected);
+    };
+    const auto wavelet = static_cast<layout::Wavelet>(model_.info.wavelet);
+    const bool constrained = q >= model_.info.coarsest_constraint_level;
+    const bool predicted = q > 0 && wavelet == layout::Wavelet::equilibrated;
+    const std::size_t terms = predicted ? std::size_t{domain_count(q)} * level.predictions.terms : 0;
+    if (q > 0) check("refinement", level.refinement.size(), level.nodes.size());
+    check("stencils", level.stencils.size(), q > 0 && layout::is_butterfly(wavelet) ? domain_count(q) : 0);
+    check("predictions.index", level.predictions.index.size(), terms);
+    check("predictions.weight", level.predictions.weight.size(), 9 * terms);
+    check("representatives", level.representatives.size(), constrained ? levels() : 0);
+    for (std::size_t r = 0; r < level.representatives.size(); ++r) {
+      check(fmt::format("representatives[{}]", r), level.representatives[r].size(), model_.levels[r].nodes.size());
     }
-    add_stencils(q);
-    add_predictions(q);
-    for (std::uint32_t c = 0; c <= q; ++c) add_representatives(c, q);
-    for (std::uint32_t r = 0; r < q; ++r) add_representatives(q, r);
-    require_size(fmt::format("levels[{}].scales", q), level.scales.size(), domain_count(q));
-    add(SectionKind::scales, q, 0, bytes_of(level.scales));
-    kept_blocks_ += level.scales.size();
-    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) add_couplings(q, layer);
-    add_patterns(q);
-    sections_[place] = section(SectionKind::level, q, 0, bytes_of_one(completed_counts(q)));  // now they are known
+    check("scales", level.scales.size(), domain_count(q));
+    if (!constrained) check("patterns", level.patterns.size(), 0);
   }
 
-  void add_stencils(std::uint32_t q) {
-    const bool wanted = q > 0 && layout::is_butterfly(static_cast<layout::Wavelet>(model_.info.wavelet));
-    const auto& stencils = model_.levels[q].stencils;
-    require_size(fmt::format("levels[{}].stencils", q), stencils.size(), wanted ? domain_count(q) : 0);
-    if (wanted) add(SectionKind::stencils, q, 0, bytes_of(stencils));
-  }
-
-  void add_predictions(std::uint32_t q) {
-    const bool wanted = q > 0 && static_cast<layout::Wavelet>(model_.info.wavelet) == layout::Wavelet::equilibrated;
-    const PredictionsData& data = model_.levels[q].predictions;
-    const std::string name = fmt::format("levels[{}].predictions", q);
-    const std::size_t terms = wanted ? std::size_t{domain_count(q)} * data.terms : 0;
-    require_size(name + ".index", data.index.size(), terms);
-    require_size(name + ".weight", data.weight.size(), 9 * terms);
-    if (!wanted) return;
-    add(SectionKind::predictions, q, 0, encode_predictions(data, domain_count(q), domain_of_mesh(q - 1), name));
-  }
-
-  void add_representatives(std::uint32_t c, std::uint32_t q) {
-    const LevelData& constraint = model_.levels[c];
-    if (c < model_.info.coarsest_constraint_level) {
-      return require_size(fmt::format("levels[{}].representatives", c), constraint.representatives.size(), 0);
+  // a, b: the indices of the section's name
+  Bytes section_bytes(SectionKind kind, std::uint32_t a, std::uint32_t b) {
+    switch (kind) {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding) \
+  case SectionKind::kind:                                           \
+    return kind##_bytes(a, b);
+      GREENLOOP_ELASTOSTATIC_SECTIONS(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+      default:
+        return {};  // Level(q), which counts what follows it
     }
-    require_size(fmt::format("levels[{}].representatives", c), constraint.representatives.size(), levels());
-    require_size(fmt::format("levels[{}].representatives[{}]", c, q), constraint.representatives[q].size(),
-                 model_.levels[q].nodes.size());
-    add(SectionKind::representatives, c, q, bytes_of(constraint.representatives[q]));
   }
 
-  void add_patterns(std::uint32_t q) {
-    const auto& patterns = model_.levels[q].patterns;
-    if (q >= model_.info.coarsest_constraint_level) return add(SectionKind::patterns, q, 0, bytes_of(patterns));
-    require_size(fmt::format("levels[{}].patterns", q), patterns.size(), 0);
+  Bytes nodes_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].nodes); }
+  Bytes base_triangles_bytes(std::uint32_t, std::uint32_t) { return bytes_of(model_.base_triangles); }
+  Bytes refinement_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].refinement); }
+  Bytes stencils_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].stencils); }
+  Bytes patterns_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].patterns); }
+  Bytes representatives_bytes(std::uint32_t c, std::uint32_t q) {
+    return bytes_of(model_.levels[c].representatives[q]);
   }
-
-  void add_couplings(std::uint32_t q, std::uint32_t layer) {
+  Bytes predictions_bytes(std::uint32_t q, std::uint32_t) {
+    return encode_predictions(model_.levels[q].predictions, domain_count(q), domain_of_mesh(q - 1),
+                              section_name(SectionKind::predictions, q, 0));
+  }
+  Bytes scales_bytes(std::uint32_t q, std::uint32_t) {
+    kept_blocks_ += model_.levels[q].scales.size();
+    return bytes_of(model_.levels[q].scales);
+  }
+  Bytes couplings_bytes(std::uint32_t q, std::uint32_t layer) {
     const CouplingsData& data = model_.levels[q].couplings[layer];
-    const std::string name = section_name(SectionKind::couplings, q, layer);
-    add(SectionKind::couplings, q, layer,
-        encode_couplings(data, domain_count(q), domain_of_mesh(q), layout::value_bits[layer], name));
+    Bytes bytes = encode_couplings(data, domain_count(q), domain_of_mesh(q), layout::value_bits[layer],
+                                   section_name(SectionKind::couplings, q, layer));
     kept_blocks_ += data.begin.back();
+    return bytes;
   }
 
   [[nodiscard]] std::uint32_t domain_count(std::uint32_t q) const {
@@ -258,26 +248,17 @@ class SectionList {
   std::uint64_t kept_blocks_ = 0;  // in the sections so far
 };
 
-// header with both checksums; the table and the length must already stand in `file`
-void seal(Bytes& file, std::uint32_t section_count, std::uint32_t levels, std::uint16_t minor) {
-  layout::Header header{};
-  std::memcpy(header.magic, layout::magic, sizeof(header.magic));
-  header.endian = layout::endian_tag;
-  header.major = layout::version_major;
-  header.minor = minor;
-  header.file_bytes = file.size();
-  header.section_count = section_count;
-  header.levels = levels;
-  header.table_crc = crc32c(std::span(file).subspan(sizeof(header), section_count * sizeof(SectionEntry)));
-  header.header_crc = crc32c(std::as_bytes(std::span(&header, 1)).first(offsetof(layout::Header, header_crc)));
-  std::memcpy(file.data(), &header, sizeof(header));
-}
-
 ModelView require_valid(const AlignedBytes& file) {
   ModelView view;
   const VerifyResult result = verify(file.span(), view);
   require(result.ok(), describe(result));
   return view;
+}
+
+void require_constraint_level(const layout::Info& info, std::uint32_t q) {
+  require(q >= info.coarsest_constraint_level,
+          fmt::format("cut after level {}, but the coarsest constraint level is {}; keep at least that many levels", q,
+                      info.coarsest_constraint_level));
 }
 
 }  // namespace
@@ -300,13 +281,13 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
   bytes.resize(sizeof(CouplingsHeader));
   header.begin_offset = bytes.size();
   append(bytes, std::as_bytes(std::span(data.begin).first(header.columns + std::size_t{1})));
-  pad(bytes);
+  pad_to_alignment(bytes);
   header.index_offset = bytes.size();
   append(bytes, encode_index(data.index, header.index_bytes, name + ".index"));
-  pad(bytes);
+  pad_to_alignment(bytes);
   header.value_offset = bytes.size();
   append(bytes, encode_values(data.value, value_bits, name + ".value"));
-  bytes.resize(bytes.size() + tail_bytes);
+  bytes.resize(bytes.size() + layout::tail_bytes);
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes;
 }
@@ -314,20 +295,7 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
 std::vector<std::byte> encode(const ModelData& model) {
   require(!model.levels.empty() && model.levels.size() <= layout::max_levels,
           fmt::format("{} levels, expected 1 to {}", model.levels.size(), layout::max_levels));
-  SectionList list(model);
-  const auto count = static_cast<std::uint32_t>(list.sections().size());
-
-  Bytes file(sizeof(layout::Header) + count * sizeof(SectionEntry));
-  pad(file);
-  for (std::uint32_t i = 0; i < count; ++i) {
-    SectionBytes& section = list.sections()[i];
-    section.entry.offset = file.size();
-    std::memcpy(file.data() + sizeof(layout::Header) + i * sizeof(SectionEntry), &section.entry, sizeof(SectionEntry));
-    append(file, section.bytes);
-    pad(file);
-    section.bytes = {};
-  }
-  seal(file, count, static_cast<std::uint32_t>(model.levels.size()), layout::version_minor);
+  auto file = file_of(SectionList(model).take(), static_cast<std::uint32_t>(model.levels.size()));
   require_valid(AlignedBytes(file));
   return file;
 }
@@ -335,22 +303,25 @@ std::vector<std::byte> encode(const ModelData& model) {
 std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint32_t q) {
   const AlignedBytes whole(model);
   const ModelView view = require_valid(whole);
-  require(q < view.levels, fmt::format("cut after level {}, but the file ends with level {}", q, view.levels - 1));
-  require(q >= view.info->coarsest_constraint_level,
-          fmt::format("cut after level {}, but the coarsest constraint level is {}; keep at least that many levels", q,
-                      view.info->coarsest_constraint_level));
+  require(q < view.header->levels,
+          fmt::format("cut after level {}, but the file ends with level {}", q, view.header->levels - 1));
+  if (view.problem == layout::Problem::elastostatic) require_constraint_level(*view.info, q);
 
-  std::vector<SectionEntry> table(view.header->section_count);
+  const auto table = section_entries(view);
   std::byte* const table_bytes = model.data() + sizeof(layout::Header);
-  std::memcpy(table.data(), table_bytes, table.size() * sizeof(SectionEntry));
   const auto dropped = std::find_if(table.begin(), table.end(), [&](const SectionEntry& entry) {
     return entry.kind == static_cast<std::uint32_t>(SectionKind::level) && entry.a == q + 1;
   });
   const auto kept = static_cast<std::size_t>(dropped - table.begin());
   std::fill(table_bytes + kept * sizeof(SectionEntry), table_bytes + table.size() * sizeof(SectionEntry), std::byte{0});
   model.resize(static_cast<std::size_t>(table[kept - 1].offset + table[kept - 1].bytes));
-  pad(model);
-  seal(model, static_cast<std::uint32_t>(kept), q + 1, view.header->minor);
+  pad_to_alignment(model);
+  layout::Header header{};
+  header.major = view.header->major;
+  header.minor = view.header->minor;
+  header.section_count = static_cast<std::uint32_t>(kept);
+  header.levels = q + 1;
+  seal(model, header);
   require_valid(AlignedBytes(model));
   return model;
 }

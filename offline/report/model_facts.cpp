@@ -4,10 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
-#include <span>
+#include <string_view>
 
 #include "formats/stored_blocks.hpp"
 #include "formats/write/describe.hpp"
@@ -19,27 +18,22 @@ namespace {
 
 using layout::SectionKind;
 
-constexpr std::array<std::pair<SectionKind, const char*>, 9> kind_names{
-    {{SectionKind::info, "info"},
-     {SectionKind::provenance, "provenance"},
-     {SectionKind::level, "levels"},
-     {SectionKind::nodes, "nodes"},
-     {SectionKind::base_triangles, "base triangles"},
-     {SectionKind::refinement, "refinement"},
-     {SectionKind::representatives, "representatives"},
-     {SectionKind::scales, "scales"},
-     {SectionKind::patterns, "patterns"}}};
-
-std::span<const layout::SectionEntry> section_entries(const ModelView& model) {
-  return {reinterpret_cast<const layout::SectionEntry*>(model.header + 1), model.header->section_count};
+/// "base triangles" for BaseTriangles.
+std::string in_words(std::string_view name) {
+  std::string words;
+  for (const char letter : name) {
+    const bool capital = letter >= 'A' && letter <= 'Z';
+    if (capital && !words.empty()) words += ' ';
+    words += capital ? static_cast<char>(letter - 'A' + 'a') : letter;
+  }
+  return words;
 }
 
 std::string kind_name(const layout::SectionEntry& entry) {
-  if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings)) {
-    return fmt::format("couplings, {} bits", layout::value_bits[entry.b]);
-  }
-  for (const auto& [known, name] : kind_names) {
-    if (static_cast<std::uint32_t>(known) == entry.kind) return name;
+  const auto kind = static_cast<SectionKind>(entry.kind);
+  if (kind == SectionKind::couplings) return fmt::format("couplings, {} bits", layout::value_bits[entry.b]);
+  for (const layout::SectionForm& form : layout::section_forms) {
+    if (form.kind == kind) return in_words(form.name);
   }
   return fmt::format("unknown kind {}", entry.kind);
 }

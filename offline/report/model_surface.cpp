@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <string>
+
+#include "formats/mesh/model_surface.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -34,26 +37,11 @@ std::vector<char> ModelSurface::touchable(int l) const {
 }
 
 ModelSurface model_surface(const ModelView& model) {
-  ModelSurface surface;
-  for (std::uint32_t q = 0; q < model.levels; ++q) {
-    const LevelView& level = model.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      const layout::NodeRecord& node = level.nodes[i];
-      surface.mesh.positions.emplace_back(node.position[0], node.position[1], node.position[2]);
+  ModelSurface surface{.mesh = semi_regular_surface(model), .flags = {}};
+  for (const LevelView& level : std::span(model.level).first(model.levels)) {
+    for (const layout::NodeRecord& node : std::span(level.nodes, level.counts->node_count)) {
       surface.flags.push_back(node.flags);
-      std::array<int, 2> parents{-1, -1};
-      if (q > 0) {
-        const auto& [a, b] = level.refinement[i].parent;
-        parents = {static_cast<int>(std::min(a, b)), static_cast<int>(std::max(a, b))};
-      }
-      surface.mesh.parents.push_back(parents);
     }
-    surface.mesh.vertex_end.push_back(surface.mesh.positions.size());
-  }
-  for (std::uint32_t t = 0; t < model.level[0].counts->base_triangle_count; ++t) {
-    const std::uint32_t* corner = model.base_triangles + 3 * static_cast<std::size_t>(t);
-    surface.mesh.base_triangles.push_back(
-        {static_cast<int>(corner[0]), static_cast<int>(corner[1]), static_cast<int>(corner[2])});
   }
   try {
     (void)triangles_of_level(surface.mesh, surface.mesh.finest_level());

@@ -207,6 +207,23 @@ TEST_CASE("bytes by kind add up to the file") {
   CHECK(kinds.back().bytes >= sizeof(layout::Header));
 }
 
+TEST_CASE("every kind of section has a name") {
+  const TemporaryFolder folder("report_test");
+  for (const layout::Wavelet wavelet : layout::wavelets) {
+    write_file(folder.path() / "kinds.gloop", encode(synthetic_model({.levels = 2, .wavelet = wavelet})));
+    std::vector<std::string> names;
+    for (const KindBytes& kind : bytes_by_kind(open_model_file(folder.path() / "kinds.gloop").view)) {
+      CAPTURE(kind.name);
+      CHECK_FALSE(has(kind.name, "unknown"));
+      names.push_back(kind.name);
+    }
+    const auto count = [&](const char* name) { return std::count(names.begin(), names.end(), name); };
+    CHECK(count("base triangles") == 1);
+    CHECK(count("stencils") == (layout::is_butterfly(wavelet) ? 1 : 0));
+    CHECK(count("predictions") == (wavelet == layout::Wavelet::equilibrated ? 1 : 0));
+  }
+}
+
 TEST_CASE("one row per constraint level, with its errors") {
   const Sample sample;
   const Table plain = level_table(sample.file.view, {});

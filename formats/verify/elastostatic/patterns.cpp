@@ -1,8 +1,6 @@
-#include <cmath>
+#include "formats/verify/elastostatic/sections.hpp"
 
-#include "formats/verify/verify_sections.hpp"
-
-namespace greenloop {
+namespace greenloop::elastostatic {
 namespace {
 
 using layout::PatternKind;
@@ -14,10 +12,7 @@ constexpr std::uint64_t most_records = std::uint64_t{layout::pattern_kinds} * la
 bool verify_quantiles(SectionCheck& check, const char* field, std::uint32_t i, const float (&error)[3]) {
   double least = 0;
   for (const float value : error) {
-    if (!check.require(std::isfinite(value), VerifyRule::not_finite, field, i, value, 0) ||
-        !check.require(value >= least, VerifyRule::out_of_range, field, i, value, least)) {
-      return false;
-    }
+    if (!check.require_at_least(field, i, value, least)) return false;
     least = value;
   }
   return true;
@@ -25,10 +20,9 @@ bool verify_quantiles(SectionCheck& check, const char* field, std::uint32_t i, c
 
 bool verify_contacts(SectionCheck& check, const PatternRecord& record, std::uint32_t i) {
   const std::uint32_t least = layout::least_contacts(static_cast<PatternKind>(record.kind));
-  return check.require(record.contacts >= least, VerifyRule::out_of_range, "contacts", i, record.contacts, least) &&
-         check.require(record.contacts <= layout::most_pattern_contacts, VerifyRule::out_of_range, "contacts", i,
-                       record.contacts, layout::most_pattern_contacts) &&
-         check.require(record.samples >= 1, VerifyRule::out_of_range, "samples", i, record.samples, 1);
+  return check.require_at_least("contacts", i, record.contacts, least) &&
+         check.require_at_most("contacts", i, record.contacts, layout::most_pattern_contacts) &&
+         check.require_at_least("samples", i, record.samples, 1);
 }
 
 bool verify_pattern(SectionCheck& check, const PatternRecord& record, std::uint32_t i, bool reserved_is_zero) {
@@ -56,10 +50,9 @@ bool comes_before(const PatternRecord& a, const PatternRecord& b) {
 
 bool verify_patterns(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  const std::uint64_t count = section.bytes / sizeof(PatternRecord), whole = count * sizeof(PatternRecord);
+  const std::uint64_t count = section.bytes / sizeof(PatternRecord);
   const auto* records = section.as<PatternRecord>();
-  if (!check.require(section.bytes == whole, VerifyRule::section_size, "bytes", 0, static_cast<double>(section.bytes),
-                     static_cast<double>(whole)) ||
+  if (!check.require_count(count) ||
       !check.require(count <= most_records, VerifyRule::section_size, "bytes", 0, static_cast<double>(section.bytes),
                      static_cast<double>(most_records * sizeof(PatternRecord)))) {
     return false;
@@ -75,4 +68,4 @@ bool verify_patterns(const Section& section, VerifyContext& context) {
   return true;
 }
 
-}  // namespace greenloop
+}  // namespace greenloop::elastostatic

@@ -2,16 +2,14 @@
 #include <cmath>
 #include <limits>
 
-#include "formats/verify/section_extent.hpp"
-#include "formats/verify/verify_sections.hpp"
+#include "formats/verify/elastostatic/sections.hpp"
 
-namespace greenloop {
+namespace greenloop::elastostatic {
 namespace {
 
 using layout::CouplingsHeader;
 
 constexpr std::uint64_t values_per_block = 9;
-constexpr std::uint64_t tail_bytes = 16;  // a wide load of the last block stays inside the section
 
 constexpr std::uint64_t bytes_per_block(std::uint32_t value_bits) {
   return value_bits == 4 ? 5 : values_per_block * value_bits / 8;
@@ -23,9 +21,9 @@ struct Extent {
 
   Extent(const CouplingsHeader& header, std::uint32_t value_bits)
       : begin_end(sizeof(CouplingsHeader) + (std::uint64_t{header.columns} + 1) * sizeof(std::uint32_t)),
-        index(aligned(begin_end)),
+        index(layout::aligned(begin_end)),
         index_end(index + header.block_count * header.index_bytes),
-        value(aligned(index_end)),
+        value(layout::aligned(index_end)),
         value_end(value + header.block_count * bytes_per_block(value_bits)) {}
 };
 
@@ -33,7 +31,7 @@ struct Extent {
 struct Expected {
   std::uint32_t columns, rows, value_bits;
 
-  Expected(const Section& section, const ModelView& view)
+  Expected(const Section& section, const ElastostaticView& view)
       : columns(view.level[section.a].counts->domain_count),
         rows(domain_of_mesh(view, section.a)),
         value_bits(layout::value_bits[section.b]) {}
@@ -52,21 +50,16 @@ bool verify_header(SectionCheck& check, const CouplingsHeader& header, const Exp
   };
   const std::uint64_t most = std::min(expected.all_blocks(), std::uint64_t{layout::none});
   return is("columns", header.columns, header.block_count > 0 ? expected.columns : 0) &&
-         is("rows", header.rows, expected.rows) &&
-         check.require(header.index_bytes == 2 || header.index_bytes == 4, VerifyRule::bad_enum, "index_bytes", 0,
-                       header.index_bytes, 4) &&
-         check.require(header.index_bytes != 2 || header.rows <= 65536, VerifyRule::inconsistent, "index_bytes", 0, 2,
-                       4) &&
+         is("rows", header.rows, expected.rows) && verify_index_bytes(check, header.index_bytes, header.rows) &&
          check.require(header.block_count <= most, VerifyRule::out_of_range, "block_count", 0,
                        static_cast<double>(header.block_count), static_cast<double>(most));
 }
 
-bool verify_extent(SectionCheck& check, const Section& section, const CouplingsHeader& header, const Extent& extent) {
+bool verify_extent(SectionCheck& check, const CouplingsHeader& header, const Extent& extent) {
   return check.require_offset("begin_offset", header.begin_offset, sizeof(CouplingsHeader)) &&
          check.require_offset("index_offset", header.index_offset, extent.index) &&
          check.require_offset("value_offset", header.value_offset, extent.value) &&
-         check.require(section.bytes >= extent.value_end + tail_bytes, VerifyRule::section_size, "bytes", 0,
-                       static_cast<double>(section.bytes), static_cast<double>(extent.value_end + tail_bytes));
+         check.require_bytes(extent.value_end + layout::tail_bytes);
 }
 
 bool verify_gaps(SectionCheck& check, const Section& section, const Extent& extent) {
@@ -157,10 +150,7 @@ bool verify_blocks(SectionCheck& check, const CouplingsView& view, const Couplin
 
 bool verify_couplings(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  if (!check.require(section.bytes >= sizeof(CouplingsHeader), VerifyRule::section_size, "bytes", 0,
-                     static_cast<double>(section.bytes), sizeof(CouplingsHeader))) {
-    return false;
-  }
+  if (!check.require_bytes(sizeof(CouplingsHeader))) return false;
   const auto& header = *section.as<CouplingsHeader>();
   const Expected expected(section, context.view);
   if (!verify_header(check, header, expected) ||
@@ -170,7 +160,7 @@ bool verify_couplings(const Section& section, VerifyContext& context) {
     return false;
   }
   const Extent extent(header, expected.value_bits);
-  if (!verify_extent(check, section, header, extent) || !verify_gaps(check, section, extent)) return false;
+  if (!verify_extent(check, header, extent) || !verify_gaps(check, section, extent)) return false;
 
   const CouplingsView view{header.columns,
                            header.rows,
@@ -184,4 +174,4 @@ bool verify_couplings(const Section& section, VerifyContext& context) {
   return true;
 }
 
-}  // namespace greenloop
+}  // namespace greenloop::elastostatic

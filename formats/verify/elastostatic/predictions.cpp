@@ -1,15 +1,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "formats/verify/section_extent.hpp"
-#include "formats/verify/verify_sections.hpp"
+#include "formats/verify/elastostatic/sections.hpp"
 
-namespace greenloop {
+namespace greenloop::elastostatic {
 namespace {
 
 using layout::PredictionsHeader;
-
-constexpr std::uint64_t tail_bytes = 16;  // a wide load of the last block stays inside the section
 
 std::uint64_t blocks(const PredictionsHeader& header) { return std::uint64_t{header.nodes} * header.terms; }
 
@@ -18,18 +15,14 @@ bool verify_header(SectionCheck& check, const PredictionsHeader& header, std::ui
          check.require(header.terms <= layout::most_prediction_terms, VerifyRule::out_of_range, "terms", 0,
                        header.terms, layout::most_prediction_terms) &&
          check.require(header.rows == rows, VerifyRule::inconsistent, "rows", 0, header.rows, rows) &&
-         check.require(header.index_bytes == 2 || header.index_bytes == 4, VerifyRule::bad_enum, "index_bytes", 0,
-                       header.index_bytes, 4) &&
-         check.require(header.index_bytes != 2 || header.rows <= 65536, VerifyRule::inconsistent, "index_bytes", 0, 2,
-                       4);
+         verify_index_bytes(check, header.index_bytes, header.rows);
 }
 
 bool verify_extent(SectionCheck& check, const Section& section, const PredictionsHeader& header,
-                   const PredictionsExtent& extent) {
+                   const layout::PredictionsExtent& extent) {
   return check.require_offset("index_offset", header.index_offset, extent.index) &&
          check.require_offset("weight_offset", header.weight_offset, extent.weight) &&
-         check.require(section.bytes >= extent.weight_end + tail_bytes, VerifyRule::section_size, "bytes", 0,
-                       static_cast<double>(section.bytes), static_cast<double>(extent.weight_end + tail_bytes)) &&
+         check.require_bytes(extent.weight_end + layout::tail_bytes) &&
          check.require_zero(extent.index_end, extent.weight) && check.require_zero(extent.weight_end, section.bytes);
 }
 
@@ -56,10 +49,7 @@ bool verify_weights(SectionCheck& check, const PredictionsHeader& header, const 
 
 bool verify_predictions(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
-  if (!check.require(section.bytes >= sizeof(PredictionsHeader), VerifyRule::section_size, "bytes", 0,
-                     static_cast<double>(section.bytes), sizeof(PredictionsHeader))) {
-    return false;
-  }
+  if (!check.require_bytes(sizeof(PredictionsHeader))) return false;
   const auto& header = *section.as<PredictionsHeader>();
   LevelView& level = context.view.level[section.a];
   if (!verify_header(check, header, level.counts->domain_count, level.domain_begin) ||
@@ -67,7 +57,7 @@ bool verify_predictions(const Section& section, VerifyContext& context) {
                      VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
     return false;
   }
-  const PredictionsExtent extent(header);
+  const layout::PredictionsExtent extent(header);
   if (!verify_extent(check, section, header, extent)) return false;
   const std::byte* const index = section.data + extent.index;
   const bool indices_right = header.index_bytes == 2
@@ -79,4 +69,4 @@ bool verify_predictions(const Section& section, VerifyContext& context) {
   return true;
 }
 
-}  // namespace greenloop
+}  // namespace greenloop::elastostatic

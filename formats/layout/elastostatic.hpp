@@ -1,0 +1,248 @@
+#pragma once
+
+// The sections of an elastostatic model. In this order, after Info and Provenance, for q = 0 .. levels-1:
+//
+//   Level(q)                                         counts and measured errors of the model cut off after level q
+//   Nodes(q)                                         NodeRecord [node_count(q)]: M(q), domain nodes first
+//   BaseTriangles                                    only q = 0: u32 [3 * base_triangle_count]
+//   Refinement(q)                                    only q > 0: RefinementRecord [node_count(q)]
+//   Stencils(q)                                      only q > 0, Butterfly: StencilRecord [domain_count(q)]
+//   Predictions(q)                                   only q > 0, Equilibrated: PredictionsHeader and its arrays
+//   Representatives(c, q) for c = first..q           u32 [node_count(q)]: node of K(c) that stands for a node
+//   Representatives(q, r) for r = 0..q-1             u32 [node_count(r)]
+//   Scales(q)                                        Scale [domain_count(q)]
+//   Couplings(q, layer) for each layer               CouplingsHeader and its arrays
+//   Patterns(q) if q >= first                        PatternRecord[], by kind, then contacts; none: not measured
+//
+// `first` is Info::coarsest_constraint_level; levels below it have no Representatives and no Patterns. A touchable node
+// is represented on constraint level c by a domain node of K(c), by itself if it is one; any other node by `none`.
+// A node is named by its place in the file: coarse to fine, and within a level the *domain* (nodes whose displacement
+// is stored: free and needed by the scene, closed under free parents) comes first. All other nodes do not move or are
+// not read; their displacement is zero.
+//
+// The compliance U of the domain nodes (m/N) in two-sided wavelet coordinates, W U W^T with the forward transform
+//   W = T_1 ... T_L      (T_l: predict, then lift, on K(l))
+// that turns nodal displacements into averages on level 0 and details on M(1) .. M(L): one coefficient a domain node,
+// numbered alike. A coefficient i has a scale, the symmetric root R_i of its conditional compliance (what is left of
+// its diagonal block once the coefficients of its level are held); what is stored of the block (i, j), i < j, is R_i^-1
+// (W U W^T)_ij R_j^-1 in whole quanta, and nothing where it is small. The scaled diagonal blocks stand beside the
+// scales. See docs/theory.md and docs/compression.md.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "formats/layout/header.hpp"
+
+namespace greenloop::layout {
+
+/// Couplings are stored in layers by size. The first, of a coarser quantum, is for what is too large for the second;
+/// what is left of it stands in another. A file has every section, even an empty one.
+inline constexpr std::uint32_t layers = 4;
+inline constexpr std::uint32_t value_bits[layers] = {16, 16, 8, 4};  ///< of one element of a block
+
+/// Bytes of zero behind the blocks of a section: a wide load of the last block stays inside it.
+inline constexpr std::uint64_t tail_bytes = 16;
+
+enum class Wavelet : std::uint32_t {
+  lifted_linear = 1,
+  linear = 2,
+  lifted_butterfly = 3,
+  butterfly = 4,
+  equilibrated = 5,
+};
+inline constexpr Wavelet wavelets[] = {Wavelet::lifted_linear, Wavelet::linear, Wavelet::lifted_butterfly,
+                                       Wavelet::butterfly, Wavelet::equilibrated};
+
+constexpr bool is_lifted(Wavelet wavelet) {
+  return wavelet == Wavelet::lifted_linear || wavelet == Wavelet::lifted_butterfly;
+}
+constexpr bool is_butterfly(Wavelet wavelet) {
+  return wavelet == Wavelet::lifted_butterfly || wavelet == Wavelet::butterfly;
+}
+
+struct Info {
+  std::uint32_t problem;       ///< Problem
+  std::uint32_t wavelet;       ///< Wavelet
+  std::uint32_t components;    ///< 3: displacements and forces are vectors
+  std::uint32_t levels;        ///< mesh levels of the complete model, L + 1
+  double young;                ///< Pa
+  double poisson;              ///< -
+  double threshold;            ///< scaled blocks below this Frobenius norm over root 3 were dropped
+  double store_asymmetry;      ///< largest relative asymmetry of the exact compliance
+  double lambda_min;           ///< m/N: certified below the least eigenvalue of U; 0: no certificate
+  float box_min[3];            ///< m
+  float box_max[3];            ///< m
+  float rate;                  ///< Hz: the loop the scene asked for
+  std::uint32_t max_contacts;  ///< the scene's
+  std::uint64_t step_work;     ///< work units per step the scene asked for
+  std::uint32_t coarsest_constraint_level;
+  std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
+  float quantum[layers];                  ///< of the scaled values of each layer of couplings, in [0, 1]
+  std::uint8_t reserved[136];
+};
+static_assert(sizeof(Info) == 256 && offsetof(Info, problem) == offsetof(InfoStart, problem));
+
+// Forces and fields are of one compliance, that of all couplings: u = W^-1 (W U W^T) T^-T f for forces f on constraint
+// level c.
+
+/// The model cut off after this level: the compliance between the averages of level q, which are the forces and the
+/// displacements of constraint level q. Errors against the exact one, all relative.
+struct Level {
+  std::uint32_t node_count;           ///< |M(q)|
+  std::uint32_t domain_count;         ///< domain nodes of M(q): the first ones
+  std::uint32_t base_triangle_count;  ///< q = 0 only, else 0
+  std::uint32_t reserved;
+  std::uint64_t kept_blocks;   ///< 3x3 blocks stored in levels 0..q: scales and couplings
+  std::uint64_t dense_blocks;  ///< domain nodes of K(q), squared
+  float rms_error;             ///< ||U^ - U||_F / ||U||_F
+  float worst_column_error;    ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius
+  float patch_force_error;     ///< worst ||f^ - f|| / ||f|| of sampled 64-node patches displaced along x, y or z
+  float field_rms_error;       ///< rms_error at nodes with node_read
+  float field_column_error;    ///< worst_column_error, errors at nodes with node_read
+  // of contacts resolved at this level, against the exact solution at the finest level: the worst of the patterns of
+  // at most 64 contacts that are not is_rough; 0 if none was measured
+  float field_error;  ///< ||u^ - u|| / ||u||
+  float field_peak;   ///< largest error of a node over the largest displacement
+  float force_error;  ///< ||f^ - f|| / ||f||
+};
+static_assert(sizeof(Level) == 64);
+
+enum NodeFlag : std::uint32_t {
+  node_domain = 1,     ///< its displacement is stored
+  node_touchable = 2,  ///< may be a contact
+  node_fixed = 4,      ///< held in place
+  node_read = 8,       ///< the scene asked for its displacement
+};
+
+struct NodeRecord {
+  float position[3];  ///< m, undeformed
+  float area;         ///< m^2, the integral of its hat function on the finest level
+  std::uint32_t flags;
+};
+static_assert(sizeof(NodeRecord) == 20);
+
+struct RefinementRecord {
+  std::uint32_t parent[2];  ///< ends of the edge it halves, nodes of coarser levels
+  float lift[2];            ///< lifting weights towards the parents; 0 towards those outside the domain; 0 if unlifted
+};
+static_assert(sizeof(RefinementRecord) == 16);
+
+/// What the Butterfly scheme predicts a node from besides the two ends of its edge, which weigh 1/2 each: nodes of
+/// coarser levels in the domain or fixed; all `none`: from the two ends alone. Nodes may occur twice: weights add.
+struct StencilRecord {
+  std::uint32_t wing[2];   ///< weight 1/8: the third corners of the two triangles at the edge
+  std::uint32_t outer[4];  ///< weight -1/16: across the sides of those triangles, two of each triangle
+};
+static_assert(sizeof(StencilRecord) == 24);
+
+inline constexpr float wing_weight = 0.125F, outer_weight = -0.0625F;
+
+/// Predictions with 3x3 weights: x_m = d_m + sum over k of P_mk x_k, for the domain nodes m of M(q), from as many
+/// domain nodes k of K(q-1) each. Arrays at 64-byte multiples in the section, with n = nodes:
+///   index   u16|u32 [n * terms]   the nodes k, by their place among all domain nodes; weights of the same node add
+///   weight  i16 [9 * n * terms]   P_mk in units of prediction_unit, then >= 16 zero bytes; element 3 c + r of a block:
+///                                 displacement r of m per displacement c of k; the most negative value does not occur
+struct PredictionsHeader {
+  std::uint32_t nodes;         ///< domain nodes of M(q)
+  std::uint32_t terms;         ///< 0..most_prediction_terms; the same for every node
+  std::uint32_t rows;          ///< domain nodes of K(q-1)
+  std::uint32_t index_bytes;   ///< 2 or 4
+  std::uint64_t index_offset;  ///< from the start of the section
+  std::uint64_t weight_offset;
+  std::uint32_t reserved[8];
+};
+static_assert(sizeof(PredictionsHeader) == 64);
+
+inline constexpr std::uint32_t most_prediction_terms = 8;
+inline constexpr float prediction_unit = 0x1p-12F;
+
+/// Where the arrays of a Predictions section stand, in bytes from its start. No overflow if there are at most
+/// most_prediction_terms.
+struct PredictionsExtent {
+  std::uint64_t index, index_end, weight, weight_end;
+
+  explicit constexpr PredictionsExtent(const PredictionsHeader& header) : index(sizeof(header)) {
+    const std::uint64_t blocks = std::uint64_t{header.nodes} * header.terms;
+    index_end = index + blocks * header.index_bytes;
+    weight = aligned(index_end);
+    weight_end = weight + blocks * 9 * sizeof(std::int16_t);
+  }
+};
+
+/// What people do to a body: contacts that a model's answers are measured on.
+enum class PatternKind : std::uint32_t {
+  node = 1,         ///< a single node displaced along x, y or z
+  patch = 2,        ///< the nodes nearest to one, displaced as a whole along x, y or z
+  sphere = 3,       ///< a rigid sphere pushed in along the inward normal; contacts that only push
+  turned = 4,       ///< a patch turned by 5 degrees about its normal or a tangent, through its centre
+  gathered = 5,     ///< a patch squeezed tangentially by 5 % towards its centre
+  pinch = 6,        ///< two fingers on opposite sides of a thin part, pressed towards each other
+  opposed = 7,      ///< two distant patches moved oppositely
+  alternating = 8,  ///< neighbours displaced along plus and minus the normal
+  random = 9,       ///< every node of a patch displaced at random
+};
+inline constexpr std::uint32_t pattern_kinds = 9;
+inline constexpr std::uint32_t most_pattern_contacts = 256;
+
+/// Whether neighbours are displaced differently, as no tool does: their forces nearly cancel, and so does the field
+/// beyond them, which the errors are relative to.
+constexpr bool is_rough(PatternKind kind) { return kind == PatternKind::alternating || kind == PatternKind::random; }
+
+/// Whether groups of contacts are pushed as a whole, so that their total forces say something.
+constexpr bool has_total_force(PatternKind kind) {
+  return kind == PatternKind::node || kind == PatternKind::patch || kind == PatternKind::sphere ||
+         kind == PatternKind::pinch || kind == PatternKind::opposed;
+}
+
+/// Fewest contacts of a pattern of this kind.
+constexpr std::uint32_t least_contacts(PatternKind kind) {
+  return kind == PatternKind::node || kind == PatternKind::sphere ? 1 : 2;
+}
+
+/// Relative errors of the complete model's answers at constraint level q to all patterns of one kind and size: median,
+/// 95th percentile and worst, against the exact answer of the finest level to the same contacts.
+struct PatternRecord {
+  std::uint32_t kind;      ///< PatternKind
+  std::uint32_t contacts;  ///< nodes, at most (a sphere only holds those it pushes)
+  std::uint32_t samples;   ///< sites times displacements
+  std::uint32_t reserved;
+  float field_error[3];  ///< ||u^ - u|| / ||u||, nodes weighted by area; u^ - u: at nodes with node_read
+  float field_peak[3];   ///< largest |u^_i - u_i| of nodes with node_read over the largest |u_i| of any node
+  float force_error[3];  ///< ||f^ - f|| / ||f|| of the nodal forces
+  float
+      total_force_error[3];  ///< sum_g |F^_g - F_g| / sum_g |F_g| of the groups' total forces; has_total_force, else 0
+};
+static_assert(sizeof(PatternRecord) == 64);
+
+/// The scale of a coefficient: two symmetric positive definite matrices xx, xy, xz, yy, yz, zz.
+struct Scale {
+  float root[6];      ///< R; (m/N)^(1/2)
+  float diagonal[6];  ///< R^-1 (W U W^T)_ii R^-1
+};
+static_assert(sizeof(Scale) == 48);
+
+/// Sparse 3x3 blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
+///   begin  u32 [n + 1]     first block of each column
+///   index  u16|u32 [m]     row, increasing within a column
+///   value  [m]             blocks, then >= 16 zero bytes; element k = 3 c + r of a block: scaled displacement r of the
+///                          row per scaled force c of the column, in quanta of the layer
+///            4 bits        5 bytes a block: element k is nibble k, low nibble first, -7..7; the tenth nibble is 0
+///            8 bits        9 bytes a block
+///            16 bits       18 bytes a block; the most negative value does not occur, nor in 8 bits
+/// Columns are the coefficients of the level, by their place among the domain nodes of M(q); rows are coefficients that
+/// lie before the column's, by their place among all domain nodes: the block of the other half is the transpose. Every
+/// array starts at the first multiple of 64 after the one before it. A section without blocks has no columns.
+struct CouplingsHeader {
+  std::uint32_t columns;
+  std::uint32_t rows;         ///< domain nodes of K(q)
+  std::uint32_t index_bytes;  ///< 2 or 4
+  std::uint32_t reserved0;
+  std::uint64_t block_count;
+  std::uint64_t begin_offset;  ///< from the start of the section, as are the others
+  std::uint64_t index_offset;
+  std::uint64_t value_offset;
+  std::uint32_t reserved[4];
+};
+static_assert(sizeof(CouplingsHeader) == 64);
+
+}  // namespace greenloop::layout

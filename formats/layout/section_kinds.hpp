@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "formats/layout/elastostatic.hpp"
+
+// The one table of section kinds. Verifier, names, writer, transport form and report are made from it, and a test holds
+// docs/format.md to it.
+//
+//   ROW(kind, number, name, indices, element, coding)
+//     kind     enumerator of SectionKind; the verifier of the kind is verify_<kind>, its writer <kind>_bytes
+//     number   SectionEntry::kind; a number once given away is never given another meaning
+//     name     in text: Nodes stands as Nodes(2)
+//     indices  how many of SectionEntry::a and b the kind has; the others are 0
+//     element  what a section is an array of; std::byte where its length follows from what it holds
+//     coding   in the transport form: bytes, words, or how a kind of its own is coded (formats/transport/packet.cpp)
+
+/// Of every problem. Info begins with InfoStart, and Level(q) is the first section of mesh level q; the rest of both is
+/// the problem's own.
+#define GREENLOOP_COMMON_SECTIONS(ROW)             \
+  ROW(info, 1, "Info", 0, std::byte, bytes)        \
+  ROW(provenance, 2, "Provenance", 0, char, bytes) \
+  ROW(level, 3, "Level", 1, std::byte, bytes)
+
+#define GREENLOOP_ELASTOSTATIC_SECTIONS(ROW)                                    \
+  ROW(nodes, 4, "Nodes", 1, NodeRecord, nodes)                                  \
+  ROW(base_triangles, 5, "BaseTriangles", 0, std::uint32_t[3], words)           \
+  ROW(refinement, 6, "Refinement", 1, RefinementRecord, refinement)             \
+  ROW(representatives, 8, "Representatives", 2, std::uint32_t, representatives) \
+  ROW(scales, 10, "Scales", 1, Scale, scales)                                   \
+  ROW(couplings, 11, "Couplings", 2, std::byte, couplings)                      \
+  ROW(stencils, 12, "Stencils", 1, StencilRecord, words)                        \
+  ROW(patterns, 13, "Patterns", 1, PatternRecord, words)                        \
+  ROW(predictions, 14, "Predictions", 1, std::byte, predictions)
+
+#define GREENLOOP_SECTION_KINDS(ROW) \
+  GREENLOOP_COMMON_SECTIONS(ROW)     \
+  GREENLOOP_ELASTOSTATIC_SECTIONS(ROW)
+
+namespace greenloop::layout {
+
+/// What a section holds. `a`, `b` of its entry: the indices of its name, else 0.
+enum class SectionKind : std::uint32_t {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding) kind = (number),
+  GREENLOOP_SECTION_KINDS(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+};
+
+/// What the table says of a kind.
+struct SectionForm {
+  SectionKind kind;
+  const char* name;
+  std::uint32_t indices;
+  std::uint32_t element_bytes;
+};
+inline constexpr SectionForm section_forms[] = {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding) {SectionKind::kind, name, indices, sizeof(element)},
+    GREENLOOP_SECTION_KINDS(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+};
+
+/// Bytes of an element of a section; 0 for a number that is no kind. Work: constant.
+constexpr std::uint32_t element_bytes(SectionKind kind) {
+  switch (kind) {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding) \
+  case SectionKind::kind:                                           \
+    return sizeof(element);
+    GREENLOOP_SECTION_KINDS(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+  }
+  return 0;
+}
+
+/// Whether a number is a kind. Work: constant.
+constexpr bool is_section_kind(std::uint32_t number) { return element_bytes(static_cast<SectionKind>(number)) != 0; }
+
+/// The largest number of a kind.
+constexpr std::uint32_t last_section_kind() {
+  std::uint32_t last = 0;
+  for (const SectionForm& form : section_forms) {
+    const auto number = static_cast<std::uint32_t>(form.kind);
+    last = number > last ? number : last;
+  }
+  return last;
+}
+
+}  // namespace greenloop::layout

@@ -1,0 +1,44 @@
+#include "formats/write/section_file.hpp"
+
+#include <cstring>
+
+#include "formats/verify/crc32c.hpp"
+
+namespace greenloop {
+
+void pad_to_alignment(std::vector<std::byte>& bytes) { bytes.resize(layout::aligned(bytes.size())); }
+
+void seal(std::span<std::byte> file, layout::Header header) {
+  std::memcpy(header.magic, layout::magic, sizeof(header.magic));
+  header.endian = layout::endian_tag;
+  header.file_bytes = file.size();
+  header.table_crc = crc32c(file.subspan(sizeof(header), header.section_count * sizeof(layout::SectionEntry)));
+  header.header_crc = crc32c(std::as_bytes(std::span(&header, 1)).first(offsetof(layout::Header, header_crc)));
+  std::memcpy(file.data(), &header, sizeof(header));
+}
+
+std::vector<std::byte> file_of(std::vector<SectionBytes> sections, std::uint32_t levels) {
+  layout::Header header{};
+  header.major = layout::version_major;
+  header.minor = layout::version_minor;
+  header.section_count = static_cast<std::uint32_t>(sections.size());
+  header.levels = levels;
+
+  std::vector<std::byte> file(sizeof(header) + sections.size() * sizeof(layout::SectionEntry));
+  pad_to_alignment(file);
+  std::size_t entry_at = sizeof(header);
+  for (auto& [entry, bytes] : sections) {
+    entry.offset = file.size();
+    entry.bytes = bytes.size();
+    entry.crc = crc32c(bytes);
+    std::memcpy(file.data() + entry_at, &entry, sizeof(entry));
+    entry_at += sizeof(entry);
+    file.insert(file.end(), bytes.begin(), bytes.end());
+    pad_to_alignment(file);
+    bytes = {};
+  }
+  seal(file, header);
+  return file;
+}
+
+}  // namespace greenloop
