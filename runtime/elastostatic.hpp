@@ -81,9 +81,8 @@ class Elastostatic {
   [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
 
   /// One cycle of the loop: finds the forces that hold `constraints` where they are and the displacement of every
-  /// node, as finely as fits the budget by closed-form work (docs/runtime.md, "Budgets"). No heap, lock, system call,
-  /// exception or clock; same model, limits, history, constraints and budget give the same bits. Work: at most
-  /// budget.work.
+  /// node, as finely as fits the budget by closed-form work (docs/budgets.md). No heap, lock, system call, exception or
+  /// clock; same model, limits, history, constraints and budget give the same bits. Work: at most budget.work.
   StepReport step(std::span<const Constraint> constraints, Budget budget, const Response& response) noexcept;
 
   /// The compliance between two constraints, by their places among those of the last answer, as it was answered with:

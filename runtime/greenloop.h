@@ -128,7 +128,7 @@ typedef struct greenloop_elastostatic_intent {
   float rate;    /* Hz, steps per second */
 } greenloop_elastostatic_intent;
 
-/* What those limits cost. Work is counted in units: see docs/runtime.md. */
+/* What those limits cost. Work is counted in units: see docs/budgets.md. */
 typedef struct greenloop_elastostatic_requirement {
   size_t bytes;                              /* of the arena; 0: greenloop_elastostatic_create would refuse */
   uint64_t least_work;                       /* the smallest budget that greenloop_elastostatic_step accepts */

@@ -1,4 +1,4 @@
-// How deep the stack of a step goes, on every way the planner can take: below what docs/runtime.md promises. Linked so
+// How deep the stack of a step goes, on every way the planner can take: below what docs/loop.md promises. Linked so
 // that library functions are looked up at the start: the linker's own stack is not the step's.
 #include <doctest/doctest.h>
 #include <pthread.h>

@@ -1,4 +1,4 @@
-// The thread rules of docs/runtime.md: any number of bodies on one model, a thread each; and a fast loop that hands its
+// The thread rules of docs/loop.md: any number of bodies on one model, a thread each; and a fast loop that hands its
 // newest contacts to a slow one. Compiled a second time under ThreadSanitizer.
 #include <doctest/doctest.h>
 

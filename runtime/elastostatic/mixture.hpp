@@ -10,8 +10,9 @@
 namespace greenloop {
 
 /// Which contacts of a coarser set are resolved at the finest level although not all can be: whole groups, of those
-/// that share a column, the largest force of the last answer first (docs/runtime.md compares other orders). A group
-/// that is chosen stays before others unless their force is twice as large, lest the set change with every tremor.
+/// that share a column, the largest force of the last answer first (docs/how_a_step_works.md compares other orders). A
+/// group that is chosen stays before others unless their force is twice as large, lest the set change with every
+/// tremor.
 class Mixture {
  public:
   /// Arrays out of `arena`; null while it counts.
