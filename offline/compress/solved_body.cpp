@@ -11,10 +11,10 @@
 #include "formats/layout.hpp"
 #include "formats/store/green_store.hpp"
 #include "offline/compress/node_order.hpp"
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/green_functions.hpp"
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/sources/fem/elasticity.hpp"
+#include "offline/sources/fem/green_functions.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace greenloop::offline::test {
 namespace {

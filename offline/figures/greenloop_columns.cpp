@@ -18,7 +18,7 @@
 #include "offline/figures/column_sample.hpp"
 #include "offline/pipeline/body_problem.hpp"
 #include "offline/pipeline/progress_bar.hpp"
-#include "offline/solve/compliance_solver.hpp"
+#include "offline/sources/fem/compliance_solver.hpp"
 
 namespace {
 

@@ -11,10 +11,10 @@
 #include "formats/mesh/volume_io.hpp"
 #include "offline/compress/node_order.hpp"
 #include "offline/remesh/remesh.hpp"
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/sources/fem/elasticity.hpp"
 #include "offline/surface/surface_preparation.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace greenloop::offline {
 namespace {

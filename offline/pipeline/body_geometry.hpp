@@ -12,7 +12,7 @@
 #include "formats/mesh/tetrahedral_mesh.hpp"
 #include "offline/pipeline/progress_bar.hpp"
 #include "offline/scene/scene.hpp"
-#include "offline/solve/boundary_interpolation.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
 
 namespace greenloop::offline {
 

@@ -22,7 +22,7 @@
 #include "offline/pipeline/store_room.hpp"
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
-#include "offline/solve/green_functions.hpp"
+#include "offline/sources/fem/green_functions.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {

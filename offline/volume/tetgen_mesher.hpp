@@ -1,6 +1,6 @@
 #pragma once
 
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace greenloop::offline {
 

@@ -1,4 +1,4 @@
-#include "offline/solve/support.hpp"
+#include "offline/sources/fem/support.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

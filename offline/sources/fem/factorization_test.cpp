@@ -1,12 +1,12 @@
-#include "offline/solve/factorization.hpp"
+#include "offline/sources/fem/factorization.hpp"
 
 #include <doctest/doctest.h>
 
 #include <Eigen/Cholesky>
 #include <stdexcept>
 
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/testing/shapes.hpp"
+#include "offline/sources/fem/elasticity.hpp"
+#include "offline/volume/testing/shapes.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -1,4 +1,4 @@
-#include "offline/solve/factorization.hpp"
+#include "offline/sources/fem/factorization.hpp"
 
 #include <cblas.h>
 #include <dmumps_c.h>

@@ -1,4 +1,4 @@
-#include "offline/solve/elasticity.hpp"
+#include "offline/sources/fem/elasticity.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,11 +9,11 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/factorization.hpp"
-#include "offline/solve/testing/shapes.hpp"
-#include "offline/solve/tetrahedra_quality.hpp"
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/sources/fem/factorization.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/testing/shapes.hpp"
+#include "offline/volume/tetrahedra_quality.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -1,4 +1,4 @@
-#include "offline/solve/netgen_mesher.hpp"
+#include "offline/volume/netgen_mesher.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "offline/solve/boundary_interpolation.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 #include "offline/remesh/surface.hpp"
 #include "offline/remesh/triangle_tree.hpp"
-#include "offline/solve/tetrahedra_quality.hpp"
+#include "offline/volume/tetrahedra_quality.hpp"
 
 namespace greenloop::offline {
 namespace {

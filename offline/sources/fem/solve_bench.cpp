@@ -12,11 +12,11 @@
 #include "formats/mesh/surface_io.hpp"
 #include "formats/store/green_store.hpp"
 #include "offline/remesh/remesh.hpp"
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/green_functions.hpp"
-#include "offline/solve/testing/shapes.hpp"
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/sources/fem/elasticity.hpp"
+#include "offline/sources/fem/green_functions.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/testing/shapes.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace {
 

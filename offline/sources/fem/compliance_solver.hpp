@@ -6,8 +6,8 @@
 #include <span>
 
 #include "formats/store/green_store.hpp"
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/factorization.hpp"
+#include "offline/sources/fem/elasticity.hpp"
+#include "offline/sources/fem/factorization.hpp"
 
 namespace greenloop::offline {
 

@@ -1,4 +1,4 @@
-#include "offline/solve/testing/shapes.hpp"
+#include "offline/volume/testing/shapes.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

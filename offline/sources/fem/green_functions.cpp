@@ -1,4 +1,4 @@
-#include "offline/solve/green_functions.hpp"
+#include "offline/sources/fem/green_functions.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/compliance_solver.hpp"
-#include "offline/solve/support.hpp"
+#include "offline/sources/fem/compliance_solver.hpp"
+#include "offline/sources/fem/support.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -5,7 +5,7 @@
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/mesh/tetrahedral_mesh.hpp"
 #include "formats/mesh/triangle_mesh.hpp"
-#include "offline/solve/tetrahedra_quality.hpp"
+#include "offline/volume/tetrahedra_quality.hpp"
 
 namespace greenloop::offline {
 

@@ -1,8 +1,8 @@
-#include "offline/solve/compliance_solver.hpp"
+#include "offline/sources/fem/compliance_solver.hpp"
 
 #include <vector>
 
-#include "offline/solve/boundary_interpolation.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
 
 namespace greenloop::offline {
 

@@ -1,4 +1,4 @@
-#include "offline/solve/green_functions.hpp"
+#include "offline/sources/fem/green_functions.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,12 +10,12 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/compliance_solver.hpp"
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/support.hpp"
-#include "offline/solve/testing/shapes.hpp"
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/sources/fem/compliance_solver.hpp"
+#include "offline/sources/fem/elasticity.hpp"
+#include "offline/sources/fem/support.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/testing/shapes.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace greenloop::offline {
 namespace {

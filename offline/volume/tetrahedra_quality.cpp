@@ -1,4 +1,4 @@
-#include "offline/solve/tetrahedra_quality.hpp"
+#include "offline/volume/tetrahedra_quality.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "offline/solve/netgen_mesher.hpp"
-#include "offline/solve/tetgen_mesher.hpp"
 #include "offline/surface/triangle_intersection.hpp"
+#include "offline/volume/netgen_mesher.hpp"
+#include "offline/volume/tetgen_mesher.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -1,4 +1,4 @@
-#include "offline/solve/elasticity.hpp"
+#include "offline/sources/fem/elasticity.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

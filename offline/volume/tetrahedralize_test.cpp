@@ -1,4 +1,4 @@
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,9 +8,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/testing/shapes.hpp"
-#include "offline/solve/tetgen_mesher.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/testing/shapes.hpp"
+#include "offline/volume/tetgen_mesher.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -1,4 +1,4 @@
-#include "offline/solve/tetgen_mesher.hpp"
+#include "offline/volume/tetgen_mesher.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
