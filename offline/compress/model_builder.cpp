@@ -11,14 +11,14 @@
 
 #include "formats/verify.hpp"
 #include "formats/write/describe.hpp"
-#include "offline/compress/certificate.hpp"
-#include "offline/compress/equilibrated_prediction.hpp"
-#include "offline/compress/exact_sample.hpp"
-#include "offline/compress/field_error.hpp"
-#include "offline/compress/field_size.hpp"
-#include "offline/compress/frontier.hpp"
-#include "offline/compress/model_tables.hpp"
-#include "offline/compress/pattern_search.hpp"
+#include "offline/compress/encode/model_tables.hpp"
+#include "offline/compress/measure/certificate.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/measure/field_error.hpp"
+#include "offline/compress/measure/field_size.hpp"
+#include "offline/compress/search/frontier.hpp"
+#include "offline/compress/search/pattern_search.hpp"
+#include "offline/compress/wavelet/equilibrated_prediction.hpp"
 
 namespace greenloop::offline {
 namespace {

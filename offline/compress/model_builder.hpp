@@ -8,9 +8,9 @@
 #include "formats/layout.hpp"
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/write/writer.hpp"
-#include "offline/compress/encoding_search.hpp"
-#include "offline/compress/field_size.hpp"
-#include "offline/compress/pattern_errors.hpp"
+#include "offline/compress/measure/field_size.hpp"
+#include "offline/compress/measure/pattern_errors.hpp"
+#include "offline/compress/search/encoding_search.hpp"
 
 namespace greenloop::offline {
 

@@ -11,11 +11,11 @@
 
 #include "formats/verify.hpp"
 #include "formats/write/describe.hpp"
-#include "offline/compress/contact_patches.hpp"
-#include "offline/compress/dense_reference.hpp"
-#include "offline/compress/exact_sample.hpp"
-#include "offline/compress/node_order.hpp"
-#include "offline/compress/pattern_search.hpp"
+#include "offline/compress/measure/contact_patches.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/search/pattern_search.hpp"
+#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/wavelet/node_order.hpp"
 
 namespace greenloop::offline {
 namespace {

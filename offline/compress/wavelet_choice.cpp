@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "offline/compress/surface_wavelet.hpp"
+#include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "formats/store/green_store.hpp"
-#include "offline/compress/exact_sample.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/column_records.hpp"
 #include "offline/figures/column_sample.hpp"

@@ -6,8 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "offline/compress/encoding_search.hpp"
-#include "offline/compress/field_size.hpp"
+#include "offline/compress/measure/field_size.hpp"
+#include "offline/compress/search/encoding_search.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {

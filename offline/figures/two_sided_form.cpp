@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "offline/compress/model_tables.hpp"
+#include "offline/compress/encode/model_tables.hpp"
 
 namespace greenloop::offline {
 namespace {

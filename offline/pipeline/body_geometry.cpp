@@ -9,7 +9,7 @@
 #include "formats/layout.hpp"
 #include "formats/mesh/surface_io.hpp"
 #include "formats/mesh/volume_io.hpp"
-#include "offline/compress/node_order.hpp"
+#include "offline/compress/wavelet/node_order.hpp"
 #include "offline/remesh/remesh.hpp"
 #include "offline/sources/fem/elasticity.hpp"
 #include "offline/surface/surface_preparation.hpp"
