@@ -220,7 +220,7 @@ class Build {
   }
 
   [[nodiscard]] WaveletCompliance transform(double floor) {
-    const ColumnSource columns = [&](std::size_t first, std::size_t count) {
+    const ExactColumns columns = [&](std::size_t first, std::size_t count) {
       Eigen::MatrixXd block = input_.columns(first, count);
       const bool fits = block.rows() == static_cast<Eigen::Index>(3 * wavelet_.rows());
       if (floor == first_floor && fits) sample_.add(block, first);

@@ -321,7 +321,7 @@ TEST_CASE("input that does not fit together is refused") {
   auto flags = b.flags;
   Accuracy wanted = accuracy;
   auto info = test::facts();
-  ColumnSource source = test::columns_of(b.compliance);
+  ExactColumns source = test::columns_of(b.compliance);
   SUBCASE("a column is missing") { columns.pop_back(); }
   SUBCASE("a column of a fixed node") { columns.back() = 0; }
   SUBCASE("nothing can be touched") {

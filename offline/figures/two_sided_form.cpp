@@ -22,7 +22,7 @@ ModelData tables_of(const ExactBody& body, const SurfaceWavelet& wavelet) {
 
 WaveletCompliance transformed(const ExactBody& body, const SurfaceWavelet& wavelet, double floor, ExactSample& sample,
                               const Progress& progress) {
-  const ColumnSource columns = [&](std::size_t first, std::size_t count) {
+  const ExactColumns columns = [&](std::size_t first, std::size_t count) {
     Eigen::MatrixXd block = body.columns(first, count);
     sample.add(block, first);
     return block;

@@ -9,6 +9,7 @@
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/exact_body.hpp"
 #include "offline/figures/rate_curve.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 

@@ -78,7 +78,7 @@ GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene,
 json solve_missing_columns(GreenStore& store, ProgressBar& progress) {
   progress.begin("solve");
   const auto missing = store.missing_columns().size();
-  const auto report = solve_green_functions(store, [&](const SolveProgress& at) { progress.update(at.fraction); });
+  const auto report = solve_green_functions(store, [&](const FillProgress& at) { progress.update(at.fraction); });
   progress.end(fmt::format("{} columns, {} of them from the store, asymmetry {:.1e}", store.column_count(),
                            static_cast<std::size_t>(store.column_count()) - missing, report.largest_asymmetry));
   return {{"columns", store.column_count()},

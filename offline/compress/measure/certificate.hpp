@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "offline/compress/column_source.hpp"
 #include "offline/compress/encode/compressed_compliance.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 

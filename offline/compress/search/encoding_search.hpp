@@ -9,9 +9,9 @@
 
 #include "formats/view.hpp"
 #include "formats/write/aligned_bytes.hpp"
-#include "offline/compress/column_source.hpp"
 #include "offline/compress/encode/coupling_coder.hpp"
 #include "offline/compress/measure/contact_patches.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 

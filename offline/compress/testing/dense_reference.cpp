@@ -159,7 +159,7 @@ std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view) {
   return result;
 }
 
-ColumnSource columns_of(const Eigen::MatrixXd& compliance) {
+ExactColumns columns_of(const Eigen::MatrixXd& compliance) {
   return [&compliance](std::size_t first, std::size_t count) -> Eigen::MatrixXd {
     return compliance.middleCols(at(first), at(count));
   };

@@ -9,9 +9,9 @@
 #include "formats/view.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/writer.hpp"
-#include "offline/compress/column_source.hpp"
 #include "offline/compress/encode/coupling_coder.hpp"
 #include "offline/compress/testing/test_body.hpp"
+#include "offline/compress/wavelet/exact_columns.hpp"
 #include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline::test {
@@ -35,7 +35,7 @@ using Sparse = Eigen::SparseMatrix<double>;
 [[nodiscard]] std::vector<Eigen::MatrixXd> dense_compliances(const ModelView& view);
 
 /// Hands out columns of a dense compliance, which must outlive it.
-[[nodiscard]] ColumnSource columns_of(const Eigen::MatrixXd& compliance);
+[[nodiscard]] ExactColumns columns_of(const Eigen::MatrixXd& compliance);
 
 /// A body's model before encoding, its couplings coded from candidates down to a quarter of what `encoding` keeps.
 [[nodiscard]] ModelData model_of(const Body& body, layout::Wavelet kind, const Encoding& encoding);

@@ -180,7 +180,7 @@ std::vector<Neighbourhood> neighbourhoods(const Domain& domain) {
   return all;
 }
 
-void gather_compliances(const ColumnSource& columns, std::size_t rows, std::size_t coarser,
+void gather_compliances(const ExactColumns& columns, std::size_t rows, std::size_t coarser,
                         std::vector<Neighbourhood>& all) {
   std::vector<std::vector<std::pair<std::size_t, std::size_t>>> uses(coarser);  // of each column: of whom, which one
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -203,7 +203,7 @@ void gather_compliances(const ColumnSource& columns, std::size_t rows, std::size
 }  // namespace
 
 std::vector<PredictionsData> equilibrated_predictions(const SemiRegularMesh& mesh, const SurfaceWavelet& linear,
-                                                      const ColumnSource& columns) {
+                                                      const ExactColumns& columns) {
   const std::size_t finest = linear.finest();
   std::vector<PredictionsData> predictions(finest + 1);
   if (finest == 0) return predictions;
@@ -224,7 +224,7 @@ std::vector<PredictionsData> equilibrated_predictions(const SemiRegularMesh& mes
 }
 
 SurfaceWavelet make_wavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
-                            const std::vector<double>& area, layout::Wavelet kind, const ColumnSource& columns) {
+                            const std::vector<double>& area, layout::Wavelet kind, const ExactColumns& columns) {
   if (kind != layout::Wavelet::equilibrated) return {mesh, flags, area, kind};
   const SurfaceWavelet linear(mesh, flags, area, layout::Wavelet::linear);
   return {mesh, flags, area, equilibrated_predictions(mesh, linear, columns)};

@@ -5,7 +5,7 @@
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/write/writer.hpp"
-#include "offline/compress/column_source.hpp"
+#include "offline/compress/wavelet/exact_columns.hpp"
 #include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline {
@@ -20,12 +20,12 @@ namespace greenloop::offline {
 /// Throws std::invalid_argument if columns are not finite or have not 3 rows a node. Offline only.
 [[nodiscard]] std::vector<PredictionsData> equilibrated_predictions(const SemiRegularMesh& mesh,
                                                                     const SurfaceWavelet& linear,
-                                                                    const ColumnSource& columns);
+                                                                    const ExactColumns& columns);
 
 /// Wavelets of any kind for an exact compliance, which only Equilibrated ones follow from. flags, area [m^2]: one per
 /// node, as SurfaceWavelet has them. Throws as SurfaceWavelet and equilibrated_predictions do. Offline only.
 [[nodiscard]] SurfaceWavelet make_wavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
                                           const std::vector<double>& area, layout::Wavelet kind,
-                                          const ColumnSource& columns);
+                                          const ExactColumns& columns);
 
 }  // namespace greenloop::offline

@@ -20,7 +20,7 @@ using Values = std::vector<double>;
 // hands the exact columns over one by one, in order
 class ColumnReader {
  public:
-  ColumnReader(const ColumnSource& source, std::size_t count) : source_(&source), count_(count) {}
+  ColumnReader(const ExactColumns& source, std::size_t count) : source_(&source), count_(count) {}
 
   // rows x 9
   void next(Values& x) {
@@ -43,7 +43,7 @@ class ColumnReader {
   }
 
  private:
-  const ColumnSource* source_;
+  const ExactColumns* source_;
   std::size_t count_, at_ = 0, first_ = 0, held_ = 0;
   Eigen::MatrixXd block_;
 };
@@ -118,7 +118,7 @@ class Transform {
     result_.couplings.resize(wavelet.finest() + 1);
   }
 
-  [[nodiscard]] WaveletCompliance run(const ColumnSource& columns, const Progress& progress) {
+  [[nodiscard]] WaveletCompliance run(const ExactColumns& columns, const Progress& progress) {
     const std::size_t finest = wavelet_->finest(), evens = finest > 0 ? wavelet_->row_end(finest - 1) : rows_;
     ColumnReader reader(columns, rows_);
     Values x;
@@ -220,7 +220,7 @@ class Transform {
 
 }  // namespace
 
-WaveletCompliance transform_compliance(const SurfaceWavelet& wavelet, const ColumnSource& columns, double floor,
+WaveletCompliance transform_compliance(const SurfaceWavelet& wavelet, const ExactColumns& columns, double floor,
                                        const Progress& progress) {
   return Transform(wavelet, floor).run(columns, progress);
 }

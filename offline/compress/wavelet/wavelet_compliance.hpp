@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "offline/compress/column_source.hpp"
+#include "offline/compress/wavelet/exact_columns.hpp"
 #include "offline/compress/wavelet/scale.hpp"
 #include "offline/compress/wavelet/surface_wavelet.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 
@@ -47,7 +48,7 @@ struct WaveletCompliance {
 /// relative to the coefficients' own diagonal blocks. Memory: the columns of K(L-1) in single precision, a quarter of
 /// the dense matrix, and `coarse`, a sixteenth, besides the result. Throws std::invalid_argument if columns are not
 /// finite or the compliance is not positive definite. Offline only.
-[[nodiscard]] WaveletCompliance transform_compliance(const SurfaceWavelet& wavelet, const ColumnSource& columns,
+[[nodiscard]] WaveletCompliance transform_compliance(const SurfaceWavelet& wavelet, const ExactColumns& columns,
                                                      double floor, const Progress& progress);
 
 /// Block column j of the exact compliance between the averages of `level` < L (or of level 0 if L = 0): row_end(level)

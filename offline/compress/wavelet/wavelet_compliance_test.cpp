@@ -177,7 +177,7 @@ TEST_CASE("a mesh of one level has averages only") {
 
 TEST_CASE("columns that are not those of an elastic body are refused") {
   auto b = test::make_body(2);
-  const auto build = [&](const ColumnSource& columns) {
+  const auto build = [&](const ExactColumns& columns) {
     return transform_compliance(wavelet_of(b, layout::Wavelet::lifted_linear), columns, 0.01, {});
   };
   SUBCASE("not a number") {

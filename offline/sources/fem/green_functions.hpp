@@ -1,17 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 
 #include "formats/store/green_store.hpp"
+#include "offline/sources/fill_store.hpp"
 
 namespace greenloop::offline {
-
-struct SolveProgress {
-  double fraction = 0.0;           ///< of all columns in the store, 0..1
-  double seconds_remaining = 0.0;  ///< estimated from the columns solved in this run
-};
-using SolveProgressCallback = std::function<void(const SolveProgress&)>;
 
 struct SolveReport {
   int columns_solved = 0;           ///< in this run; each is three right-hand sides
@@ -19,7 +13,7 @@ struct SolveReport {
   std::int64_t factor_entries = 0;  ///< numbers in the Cholesky factor; 0 when nothing was missing
   double factor_seconds = 0.0;      ///< wall time of assembly and factorisation
   double solve_seconds = 0.0;       ///< wall time of the right-hand sides, writing included
-  double largest_asymmetry = 0.0;   ///< see largest_asymmetry()
+  double largest_asymmetry = 0.0;   ///< see reciprocity.hpp
 };
 
 /// Solves every column the store lacks, U = B K^-1 B^T (theory.md, section 1, in force form), from the volume, the
@@ -29,10 +23,6 @@ struct SolveReport {
 /// Work: one sparse factorisation, then 4 factor_entries per right-hand side. Memory: the factor and one block.
 /// Throws std::runtime_error when the body is not supported, the columns depend on each other, the result is more
 /// asymmetric than 1e-8, or the store has no volume.
-SolveReport solve_green_functions(GreenStore& store, const SolveProgressCallback& progress = {});
-
-/// The largest ||U_ij - U_ji^T||_F / sqrt(||U_ii||_F ||U_jj||_F) over the nodes that are both row and column; all
-/// columns must be done. Reads the store twice in tiles.
-[[nodiscard]] double largest_asymmetry(const GreenStore& store);
+SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback& progress = {});
 
 }  // namespace greenloop::offline

@@ -10,9 +10,10 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "offline/sources/fem/compliance_solver.hpp"
 #include "offline/sources/fem/elasticity.hpp"
+#include "offline/sources/fem/fem_source.hpp"
 #include "offline/sources/fem/support.hpp"
+#include "offline/sources/reciprocity.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/testing/shapes.hpp"
 #include "offline/volume/tetrahedralize.hpp"
@@ -80,7 +81,7 @@ TEST_CASE("the columns are those of the dense inverse, and reciprocal") {
   const auto contents = ellipsoid_problem(2);
   auto store = GreenStore::create(file.path, contents);
   double last_fraction = 0.0;
-  const auto report = solve_green_functions(store, [&](const SolveProgress& progress) {
+  const auto report = solve_green_functions(store, [&](const FillProgress& progress) {
     CHECK(progress.fraction > last_fraction);
     CHECK(progress.seconds_remaining >= 0.0);
     last_fraction = progress.fraction;
@@ -95,9 +96,9 @@ TEST_CASE("the columns are those of the dense inverse, and reciprocal") {
 
 TEST_CASE("a pattern of forces does what its unit forces do together") {
   const auto contents = ellipsoid_problem(1);
-  ComplianceSolver solver(contents);
+  FemSource solver(fem_problem(contents));
   const std::vector<int> nodes(contents.column_node.begin(), contents.column_node.begin() + 3);
-  const auto units = unit_patterns(contents, nodes);
+  const auto units = unit_patterns(contents.interpolation.rows(), nodes);
   const MatrixXd single = solver.displacement(units);
   REQUIRE(single.cols() == 9);
   const Eigen::SparseMatrix<double> pattern =

@@ -72,7 +72,7 @@ void run(const std::string& source, int levels, double growth, const std::string
       filled.quality.min_quality, filled.quality.slivers, cpu_seconds() - before);
   before = cpu_seconds();
   auto store = GreenStore::create(path, problem_on(surface, filled.mesh, fine));
-  const auto report = solve_green_functions(store, [](const SolveProgress& progress) {
+  const auto report = solve_green_functions(store, [](const FillProgress& progress) {
     std::fprintf(stderr, "\r%3.0f %%, %.0f s left ", 100.0 * progress.fraction, progress.seconds_remaining);
   });
   std::printf(
