@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "offline/compress/encode/compressed_compliance.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/compress/testing/measured_model.hpp"
 #include "offline/compress/testing/solved_body.hpp"
 #include "runtime/testing/test_body.hpp"

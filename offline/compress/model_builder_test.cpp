@@ -14,7 +14,7 @@
 #include "offline/compress/measure/contact_patches.hpp"
 #include "offline/compress/measure/exact_sample.hpp"
 #include "offline/compress/search/pattern_search.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/compress/wavelet/node_order.hpp"
 
 namespace greenloop::offline {

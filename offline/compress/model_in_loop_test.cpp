@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "offline/compress/model_builder.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {

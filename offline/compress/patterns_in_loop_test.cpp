@@ -7,7 +7,7 @@
 
 #include "offline/compress/measure/exact_sample.hpp"
 #include "offline/compress/measure/pattern_errors.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {

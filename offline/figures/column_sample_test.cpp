@@ -10,7 +10,7 @@
 #include <string>
 
 #include "offline/compress/measure/exact_sample.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/column_records.hpp"
 

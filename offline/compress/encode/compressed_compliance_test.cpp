@@ -8,7 +8,7 @@
 
 #include "formats/stored_blocks.hpp"
 #include "formats/verify.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <utility>
 
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

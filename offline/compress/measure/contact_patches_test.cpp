@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

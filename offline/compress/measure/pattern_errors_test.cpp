@@ -10,7 +10,7 @@
 #include <map>
 
 #include "offline/compress/measure/exact_sample.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

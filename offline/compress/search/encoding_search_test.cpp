@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "offline/compress/measure/exact_sample.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

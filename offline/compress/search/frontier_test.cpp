@@ -7,7 +7,7 @@
 
 #include "formats/verify.hpp"
 #include "offline/compress/measure/exact_sample.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

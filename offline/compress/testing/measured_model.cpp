@@ -5,7 +5,7 @@
 #include "offline/compress/measure/certificate.hpp"
 #include "offline/compress/measure/contact_patches.hpp"
 #include "offline/compress/measure/exact_sample.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline::test {
 

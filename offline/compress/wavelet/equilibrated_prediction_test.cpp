@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "formats/verify.hpp"
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/compress/wavelet/butterfly_stencil.hpp"
 #include "offline/compress/wavelet/equilibrated_prediction.hpp"
 #include "offline/compress/wavelet/node_order.hpp"

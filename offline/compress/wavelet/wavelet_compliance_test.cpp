@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/compress/wavelet/equilibrated_prediction.hpp"
 
 namespace greenloop::offline {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "offline/sources/fem/fem_source.hpp"
-#include "offline/sources/fem/support.hpp"
+#include "offline/sources/fem/rigid_motion.hpp"
 #include "offline/sources/reciprocity.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 
@@ -20,7 +20,7 @@ void require_solvable(const GreenStore& store) {
     throw std::runtime_error(store.path().string() +
                              ": /volume: there is no volume to solve; only a store with tetrahedra can be completed");
   }
-  require_supported(contents.volume, contents.volume_fixed);
+  require_no_rigid_motion(contents.volume, contents.volume_fixed);
   require_independent(contents.interpolation, contents.column_node, contents.volume_fixed);
 }
 

@@ -12,7 +12,7 @@
 
 #include "offline/sources/fem/elasticity.hpp"
 #include "offline/sources/fem/fem_source.hpp"
-#include "offline/sources/fem/support.hpp"
+#include "offline/sources/fem/rigid_motion.hpp"
 #include "offline/sources/reciprocity.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/testing/shapes.hpp"
@@ -217,9 +217,9 @@ TEST_CASE("support is asked of every piece") {
   for (const auto& t : other.tetrahedra) mesh.tetrahedra.push_back({t[0] + 8, t[1] + 8, t[2] + 8, t[3] + 8});
   std::vector<std::uint8_t> fixed(16, 0);
   for (const int v : {0, 1, 2, 8, 9, 10}) fixed[v] = 1;
-  CHECK_NOTHROW(require_supported(mesh, fixed));
+  CHECK_NOTHROW(require_no_rigid_motion(mesh, fixed));
   fixed[10] = 0;
-  CHECK_THROWS_AS(require_supported(mesh, fixed), std::runtime_error);
+  CHECK_THROWS_AS(require_no_rigid_motion(mesh, fixed), std::runtime_error);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "offline/report/decimation.hpp"
+#include "offline/report/downsampling.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ void append_extremes(const std::vector<Point>& points, std::size_t begin, std::s
 
 }  // namespace
 
-std::vector<Point> decimate(const std::vector<Point>& curve, int columns) {
+std::vector<Point> downsample(const std::vector<Point>& curve, int columns) {
   std::vector<Point> points = finite_points(curve);
   if (points.size() <= 4 * static_cast<std::size_t>(columns)) return points;
   const double x0 = points.front().x, per_column = (points.back().x - x0) / columns;

@@ -1,4 +1,4 @@
-#include "offline/sources/fem/support.hpp"
+#include "offline/sources/fem/rigid_motion.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -53,7 +53,7 @@ bool spans_a_plane(const std::vector<Eigen::Vector3d>& points, double size) {
 
 }  // namespace
 
-void require_supported(const TetrahedralMesh& mesh, const std::vector<std::uint8_t>& fixed) {
+void require_no_rigid_motion(const TetrahedralMesh& mesh, const std::vector<std::uint8_t>& fixed) {
   if (fixed.size() != mesh.vertices.size()) {
     throw std::invalid_argument("support: " + std::to_string(fixed.size()) + " vertices marked of " +
                                 std::to_string(mesh.vertices.size()));

@@ -1,4 +1,4 @@
-#include "offline/compress/testing/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 #include <cstring>
 #include <stdexcept>
