@@ -11,7 +11,7 @@
 #include "formats/mesh/volume_io.hpp"
 #include "offline/compress/wavelet/node_order.hpp"
 #include "offline/remesh/remesh.hpp"
-#include "offline/sources/fem/elasticity.hpp"
+#include "offline/surface/lumped_areas.hpp"
 #include "offline/surface/surface_preparation.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/tetrahedralize.hpp"
@@ -148,8 +148,7 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   auto ordered = order_nodes(remeshed.mesh, flags);
   body.flags = ordered.reorder(flags);
   body.surface = std::move(ordered.mesh);
-  const Eigen::VectorXd area = lumped_areas(finest_surface(body.surface));
-  body.area.assign(area.data(), area.data() + area.size());
+  body.area = lumped_areas(finest_surface(body.surface));
   if (tetrahedra) {
     body.volume = attach(scene, std::move(*tetrahedra), body.surface);
   }

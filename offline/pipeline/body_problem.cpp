@@ -44,17 +44,13 @@ GreenStoreContents describe_problem(const Scene& scene, BodyGeometry body, const
   nlohmann::json record = body.record;
   auto volume = body.volume ? std::move(*body.volume) : fill_with_tetrahedra(body, progress, record);
   GreenStoreContents contents;
-  contents.surface = std::move(body.surface);
-  contents.area = Eigen::VectorXd::Map(body.area.data(), static_cast<Eigen::Index>(body.area.size()));
   for (std::size_t i = 0; i < body.flags.size(); ++i) {
-    const auto flags = body.flags[i];
-    contents.flags.push_back(static_cast<std::uint8_t>(flags));
-    // the compliance is kept in two-sided wavelet coordinates: every row needs its column
-    if ((flags & layout::node_domain) != 0) {
-      contents.row_node.push_back(static_cast<int>(i));
-      contents.column_node.push_back(static_cast<int>(i));
-    }
+    if ((body.flags[i] & layout::node_domain) != 0) contents.row_node.push_back(static_cast<int>(i));
   }
+  contents.column_node = contents.row_node;  // in two-sided wavelet coordinates every row needs its column
+  contents.surface = std::move(body.surface);
+  contents.flags = std::move(body.flags);
+  contents.area = std::move(body.area);
   contents.volume = std::move(volume.mesh);
   contents.volume_fixed = std::move(volume.fixed);
   contents.interpolation.swap(volume.interpolation);

@@ -189,12 +189,10 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, const json& sol
                     ProgressBar& progress) {
   progress.begin("compress");
   const auto& contents = store.contents();
-  const std::vector<std::uint32_t> flags(contents.flags.begin(), contents.flags.end());
-  const std::vector<double> area(contents.area.data(), contents.area.data() + contents.area.size());
   const std::vector<std::size_t> column_nodes(contents.column_node.begin(), contents.column_node.end());
   const CompressionInput input{.mesh = contents.surface,
-                               .flags = flags,
-                               .area = area,
+                               .flags = contents.flags,
+                               .area = contents.area,
                                .column_nodes = column_nodes,
                                .columns =
                                    [&](std::size_t first, std::size_t count) {

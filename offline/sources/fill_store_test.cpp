@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/layout.hpp"
 #include "offline/volume/testing/shapes.hpp"
 
 namespace greenloop::offline {
@@ -28,8 +29,8 @@ GreenStoreContents measured_body() {
   GreenStoreContents contents;
   contents.surface = testing::ellipsoid(0, {1, 1, 1});
   const auto nodes = static_cast<int>(contents.surface.positions.size());
-  contents.area = Eigen::VectorXd::Constant(nodes, 1.0);
-  contents.flags.assign(contents.surface.positions.size(), kFree);
+  contents.area.assign(contents.surface.positions.size(), 1.0);
+  contents.flags.assign(contents.surface.positions.size(), layout::node_domain);
   for (int node = 0; node < nodes; ++node) contents.row_node.push_back(node);
   contents.column_node = {2, 3, 5, 7, 11};
   contents.young = 1e5;

@@ -32,8 +32,8 @@ struct TemporaryFile {
 GreenStoreContents problem(const Body& body, const Material& material) {
   GreenStoreContents contents;
   contents.surface = body.mesh;
-  contents.area = Eigen::VectorXd::Map(body.area.data(), static_cast<Eigen::Index>(body.area.size()));
-  contents.flags.assign(body.flags.begin(), body.flags.end());
+  contents.area = body.area;
+  contents.flags = body.flags;
   contents.row_node.assign(body.column_nodes.begin(), body.column_nodes.end());
   contents.column_node = contents.row_node;
   contents.volume = tetrahedralize(finest_surface(body.mesh)).mesh;

@@ -105,15 +105,4 @@ Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, cons
   return stiffness;
 }
 
-Eigen::VectorXd lumped_areas(const TriangleMesh& surface) {
-  Eigen::VectorXd areas = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(surface.vertices.size()));
-  for (const auto& t : surface.triangles) {
-    const Eigen::Vector3d ab = surface.vertices[t[1]] - surface.vertices[t[0]];
-    const Eigen::Vector3d ac = surface.vertices[t[2]] - surface.vertices[t[0]];
-    const double third = ab.cross(ac).norm() / 6.0;
-    for (const int v : t) areas[v] += third;
-  }
-  return areas;
-}
-
 }  // namespace greenloop::offline

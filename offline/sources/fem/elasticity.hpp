@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "formats/mesh/tetrahedral_mesh.hpp"
-#include "formats/mesh/triangle_mesh.hpp"
 #include "formats/store/material.hpp"
 
 namespace greenloop::offline {
@@ -31,8 +30,5 @@ struct FreeVertices {
 /// Linear work, deterministic. Throws std::invalid_argument on a tetrahedron without positive volume.
 [[nodiscard]] Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const Material& material,
                                                              const FreeVertices& free);
-
-/// Lumped area a_j of every surface vertex, m^2: a third of its triangles' areas (the integral of its hat function).
-[[nodiscard]] Eigen::VectorXd lumped_areas(const TriangleMesh& surface);
 
 }  // namespace greenloop::offline

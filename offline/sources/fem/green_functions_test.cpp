@@ -10,10 +10,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "formats/layout.hpp"
 #include "offline/sources/fem/elasticity.hpp"
 #include "offline/sources/fem/fem_source.hpp"
 #include "offline/sources/fem/rigid_motion.hpp"
 #include "offline/sources/reciprocity.hpp"
+#include "offline/surface/lumped_areas.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/testing/shapes.hpp"
 #include "offline/volume/tetrahedralize.hpp"
@@ -45,7 +47,7 @@ GreenStoreContents ellipsoid_problem(int levels) {
   for (std::size_t v = 0; v < surface.vertices.size(); ++v) {
     const double z = surface.vertices[v].z();
     contents.volume_fixed[v] = z < -0.08 ? 1 : 0;
-    contents.flags.push_back(z < -0.08 ? kFixed : kFree);
+    contents.flags.push_back(z < -0.08 ? layout::node_fixed : layout::node_domain);
     if (z >= -0.08) contents.row_node.push_back(static_cast<int>(v));
     if (z > 0.0) contents.column_node.push_back(static_cast<int>(v));
   }
@@ -155,8 +157,8 @@ GreenStoreContents user_mesh_problem() {
   }
   surface.vertex_end = {16};
   surface.parents.assign(16, {-1, -1});
-  contents.area = Eigen::VectorXd::Constant(16, 0.06);
-  contents.flags.assign(16, kFree | kTouchable | kRead);
+  contents.area.assign(16, 0.06);
+  contents.flags.assign(16, layout::node_domain | layout::node_touchable | layout::node_read);
   for (int v = 0; v < 16; ++v) contents.row_node.push_back(v);
   contents.column_node = contents.row_node;
   contents.interpolation = interpolate_on_boundary(surface.positions, contents.volume, 1e-9);

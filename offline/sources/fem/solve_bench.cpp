@@ -9,11 +9,13 @@
 #include <filesystem>
 #include <string>
 
+#include "formats/layout.hpp"
 #include "formats/mesh/surface_io.hpp"
 #include "formats/store/green_store.hpp"
 #include "offline/remesh/remesh.hpp"
 #include "offline/sources/fem/elasticity.hpp"
 #include "offline/sources/fem/green_functions.hpp"
+#include "offline/surface/lumped_areas.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/testing/shapes.hpp"
 #include "offline/volume/tetrahedralize.hpp"
@@ -50,7 +52,8 @@ GreenStoreContents problem_on(const SemiRegularMesh& surface, const TetrahedralM
   for (std::size_t v = 0; v < fine.vertices.size(); ++v) {
     const bool fixed = fine.vertices[v].z() < bound;
     contents.volume_fixed[v] = fixed ? 1 : 0;
-    contents.flags.push_back(fixed ? kFixed : kFree | kTouchable | kRead);
+    contents.flags.push_back(fixed ? layout::node_fixed
+                                   : layout::node_domain | layout::node_touchable | layout::node_read);
     if (!fixed) contents.row_node.push_back(static_cast<int>(v));
   }
   contents.column_node = contents.row_node;
