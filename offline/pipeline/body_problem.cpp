@@ -7,12 +7,34 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "formats/layout.hpp"
 #include "offline/scene/fingerprint.hpp"
 
 namespace greenloop::offline {
+namespace {
+
+// what followed the body's text in the scenes that stores were first keyed with: the same for all, so that those fit
+constexpr std::string_view other_keys = R"(
+[constraints]
+coarsest = 0
+
+[accuracy]
+rms = 0.02
+worst_column = 0.1
+patch_force = 0.05
+
+[compression]
+wavelet = "lifted linear"
+
+[budget]
+rate = "1000 Hz"
+contacts = 16
+)";
+
+}  // namespace
 
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -22,16 +44,9 @@ std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string column_fingerprint(Scene scene, const std::string& mesh) {
-  scene.coarsest_constraints = 0;
-  scene.accuracy = {};
-  // not in the text: stores from before these goals still fit
-  scene.accuracy.field = scene.accuracy.field_peak = scene.accuracy.field_rough = 0;
-  scene.wavelet = layout::Wavelet::lifted_linear;
-  scene.budget = {};
-  scene.store.reset();
-  scene.store_name.clear();
-  return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();
+std::string column_fingerprint(const Scene& scene, const std::string& mesh) {
+  const Fingerprint of_mesh = fingerprint(mesh, fingerprint(pipeline_version));
+  return fingerprint(other_keys, fingerprint(body_text(scene), of_mesh)).hex();
 }
 
 std::size_t domain_size(const BodyGeometry& body) {
