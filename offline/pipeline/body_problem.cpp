@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "formats/layout.hpp"
+#include "offline/pipeline/stage_records.hpp"
 #include "offline/scene/fingerprint.hpp"
 
 namespace greenloop::offline {
@@ -34,6 +35,22 @@ rate = "1000 Hz"
 contacts = 16
 )";
 
+/// The body and the columns that are wanted of it: in two-sided wavelet coordinates every row needs its column.
+GreenStoreContents describe_columns(BodyGeometry body) {
+  GreenStoreContents contents;
+  for (std::size_t i = 0; i < body.flags.size(); ++i) {
+    if ((body.flags[i] & layout::node_domain) != 0) contents.row_node.push_back(static_cast<int>(i));
+  }
+  contents.column_node = contents.row_node;
+  contents.surface = std::move(body.surface);
+  contents.flags = std::move(body.flags);
+  contents.area = std::move(body.area);
+  contents.volume = std::move(body.volume->mesh);
+  contents.volume_fixed = std::move(body.volume->fixed);
+  contents.interpolation.swap(body.volume->interpolation);
+  return contents;
+}
+
 }  // namespace
 
 std::string read_text(const std::filesystem::path& path) {
@@ -56,19 +73,13 @@ std::size_t domain_size(const BodyGeometry& body) {
 
 GreenStoreContents describe_problem(const Scene& scene, BodyGeometry body, const std::string& fingerprint,
                                     ProgressBar& progress) {
-  nlohmann::json record = body.record;
-  auto volume = body.volume ? std::move(*body.volume) : fill_with_tetrahedra(body, progress, record);
-  GreenStoreContents contents;
-  for (std::size_t i = 0; i < body.flags.size(); ++i) {
-    if ((body.flags[i] & layout::node_domain) != 0) contents.row_node.push_back(static_cast<int>(i));
+  nlohmann::json record = geometry_record(body.report);
+  if (!body.volume) {
+    auto filled = fill_with_tetrahedra(body, progress);
+    record["volume"] = volume_record(filled);
+    body.volume = std::move(filled.volume);
   }
-  contents.column_node = contents.row_node;  // in two-sided wavelet coordinates every row needs its column
-  contents.surface = std::move(body.surface);
-  contents.flags = std::move(body.flags);
-  contents.area = std::move(body.area);
-  contents.volume = std::move(volume.mesh);
-  contents.volume_fixed = std::move(volume.fixed);
-  contents.interpolation.swap(volume.interpolation);
+  GreenStoreContents contents = describe_columns(std::move(body));
   contents.young = scene.material.young;
   contents.poisson = scene.material.poisson;
   contents.provenance = record.dump();
