@@ -58,9 +58,9 @@ TwoSidedForm::TwoSidedForm(const ExactBody& body, const WaveletKind& kind, doubl
 std::vector<LevelRates> TwoSidedForm::rates(const std::vector<double>& thresholds, double quantum) const {
   std::vector<Trial> trials;
   for (const double threshold : thresholds) {
-    trials.push_back(try_encoding(bench(), patches_, {.threshold = threshold, .quantum = quantum * threshold}));
+    trials.push_back({.encoding = {.threshold = threshold, .quantum = quantum * threshold}});
   }
-  auto points = measure_frontier(bench(), coarse_, trials);
+  auto points = measure_frontier(bench(), patches_, coarse_, trials);
   std::reverse(points.begin(), points.end());
   std::vector<LevelRates> levels;
   for (const LevelTrial& first : points.front().levels) {

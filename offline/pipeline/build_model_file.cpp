@@ -140,21 +140,19 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, double asymmetr
   return built;
 }
 
-/// Fills in the work per step where the scene leaves it open: enough for a fresh factor at the finest level. Refuses a
-/// budget that could not hold the coarsest answer.
-void settle_step_work(const Scene& scene, ModelData& model) {
-  const AlignedBytes bytes(encode(model));
+/// Refuses a budget that could not hold the coarsest answer.
+void require_least_work(const Scene& scene, std::span<const std::byte> model) {
+  const AlignedBytes bytes(model);
   const auto opened = Model::open(bytes.span());
   if (!opened) {
     throw std::runtime_error("the model just written does not verify; this is a defect of greenloop itself");
   }
-  const auto need = Elastostatic::required(opened.model, Elastostatic::intended(opened.model).limits);
-  if (!scene.budget.work) {
-    model.info.step_work = need.worst_work[opened.model.level_count() - 1];
-  } else if (model.info.step_work < need.least_work) {
+  const auto intent = Elastostatic::intended(opened.model);
+  const auto need = Elastostatic::required(opened.model, intent.limits);
+  if (scene.budget.work && intent.budget.work < need.least_work) {
     throw std::runtime_error(fmt::format(
         "[budget] work = {}: {} contacts need at least {} units at the coarsest level; raise work or lower contacts",
-        model.info.step_work, model.info.max_contacts, need.least_work));
+        *scene.budget.work, scene.budget.contacts, need.least_work));
   }
 }
 
@@ -196,8 +194,9 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   provenance["frontier_contacts"] = built.model.info.max_contacts;
   provenance["patches"] = built.report.patches;
   built.model.provenance = provenance.dump();
-  settle_step_work(scene, built.model);
+  if (!scene.budget.work) built.model.info.step_work = built.report.trials.back().step_work;
   const auto bytes = encode(built.model);
+  require_least_work(scene, bytes);
   write_file(request.model, bytes);
 
   record["compression"] = compression_record(built.report, built.model.info.max_contacts);

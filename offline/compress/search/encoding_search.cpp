@@ -42,9 +42,8 @@ EncodedModel::EncodedModel(const ModelData& model) : bytes(encode(model)) {
   }
 }
 
-Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
-  const EncodedModel model(encoded_model(bench, encoding));
-  const CompressedCompliance compressed(model.view);
+Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding,
+                    const EncodedModel& model, const CompressedCompliance& compressed) {
   Trial trial{.encoding = encoding, .bytes = model.bytes.size()};
   trial.blocks = model.view.level[model.view.levels - 1].counts->kept_blocks;
   trial.patch_force = patches.worst_force_error(compressed, compressed.finest());
@@ -53,6 +52,11 @@ Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const
   trial.worst_column = error.worst_column();
   if (bench.step_work) trial.step_work = bench.step_work(model.bytes.span()).back();
   return trial;
+}
+
+Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
+  const EncodedModel model(encoded_model(bench, encoding));
+  return measure_trial(bench, patches, encoding, model, CompressedCompliance(model.view));
 }
 
 std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPatches& patches, std::size_t count,

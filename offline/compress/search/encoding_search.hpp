@@ -71,18 +71,20 @@ struct TrialBench {
 /// The bench's model with its couplings.
 [[nodiscard]] ModelData encoded_model(const TrialBench& bench, const Encoding& encoding);
 
-/// Encodes and measures one trial. Work: an encoding, 64 columns a patch and the sample's columns.
-[[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
-
-/// A model's bytes and what they stand for. Not copied or moved: the view points into the bytes.
+/// A model's bytes and what they stand for; the view points into the bytes. Move only.
 struct EncodedModel {
   /// Throws std::logic_error if the encoded model does not verify.
   explicit EncodedModel(const ModelData& model);
-  EncodedModel(const EncodedModel&) = delete;
-  EncodedModel& operator=(const EncodedModel&) = delete;
   AlignedBytes bytes;
   ModelView view;
 };
+
+/// What an encoding comes to, by the model that it makes. Work: 64 columns a patch and the sample's columns.
+[[nodiscard]] Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding,
+                                  const EncodedModel& model, const CompressedCompliance& compressed);
+
+/// Encodes and measures one trial.
+[[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);
 
 /// The `count` patches, by number, whose forces suffer most from an encoding of this threshold. Work: 64 columns per
 /// patch.

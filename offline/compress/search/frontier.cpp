@@ -1,6 +1,7 @@
 #include "offline/compress/search/frontier.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <utility>
@@ -44,6 +45,31 @@ void measure_level(const LevelSample& sample, const CompressedCompliance& compre
   trial.patch_force = sample.patches.worst_force_error(compressed, sample.level);
 }
 
+void measure_levels(const TrialBench& bench, const ContactPatches& patches, const std::vector<LevelSample>& samples,
+                    Trial& trial) {
+  const EncodedModel model(encoded_model(bench, trial.encoding));
+  const CompressedCompliance compressed(model.view);
+  if (trial.bytes == 0) trial = measure_trial(bench, patches, trial.encoding, model, compressed);
+  trial.levels = level_costs(model, bench.step_work);
+  for (std::size_t i = 0; i < samples.size(); ++i) measure_level(samples[i], compressed, trial.levels[i]);
+  LevelTrial& finest = trial.levels.back();
+  finest.rms = trial.rms;
+  finest.worst_column = trial.worst_column;
+  finest.patch_force = trial.patch_force;
+}
+
+// of truncate_to_level's result: where the next level's sections begin
+std::size_t bytes_up_to(const EncodedModel& model, std::uint32_t level) {
+  const auto bytes = model.bytes.span();
+  for (std::uint32_t i = 0; i < model.view.header->section_count; ++i) {
+    layout::SectionEntry entry;
+    std::memcpy(&entry, bytes.data() + sizeof(layout::Header) + i * sizeof(entry), sizeof(entry));
+    const bool level_begins = entry.kind == static_cast<std::uint32_t>(layout::SectionKind::level);
+    if (level_begins && entry.a == level + 1) return static_cast<std::size_t>(entry.offset);
+  }
+  return bytes.size();
+}
+
 }  // namespace
 
 std::vector<LevelSample> sample_levels(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,
@@ -57,25 +83,23 @@ std::vector<LevelSample> sample_levels(const SemiRegularMesh& mesh, const Surfac
 
 std::vector<LevelTrial> level_costs(const EncodedModel& model, const LevelWork& work) {
   const auto units = work ? work(model.bytes.span()) : std::vector<std::uint64_t>(model.view.levels, 0);
-  const auto bytes = model.bytes.span();
   std::vector<LevelTrial> levels;
   for (std::uint32_t level = model.view.info->coarsest_constraint_level; level < model.view.levels; ++level) {
     levels.push_back({.level = level,
-                      .bytes = truncate_to_level({bytes.begin(), bytes.end()}, level).size(),
+                      .bytes = bytes_up_to(model, level),
                       .blocks = model.view.level[level].counts->kept_blocks,
                       .step_work = units[level]});
   }
   return levels;
 }
 
-void fill_gaps(const TrialBench& bench, const ContactPatches& patches, double chosen, double floor,
-               std::vector<Trial>& trials) {
+void fill_gaps(double chosen, double floor, std::vector<Trial>& trials) {
   constexpr double near = 1.4;
   for (double threshold = 16 * chosen; threshold > 0.4 * chosen; threshold /= 2) {
     const bool tried = std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
       return trial.encoding.threshold < near * threshold && threshold < near * trial.encoding.threshold;
     });
-    if (!tried && threshold >= floor) trials.push_back(try_encoding(bench, patches, encoding_at(threshold)));
+    if (!tried && threshold >= floor) trials.push_back({.encoding = encoding_at(threshold)});
   }
 }
 
@@ -96,20 +120,13 @@ void leave_out_near(double chosen, std::vector<Trial>& trials) {
   trials = std::move(apart);
 }
 
-std::vector<Trial> measure_frontier(const TrialBench& bench, const std::vector<LevelSample>& samples,
-                                    const std::vector<Trial>& trials) {
+std::vector<Trial> measure_frontier(const TrialBench& bench, const ContactPatches& patches,
+                                    const std::vector<LevelSample>& samples, const std::vector<Trial>& trials) {
   std::map<double, Trial, std::greater<>> latest;
   for (const auto& trial : trials) latest[trial.encoding.threshold] = trial;
   std::vector<Trial> points;
   for (auto& [threshold, trial] : latest) {
-    const EncodedModel model(encoded_model(bench, trial.encoding));
-    const CompressedCompliance compressed(model.view);
-    trial.levels = level_costs(model, bench.step_work);
-    for (std::size_t i = 0; i < samples.size(); ++i) measure_level(samples[i], compressed, trial.levels[i]);
-    LevelTrial& finest = trial.levels.back();
-    finest.rms = trial.rms;
-    finest.worst_column = trial.worst_column;
-    finest.patch_force = trial.patch_force;
+    if (trial.levels.empty()) measure_levels(bench, patches, samples, trial);
     points.push_back(std::move(trial));
   }
   return points;

@@ -30,20 +30,22 @@ struct LevelSample {
                                                      const WaveletCompliance& exact, std::size_t coarsest);
 
 /// Bytes, blocks and, unless `work` is empty, work of an encoded model cut off after each constraint level; errors 0.
+/// Encodes nothing.
 [[nodiscard]] std::vector<LevelTrial> level_costs(const EncodedModel& model, const LevelWork& work);
 
-/// Tries thresholds at powers of two of the chosen one, from half of it to 16 times as much, where nothing near was
-/// tried yet and the couplings at hand reach. Work: at most five trials.
-void fill_gaps(const TrialBench& bench, const ContactPatches& patches, double chosen, double floor,
-               std::vector<Trial>& trials);
+/// Adds thresholds at powers of two of the chosen one, from half of it to 16 times as much, where nothing near was
+/// tried yet and the couplings at hand reach: at most five, to be tried by measure_frontier.
+void fill_gaps(double chosen, double floor, std::vector<Trial>& trials);
 
 /// Leaves out trials whose thresholds are within a tenth of the chosen one or of another that stays: the end of a
 /// bisection, which tells nothing new.
 void leave_out_near(double chosen, std::vector<Trial>& trials);
 
 /// What was tried, by decreasing threshold, one trial each (the latest), on every constraint level: errors of coarse
-/// levels on the samples, those of the finest as tried. Work: an encoding and the samples' columns per threshold.
-[[nodiscard]] std::vector<Trial> measure_frontier(const TrialBench& bench, const std::vector<LevelSample>& samples,
+/// levels on the samples, those of the finest as tried. Trials of 0 bytes are tried with `patches`; those that have
+/// their levels already stay as they are. Work: an encoding and the samples' columns per threshold.
+[[nodiscard]] std::vector<Trial> measure_frontier(const TrialBench& bench, const ContactPatches& patches,
+                                                  const std::vector<LevelSample>& samples,
                                                   const std::vector<Trial>& trials);
 
 }  // namespace greenloop::offline

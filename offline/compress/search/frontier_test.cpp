@@ -74,7 +74,7 @@ TEST_CASE("every threshold once, the latest trial of it, cheaper and less exact 
   trials.back().patch_force = 0.5;
   auto with_work = bench().get();
   with_work.step_work = bytes_as_work;
-  const auto points = measure_frontier(with_work, samples, trials);
+  const auto points = measure_frontier(with_work, bench().patches, samples, trials);
   REQUIRE(points.size() == 3);
   CHECK(points[0].encoding.threshold == 0.03);
   CHECK(points[1].patch_force == 0.5);
@@ -98,16 +98,33 @@ TEST_CASE("every threshold once, the latest trial of it, cheaper and less exact 
 
 TEST_CASE("gaps between the tried thresholds are filled, but not below the floor") {
   auto trials = tried({0.01, 0.045});
-  fill_gaps(bench().get(), bench().patches, 0.01, 0.008, trials);
+  fill_gaps(0.01, 0.008, trials);
   std::vector<double> thresholds;
   thresholds.reserve(trials.size());
   for (const Trial& trial : trials) thresholds.push_back(trial.encoding.threshold);
   CHECK(thresholds == std::vector<double>{0.01, 0.045, 0.16, 0.08, 0.02});
 }
 
+TEST_CASE("what is not tried yet is tried; what has its levels stays") {
+  const auto samples = sample_levels(bench().body.mesh, bench().wavelet, bench().compliance, coarsest);
+  const auto wanted = measure_frontier(bench().get(), bench().patches, samples, tried({0.02})).front();
+  const Trial untried{.encoding = encoding_at(0.02)};
+  Trial settled{.encoding = encoding_at(0.01), .bytes = 1};
+  settled.levels = {{.level = 7}};
+  const auto points = measure_frontier(bench().get(), bench().patches, samples, {untried, settled});
+  REQUIRE(points.size() == 2);
+  CHECK(points[0].bytes == wanted.bytes);
+  CHECK(points[0].patch_force == wanted.patch_force);
+  REQUIRE(points[0].levels.size() == wanted.levels.size());
+  CHECK(points[0].levels[0].rms == wanted.levels[0].rms);
+  CHECK(points[0].levels[1].rms == wanted.levels[1].rms);
+  REQUIRE(points[1].levels.size() == 1);
+  CHECK(points[1].levels[0].level == 7);
+}
+
 TEST_CASE("a level's errors are those of the model cut off after it") {
   const auto samples = sample_levels(bench().body.mesh, bench().wavelet, bench().compliance, coarsest);
-  const auto point = measure_frontier(bench().get(), samples, tried({0.01})).front();
+  const auto point = measure_frontier(bench().get(), bench().patches, samples, tried({0.01})).front();
   const EncodedModel whole(encoded_model(bench().get(), point.encoding));
   const auto bytes = whole.bytes.span();
   const AlignedBytes cut(truncate_to_level({bytes.begin(), bytes.end()}, coarsest));

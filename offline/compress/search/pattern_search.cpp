@@ -27,15 +27,17 @@ double excess_of(const PatternErrors& errors, const Accuracy& accuracy) {
              : excess_of(errors.kind, errors.field.worst, errors.peak.worst, accuracy);
 }
 
+EncodedModel encoded_at(const TrialBench& bench, double threshold) {
+  return EncodedModel(encoded_model(bench, encoding_at(threshold)));
+}
+
 Sites all_sites(const ExactContacts& contacts) {
   Sites sites(contacts.sites().size());
   std::iota(sites.begin(), sites.end(), std::size_t{0});
   return sites;
 }
 
-std::vector<AnswerError> errors_at(const TrialBench& bench, const ExactContacts& contacts, const Encoding& encoding,
-                                   const Sites& sites) {
-  const EncodedModel model(encoded_model(bench, encoding));
+std::vector<AnswerError> errors_of(const EncodedModel& model, const ExactContacts& contacts, const Sites& sites) {
   const CompressedCompliance compressed(model.view);
   const AnsweredContacts answered(model.view, compressed, contacts);
   std::vector<AnswerError> all;
@@ -52,8 +54,8 @@ class ThresholdSearch {
       : bench_(bench), contacts_(contacts), floor_(floor) {}
 
   // all sites; those that were worst join the searched ones
-  double check(double threshold) {
-    const auto errors = answer_errors(bench_, contacts_, encoding_at(threshold));
+  double check(const EncodedModel& model) {
+    const auto errors = errors_of(model, contacts_, all_sites(contacts_));
     std::vector<std::pair<double, std::size_t>> worst;
     auto next = errors.begin();
     for (std::size_t s = 0; s < contacts_.sites().size(); ++s) {
@@ -74,7 +76,7 @@ class ThresholdSearch {
     for (int step = 0; step < steps && fails > floor_; ++step) {
       const double next =
           meets > 0 ? std::sqrt(fails * meets) : std::max(floor_, fails / std::clamp(near * excess, near, 4.0));
-      const double found = pattern_excess(errors_at(bench_, contacts_, encoding_at(next), searched_), bench_.accuracy);
+      const double found = pattern_excess(errors_of(encoded_at(bench_, next), contacts_, searched_), bench_.accuracy);
       if (found <= 1) {
         meets = next;
         if (found > good || fails < near * meets) break;
@@ -112,20 +114,22 @@ const PatternErrors& worst_pattern(const std::vector<PatternErrors>& errors, con
 
 std::vector<AnswerError> answer_errors(const TrialBench& bench, const ExactContacts& contacts,
                                        const Encoding& encoding) {
-  return errors_at(bench, contacts, encoding, all_sites(contacts));
+  return errors_of(EncodedModel(encoded_model(bench, encoding)), contacts, all_sites(contacts));
 }
 
-double search_threshold(const TrialBench& bench, const ExactContacts& contacts, double threshold, double floor) {
+std::optional<FoundEncoding> search_threshold(const TrialBench& bench, const ExactContacts& contacts, double threshold,
+                                              double floor) {
+  FoundEncoding found{encoding_at(threshold), encoded_at(bench, threshold)};
   const auto& [rms, column, force, field, peak, rough] = bench.accuracy;
-  if (!std::isfinite(field) && !std::isfinite(peak) && !std::isfinite(rough)) return threshold;
+  if (!std::isfinite(field) && !std::isfinite(peak) && !std::isfinite(rough)) return found;
   ThresholdSearch search(bench, contacts, floor);
-  for (int round = 0; round < checks; ++round) {
-    const double excess = search.check(threshold);
-    if (excess <= 1) return threshold;
-    threshold = search.descend(threshold, excess);
-    if (threshold == 0) return 0;
+  for (int round = 0;; ++round) {
+    const double excess = search.check(found.model);
+    if (excess <= 1) return found;
+    threshold = round < checks ? search.descend(threshold, excess) : 0;
+    if (threshold == 0) return {};
+    found = {encoding_at(threshold), encoded_at(bench, threshold)};
   }
-  return search.check(threshold) <= 1 ? threshold : 0;
 }
 
 }  // namespace greenloop::offline

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "offline/compress/measure/pattern_errors.hpp"
@@ -24,10 +25,16 @@ inline constexpr std::uint32_t most_accurate_contacts = 64;
 [[nodiscard]] std::vector<AnswerError> answer_errors(const TrialBench& bench, const ExactContacts& contacts,
                                                      const Encoding& encoding);
 
-/// A threshold near the largest from `floor` to `threshold` with which the answers at the finest level to all sites are
-/// as accurate as bench.accuracy asks; 0 if there is none. Errors shrink about as thresholds do: the search goes down
-/// in proportion, with the sites that were worst, and then checks all. Work: a few encodings.
-[[nodiscard]] double search_threshold(const TrialBench& bench, const ExactContacts& contacts, double threshold,
-                                      double floor);
+/// An encoding and the model that it makes.
+struct FoundEncoding {
+  Encoding encoding;
+  EncodedModel model;
+};
+
+/// The encoding of a threshold near the largest from `floor` to `threshold` with which the answers at the finest level
+/// to all sites are as accurate as bench.accuracy asks; none if there is none. Errors shrink about as thresholds do:
+/// the search goes down in proportion, with the sites that were worst, and then checks all. Work: a few encodings.
+[[nodiscard]] std::optional<FoundEncoding> search_threshold(const TrialBench& bench, const ExactContacts& contacts,
+                                                            double threshold, double floor);
 
 }  // namespace greenloop::offline
