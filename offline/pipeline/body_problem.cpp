@@ -35,7 +35,8 @@ rate = "1000 Hz"
 contacts = 16
 )";
 
-/// The body and the columns that are wanted of it: in two-sided wavelet coordinates every row needs its column.
+/// The columns that are wanted of a body, whatever they come from: in two-sided wavelet coordinates every row needs its
+/// column.
 GreenStoreContents describe_columns(BodyGeometry body) {
   GreenStoreContents contents;
   for (std::size_t i = 0; i < body.flags.size(); ++i) {
@@ -45,10 +46,16 @@ GreenStoreContents describe_columns(BodyGeometry body) {
   contents.surface = std::move(body.surface);
   contents.flags = std::move(body.flags);
   contents.area = std::move(body.area);
-  contents.volume = std::move(body.volume->mesh);
-  contents.volume_fixed = std::move(body.volume->fixed);
-  contents.interpolation.swap(body.volume->interpolation);
   return contents;
+}
+
+/// What finite elements make them of.
+void add_finite_elements(const Material& material, Volume volume, GreenStoreContents& contents) {
+  contents.volume = std::move(volume.mesh);
+  contents.volume_fixed = std::move(volume.fixed);
+  contents.interpolation.swap(volume.interpolation);
+  contents.young = material.young;
+  contents.poisson = material.poisson;
 }
 
 }  // namespace
@@ -79,9 +86,9 @@ GreenStoreContents describe_problem(const Scene& scene, BodyGeometry body, const
     record["volume"] = volume_record(filled);
     body.volume = std::move(filled.volume);
   }
+  Volume volume = std::move(*body.volume);
   GreenStoreContents contents = describe_columns(std::move(body));
-  contents.young = scene.material.young;
-  contents.poisson = scene.material.poisson;
+  add_finite_elements(scene.material, std::move(volume), contents);
   contents.provenance = record.dump();
   contents.fingerprint = fingerprint;
   return contents;
