@@ -6,10 +6,16 @@
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "offline/compress/measure/contact_patches.hpp"
-#include "offline/compress/search/encoding_search.hpp"
 #include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline {
+
+/// An exact column to compare with.
+struct SampleColumn {
+  std::size_t row = 0;
+  double area = 0;            ///< m^2
+  std::vector<double> exact;  ///< rows blocks of 9
+};
 
 /// Positions of the domain rows of K(level) [m].
 [[nodiscard]] std::vector<Eigen::Vector3d> row_positions(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,

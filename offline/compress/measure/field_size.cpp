@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "offline/compress/encode/touchable_nodes.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/step_work.hpp"
 #include "runtime/wavelet/column.hpp"
@@ -45,13 +46,7 @@ std::uint64_t FieldCounter::all_blocks() const {
 FieldSize field_size(const ModelView& view) {
   FieldCounter counter(view);
   FieldSize size{.blocks = counter.all_blocks()};
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      if ((level.nodes[i].flags & layout::node_touchable) == 0) continue;
-      size.longest = std::max(size.longest, counter.blocks_of({level.domain_begin + i}));
-    }
-  }
+  for (const auto& [node, row] : touchable_nodes(view)) size.longest = std::max(size.longest, counter.blocks_of({row}));
   return size;
 }
 

@@ -11,16 +11,10 @@
 #include "formats/write/aligned_bytes.hpp"
 #include "offline/compress/encode/coupling_coder.hpp"
 #include "offline/compress/measure/contact_patches.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
 #include "offline/progress.hpp"
 
 namespace greenloop::offline {
-
-/// An exact column to compare with.
-struct SampleColumn {
-  std::size_t row = 0;
-  double area = 0;            ///< m^2
-  std::vector<double> exact;  ///< rows blocks of 9
-};
 
 /// The errors a model may have against the exact compliance, all relative.
 struct Accuracy {
