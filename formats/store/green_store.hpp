@@ -13,21 +13,13 @@
 
 namespace greenloop {
 
-/// Bits of GreenStoreContents::flags.
-enum SurfaceFlag : std::uint8_t {
-  kFree = 1,       ///< row of the free domain: neither fixed nor left out
-  kTouchable = 2,  ///< may be loaded
-  kFixed = 4,      ///< does not move
-  kRead = 8,       ///< its displacement is wanted
-};
-
 /// Everything in a store but the Green's functions themselves. n surface vertices, v volume vertices.
 struct GreenStoreContents {
-  SemiRegularMesh surface;          ///< m
-  Eigen::VectorXd area;             ///< n lumped areas, m^2, > 0
-  std::vector<std::uint8_t> flags;  ///< n combinations of SurfaceFlag
-  std::vector<int> row_node;        ///< surface vertices whose displacement is stored, strictly increasing
-  std::vector<int> column_node;     ///< surface vertices that carry unit forces, strictly increasing
+  SemiRegularMesh surface;           ///< m
+  std::vector<double> area;          ///< n lumped areas, m^2, > 0
+  std::vector<std::uint32_t> flags;  ///< n sums of layout::NodeFlag
+  std::vector<int> row_node;         ///< surface vertices whose displacement is stored, strictly increasing
+  std::vector<int> column_node;      ///< surface vertices that carry unit forces, strictly increasing
 
   TetrahedralMesh volume;                                      ///< m; empty when the columns come from elsewhere
   std::vector<std::uint8_t> volume_fixed;                      ///< v, nonzero = fixed

@@ -6,8 +6,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "formats/layout.hpp"
+
 namespace greenloop {
 namespace {
+
+// a byte of the file each
+constexpr std::uint32_t all_flags =
+    layout::node_domain | layout::node_touchable | layout::node_fixed | layout::node_read;
 
 [[noreturn]] void reject(const std::string& what) { throw std::invalid_argument("Green's function store: " + what); }
 
@@ -70,11 +76,15 @@ void require_valid_surface(const GreenStoreContents& contents) {
   require_finite("/surface/position", contents.surface.positions);
   require_levels(contents.surface);
   require_indices("/surface/base_triangles", contents.surface.base_triangles, contents.surface.vertex_end.front());
-  require_count("/surface/area", static_cast<std::size_t>(contents.area.size()), count);
+  require_count("/surface/area", contents.area.size(), count);
   require_count("/surface/flags", contents.flags.size(), count);
-  for (Eigen::Index v = 0; v < contents.area.size(); ++v) {
+  for (std::size_t v = 0; v < count; ++v) {
     if (!(contents.area[v] > 0.0) || !std::isfinite(contents.area[v])) {
       reject("/surface/area[" + std::to_string(v) + "] = " + std::to_string(contents.area[v]) + " must be positive");
+    }
+    if (contents.flags[v] > all_flags) {
+      reject("/surface/flags[" + std::to_string(v) + "] = " + std::to_string(contents.flags[v]) +
+             " is not a sum of 1 free, 2 touchable, 4 fixed, 8 read");
     }
   }
 }
@@ -237,9 +247,9 @@ void write_contents(Hdf5File& file, const GreenStoreContents& contents) {
   write_rows(file, "/surface/base_triangles", contents.surface.base_triangles);
   write_list(file, "/surface/vertex_end",
              std::vector<int>(contents.surface.vertex_end.begin(), contents.surface.vertex_end.end()));
-  write_list(file, "/surface/area", std::vector<double>(contents.area.begin(), contents.area.end()));
+  write_list(file, "/surface/area", contents.area);
   file.write_text("/surface/area", "unit", "m^2");
-  write_list(file, "/surface/flags", contents.flags);
+  write_list(file, "/surface/flags", std::vector<unsigned char>(contents.flags.begin(), contents.flags.end()));
   file.write_text("/surface/flags", "bits", "1 free, 2 touchable, 4 fixed, 8 read");
   write_list(file, "/green/row_node", contents.row_node);
   write_list(file, "/green/column_node", contents.column_node);
@@ -265,9 +275,9 @@ GreenStoreContents read_contents(const Hdf5File& file) {
   contents.fingerprint = file.read_text("/", "fingerprint");
   contents.surface = read_surface(file);
   require_unit(file, "/surface/area", "m^2");
-  const auto area = read_list<double>(file, "/surface/area");
-  contents.area = Eigen::VectorXd::Map(area.data(), static_cast<Eigen::Index>(area.size()));
-  contents.flags = read_list<unsigned char>(file, "/surface/flags");
+  contents.area = read_list<double>(file, "/surface/area");
+  const auto flags = read_list<unsigned char>(file, "/surface/flags");
+  contents.flags.assign(flags.begin(), flags.end());
   contents.row_node = read_list<int>(file, "/green/row_node");
   contents.column_node = read_list<int>(file, "/green/column_node");
   if (file.has("/volume/position")) {

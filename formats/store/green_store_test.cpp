@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "formats/layout.hpp"
 #include "formats/store/hdf5_file.hpp"
 
 namespace greenloop {
@@ -46,8 +47,9 @@ GreenStoreContents small_contents(int columns) {
   }
   surface.vertex_end.push_back(surface.positions.size());
   const int count = static_cast<int>(surface.positions.size());
-  contents.area = Eigen::VectorXd::LinSpaced(count, 0.1, 0.2);
-  contents.flags.assign(count, kFree | kRead);
+  contents.area = std::vector<double>(count, 0.1);
+  for (int v = 0; v < count; ++v) contents.area[v] += 0.006 * v;
+  contents.flags.assign(count, layout::node_domain | layout::node_read);
   for (int v = 1; v < count; ++v) contents.row_node.push_back(v);
   for (int v = 0; v < columns; ++v) contents.column_node.push_back(v);
   contents.volume.vertices = surface.positions;
@@ -151,6 +153,7 @@ TEST_CASE("contents that contradict each other are refused by name") {
   };
   refuse([](auto& c) { c.area[4] = 0.0; }, "/surface/area[4]");
   refuse([](auto& c) { c.flags.pop_back(); }, "/surface/flags");
+  refuse([](auto& c) { c.flags[7] = 16; }, "/surface/flags[7]");
   refuse([](auto& c) { c.surface.parents[8] = {3, 3}; }, "/surface/parents[8]");
   refuse([](auto& c) { c.surface.positions[2].y() = NAN; }, "/surface/position[2]");
   refuse([](auto& c) { c.surface.vertex_end = {6, 17}; }, "/surface/vertex_end");

@@ -16,19 +16,18 @@ struct BuildArguments {
   bool json = false;
 };
 
-void print_outcome(const BuildArguments& arguments, const nlohmann::json& record) {
+void print_outcome(const BuildArguments& arguments, const BuildOutcome& outcome) {
   if (arguments.json) {
-    fmt::print("{}\n", record.dump(2));
+    fmt::print("{}\n", outcome.record.dump(2));
     return;
   }
   const auto& model = arguments.request.model;
-  if (record.value("up_to_date", false)) {
+  if (outcome.up_to_date) {
     fmt::print("{} is up to date\n", model.string());
     return;
   }
-  fmt::print("{}: {} bytes, {:.3g} times as small as the dense matrix\n", model.string(),
-             record["bytes"].get<std::size_t>(),
-             record["compression"]["dense_bytes"].get<double>() / record["bytes"].get<double>());
+  fmt::print("{}: {} bytes, {:.3g} times as small as the dense matrix\n", model.string(), outcome.bytes,
+             static_cast<double>(outcome.dense_bytes) / static_cast<double>(outcome.bytes));
 }
 
 int run_build(BuildArguments& arguments) {

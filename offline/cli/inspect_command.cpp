@@ -16,7 +16,7 @@
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/cli/inspect_patterns.hpp"
-#include "offline/compress/field_size.hpp"
+#include "offline/compress/measure/field_size.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -18,7 +18,7 @@
 #include "offline/cli/convert_command.hpp"
 #include "offline/cli/inspect_command.hpp"
 #include "offline/cli/verify_command.hpp"
-#include "offline/compress/compressed_compliance.hpp"
+#include "offline/compress/encode/compressed_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

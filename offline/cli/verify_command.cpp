@@ -11,7 +11,7 @@
 
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
-#include "offline/compress/certificate.hpp"
+#include "offline/compress/measure/certificate.hpp"
 
 namespace greenloop::offline {
 namespace {

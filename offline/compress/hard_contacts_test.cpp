@@ -9,10 +9,10 @@
 #include <random>
 #include <vector>
 
-#include "offline/compress/compressed_compliance.hpp"
-#include "offline/compress/dense_reference.hpp"
-#include "offline/compress/measured_model.hpp"
-#include "offline/compress/solved_body.hpp"
+#include "offline/compress/encode/compressed_compliance.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
+#include "offline/compress/testing/measured_model.hpp"
+#include "offline/compress/testing/solved_body.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop::offline {

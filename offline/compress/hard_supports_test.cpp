@@ -3,8 +3,8 @@
 #include <initializer_list>
 #include <stdexcept>
 
-#include "offline/compress/measured_model.hpp"
-#include "offline/compress/solved_body.hpp"
+#include "offline/compress/testing/measured_model.hpp"
+#include "offline/compress/testing/solved_body.hpp"
 
 namespace greenloop::offline {
 namespace {

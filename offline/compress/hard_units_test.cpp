@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "offline/compress/compressed_compliance.hpp"
-#include "offline/compress/measured_model.hpp"
-#include "offline/compress/solved_body.hpp"
+#include "offline/compress/encode/compressed_compliance.hpp"
+#include "offline/compress/testing/measured_model.hpp"
+#include "offline/compress/testing/solved_body.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop::offline {

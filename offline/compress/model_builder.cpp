@@ -11,14 +11,14 @@
 
 #include "formats/verify.hpp"
 #include "formats/write/describe.hpp"
-#include "offline/compress/certificate.hpp"
-#include "offline/compress/equilibrated_prediction.hpp"
-#include "offline/compress/exact_sample.hpp"
-#include "offline/compress/field_error.hpp"
-#include "offline/compress/field_size.hpp"
-#include "offline/compress/frontier.hpp"
-#include "offline/compress/model_tables.hpp"
-#include "offline/compress/pattern_search.hpp"
+#include "offline/compress/encode/model_tables.hpp"
+#include "offline/compress/measure/certificate.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/measure/field_error.hpp"
+#include "offline/compress/measure/field_size.hpp"
+#include "offline/compress/search/frontier.hpp"
+#include "offline/compress/search/pattern_search.hpp"
+#include "offline/compress/wavelet/equilibrated_prediction.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -220,7 +220,7 @@ class Build {
   }
 
   [[nodiscard]] WaveletCompliance transform(double floor) {
-    const ColumnSource columns = [&](std::size_t first, std::size_t count) {
+    const ExactColumns columns = [&](std::size_t first, std::size_t count) {
       Eigen::MatrixXd block = input_.columns(first, count);
       const bool fits = block.rows() == static_cast<Eigen::Index>(3 * wavelet_.rows());
       if (floor == first_floor && fits) sample_.add(block, first);
@@ -255,12 +255,14 @@ class Build {
           search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.6));
       closest_ = chosen;
       if (!chosen.meets(aim)) return false;
-      if (!meet_patterns(bench, sample_.patches().choose(searched), floor, chosen)) return false;
-      const Measured measured = measure(compliance, chosen);
+      const auto found = meet_patterns(bench, sample_.patches().choose(searched), floor, chosen);
+      if (!found) return false;
+      const Measured measured = measure(found->model, chosen);
       if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
+        encode_couplings(compliance, found->encoding, model_);
         describe(measured);
-        describe_levels(compliance, measured);
-        describe_frontier(bench, sample_.patches().choose(searched), floor);
+        describe_levels(compliance, measured, found->model);
+        describe_frontier(bench, sample_.patches().choose(searched), floor, found->model);
         return true;
       }
       closest_ = measured.trial;
@@ -270,24 +272,21 @@ class Build {
     return false;
   }
 
-  // takes a smaller threshold where the fields of what people do ask for it; false: none down to the floor will do
-  [[nodiscard]] bool meet_patterns(const TrialBench& bench, const ContactPatches& patches, double floor,
-                                   Trial& chosen) {
-    const double threshold = search_threshold(bench, contacts_, chosen.encoding.threshold, floor);
-    if (threshold == chosen.encoding.threshold) return true;
-    if (threshold > 0) {
-      chosen = try_encoding(bench, patches, encoding_at(threshold));
-      return true;
+  // takes a smaller threshold where the fields of what people do ask for it; none: none down to the floor will do
+  [[nodiscard]] std::optional<FoundEncoding> meet_patterns(const TrialBench& bench, const ContactPatches& patches,
+                                                           double floor, Trial& chosen) {
+    auto found = search_threshold(bench, contacts_, chosen.encoding.threshold, floor);
+    if (!found) {
+      const auto errors = summarise(answer_errors(bench, contacts_, encoding_at(floor)));
+      closest_pattern_ = worst_pattern(errors, input_.accuracy);
+    } else if (found->encoding.threshold != chosen.encoding.threshold) {
+      chosen = measure_trial(bench, patches, found->encoding, found->model, CompressedCompliance(found->model.view));
     }
-    const auto errors = summarise(answer_errors(bench, contacts_, encoding_at(floor)));
-    closest_pattern_ = worst_pattern(errors, input_.accuracy);
-    return false;
+    return found;
   }
 
-  [[nodiscard]] Measured measure(const WaveletCompliance& compliance, const Trial& chosen) {
+  [[nodiscard]] Measured measure(const EncodedModel& encoded, const Trial& chosen) {
     Measured measured{.trial = chosen, .patterns = {}, .field = FieldError(read_), .worst_patches = {}};
-    encode_couplings(compliance, chosen.encoding, model_);
-    const EncodedModel encoded(model_);
     const CompressedCompliance all(encoded.view);
     FieldError error;
     visit_exact_columns(input_, part(0.65, 0.75), [&](std::size_t row, const auto& exact, double area) {
@@ -328,8 +327,7 @@ class Build {
     report_.patches = sample_.patches().size();
   }
 
-  void describe_levels(const WaveletCompliance& compliance, const Measured& finest) {
-    const EncodedModel encoded(model_);
+  void describe_levels(const WaveletCompliance& compliance, const Measured& finest, const EncodedModel& encoded) {
     const CompressedCompliance complete(encoded.view);
     const AnsweredContacts answered(encoded.view, complete, contacts_);
     for (std::uint32_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
@@ -356,23 +354,20 @@ class Build {
   }
 
   // the chosen point with the errors measured on everything
-  void describe_frontier(const TrialBench& bench, const ContactPatches& patches, double floor) {
+  void describe_frontier(const TrialBench& bench, const ContactPatches& patches, double floor,
+                         const EncodedModel& encoded) {
     store_errors(report_, model_);
-    const auto costs = level_costs(EncodedModel(model_), input_.step_work);
     const auto samples = sample_levels(input_.mesh, wavelet_, bench.compliance, model_.info.coarsest_constraint_level);
     std::vector<Trial> trials = report_.trials;
-    fill_gaps(bench, patches, report_.encoding.threshold, floor, trials);
-    leave_out_near(report_.encoding.threshold, trials);
-    report_.frontier = measure_frontier(bench, samples, trials);
-    for (Trial& point : report_.frontier) {
-      if (point.encoding.threshold != report_.encoding.threshold) continue;
-      point.levels = costs;
-      for (std::size_t i = 0; i < point.levels.size(); ++i) {
-        point.levels[i].rms = report_.levels[i].rms_error;
-        point.levels[i].worst_column = report_.levels[i].worst_column_error;
-        point.levels[i].patch_force = report_.levels[i].patch_force_error;
-      }
+    trials.back().levels = level_costs(encoded, input_.step_work);
+    for (std::size_t i = 0; i < report_.levels.size(); ++i) {
+      trials.back().levels[i].rms = report_.levels[i].rms_error;
+      trials.back().levels[i].worst_column = report_.levels[i].worst_column_error;
+      trials.back().levels[i].patch_force = report_.levels[i].patch_force_error;
     }
+    fill_gaps(report_.encoding.threshold, floor, trials);
+    leave_out_near(report_.encoding.threshold, trials);
+    report_.frontier = measure_frontier(bench, patches, samples, trials);
   }
 
   const CompressionInput& input_;

@@ -8,9 +8,11 @@
 #include "formats/layout.hpp"
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/write/writer.hpp"
-#include "offline/compress/encoding_search.hpp"
-#include "offline/compress/field_size.hpp"
-#include "offline/compress/pattern_errors.hpp"
+#include "offline/compress/measure/field_size.hpp"
+#include "offline/compress/measure/pattern_errors.hpp"
+#include "offline/compress/search/encoding_search.hpp"
+#include "offline/compress/wavelet/exact_columns.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 
@@ -20,7 +22,7 @@ struct CompressionInput {
   const std::vector<std::uint32_t>& flags;       ///< layout::NodeFlag per node, closed by mark_domain
   const std::vector<double>& area;               ///< m^2 per node
   const std::vector<std::size_t>& column_nodes;  ///< nodes with an exact column: the domain nodes, increasing
-  ColumnSource columns;                          ///< their columns; rows are the domain nodes in node order
+  ExactColumns columns;                          ///< their columns; rows are the domain nodes in node order
   Accuracy accuracy;
   layout::Wavelet wavelet = layout::Wavelet::lifted_linear;
   layout::Info facts{};    ///< from scene and solver: young, poisson, store_asymmetry, rate, max_contacts, step_work,

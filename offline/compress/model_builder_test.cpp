@@ -11,11 +11,11 @@
 
 #include "formats/verify.hpp"
 #include "formats/write/describe.hpp"
-#include "offline/compress/contact_patches.hpp"
-#include "offline/compress/dense_reference.hpp"
-#include "offline/compress/exact_sample.hpp"
-#include "offline/compress/node_order.hpp"
-#include "offline/compress/pattern_search.hpp"
+#include "offline/compress/measure/contact_patches.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/search/pattern_search.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
+#include "offline/compress/wavelet/node_order.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -321,7 +321,7 @@ TEST_CASE("input that does not fit together is refused") {
   auto flags = b.flags;
   Accuracy wanted = accuracy;
   auto info = test::facts();
-  ColumnSource source = test::columns_of(b.compliance);
+  ExactColumns source = test::columns_of(b.compliance);
   SUBCASE("a column is missing") { columns.pop_back(); }
   SUBCASE("a column of a fixed node") { columns.back() = 0; }
   SUBCASE("nothing can be touched") {

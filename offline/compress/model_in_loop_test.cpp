@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "offline/compress/dense_reference.hpp"
 #include "offline/compress/model_builder.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {

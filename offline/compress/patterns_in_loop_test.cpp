@@ -5,9 +5,9 @@
 #include <set>
 #include <vector>
 
-#include "offline/compress/dense_reference.hpp"
-#include "offline/compress/exact_sample.hpp"
-#include "offline/compress/pattern_errors.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/measure/pattern_errors.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {

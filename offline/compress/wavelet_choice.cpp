@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "offline/compress/surface_wavelet.hpp"
+#include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -105,10 +105,7 @@ Comparison compare_wavelets(CompressionInput input, const Progress& progress) {
     input.wavelet = wavelet;
     WaveletTrial trial{.wavelet = wavelet, .nodes = input.column_nodes.size(), .trial = {}};
     auto built = try_build(input);
-    if (built) {
-      trial.trial = built->report.trials.back();
-      if (input.step_work) trial.trial.step_work = input.step_work(AlignedBytes(encode(built->model)).span()).back();
-    }
+    if (built) trial.trial = built->report.trials.back();
     if (built && (!comparison.model || cost(input, trial.trial) < least)) {
       least = cost(input, trial.trial);
       comparison.best = wavelet;

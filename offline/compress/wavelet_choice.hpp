@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "offline/compress/model_builder.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/verify.hpp"
-#include "offline/compress/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "offline/compress/surface_wavelet.hpp"
+#include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "offline/compress/contact_patches.hpp"
-#include "offline/compress/exact_sample.hpp"
-#include "offline/compress/surface_wavelet.hpp"
+#include "offline/compress/measure/contact_patches.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/wavelet/surface_wavelet.hpp"
 #include "offline/figures/column_compression.hpp"
 
 namespace greenloop::offline {

@@ -6,6 +6,7 @@
 #include "formats/layout.hpp"
 #include "offline/figures/exact_body.hpp"
 #include "offline/figures/rate_curve.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "offline/compress/surface_wavelet.hpp"
+#include "offline/compress/wavelet/surface_wavelet.hpp"
 #include "offline/figures/column_compression.hpp"
 #include "offline/figures/rate_curve.hpp"
 

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/compress/dense_reference.hpp"
-#include "offline/compress/exact_sample.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/column_records.hpp"
 

@@ -8,6 +8,7 @@
 #include "offline/figures/exact_body.hpp"
 #include "offline/figures/rate_curve.hpp"
 #include "offline/figures/summation.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 

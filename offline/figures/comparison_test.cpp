@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "offline/compress/dense_reference.hpp"
+#include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/figures/comparison_figures.hpp"
 
 namespace greenloop::offline {

@@ -18,8 +18,8 @@ ExactBody open_body(const std::filesystem::path& path) {
   }
   return {.name = path.stem().string(),
           .mesh = contents.surface,
-          .flags = {contents.flags.begin(), contents.flags.end()},
-          .area = {contents.area.begin(), contents.area.end()},
+          .flags = contents.flags,
+          .area = contents.area,
           .columns = [store](std::size_t first, std::size_t count) {
             return store->read_columns(static_cast<int>(first), static_cast<int>(count));
           }};

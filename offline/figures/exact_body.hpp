@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "formats/mesh/semi_regular_mesh.hpp"
-#include "offline/compress/column_source.hpp"
+#include "offline/compress/wavelet/exact_columns.hpp"
 
 namespace greenloop::offline {
 
@@ -17,7 +17,7 @@ struct ExactBody {
   SemiRegularMesh mesh;
   std::vector<std::uint32_t> flags;  ///< layout::NodeFlag per node
   std::vector<double> area;          ///< m^2 per node
-  ColumnSource columns;              ///< of the domain nodes, in node order
+  ExactColumns columns;              ///< of the domain nodes, in node order
 };
 
 /// Opens a store of Green's functions; it is read as columns are asked for. Throws std::runtime_error naming the file

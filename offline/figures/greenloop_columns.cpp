@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "formats/store/green_store.hpp"
-#include "offline/compress/exact_sample.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/column_records.hpp"
 #include "offline/figures/column_sample.hpp"
 #include "offline/pipeline/body_problem.hpp"
 #include "offline/pipeline/progress_bar.hpp"
-#include "offline/solve/compliance_solver.hpp"
+#include "offline/sources/fem/fem_source.hpp"
 
 namespace {
 
@@ -62,13 +62,13 @@ class StreamedBody {
     if (missing.empty()) return;
     const GreenStoreContents problem = describe_problem(scene_, geometry_, fingerprint_, progress_);
     progress_.begin("factorise");
-    ComplianceSolver solver(problem);
-    progress_.end(fmt::format("{} unknowns, {:.3g} factor entries", solver.unknowns(),
-                              static_cast<double>(solver.factor_entries())));
+    FemSource source(fem_problem(problem));
+    progress_.end(fmt::format("{} unknowns, {:.3g} factor entries", source.unknowns(),
+                              static_cast<double>(source.factor_entries())));
     progress_.begin("columns");
     for (std::size_t done = 0; done < missing.size();) {
-      const std::size_t count = std::min<std::size_t>(ComplianceSolver::kPatternsAtOnce, missing.size() - done);
-      measure(problem, solver, std::span(missing).subspan(done, count));
+      const std::size_t count = std::min(source.columns_at_once(), missing.size() - done);
+      measure(source, std::span(missing).subspan(done, count));
       done += count;
       progress_.update(static_cast<double>(done) / static_cast<double>(missing.size()));
     }
@@ -92,13 +92,11 @@ class StreamedBody {
   }
 
  private:
-  void measure(const GreenStoreContents& problem, ComplianceSolver& solver, std::span<const std::size_t> rows) {
-    std::vector<int> nodes;
-    for (const std::size_t row : rows) nodes.push_back(problem.column_node[row]);
-    const Eigen::MatrixXd solved = solver.displacement(unit_patterns(problem, nodes));
+  void measure(ColumnSource& source, std::span<const std::size_t> rows) {
+    const Eigen::MatrixXd solved = source.read(std::vector<int>(rows.begin(), rows.end()));
     for (std::size_t j = 0; j < rows.size(); ++j) {
       std::vector<double> column = blocks_of(solved, j);
-      for (double& value : column) value *= problem.area[nodes[j]];  // traction form
+      for (double& value : column) value *= geometry_.area[wavelet_.nodes()[rows[j]]];  // traction form
       records_.add(rows[j], compression_.compress(column));
     }
   }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "formats/mesh/surface_io.hpp"
-#include "offline/compress/test_body.hpp"
+#include "offline/compress/testing/test_body.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/exact_body.hpp"
 #include "offline/pipeline/build_model_file.hpp"

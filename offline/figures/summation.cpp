@@ -6,8 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "offline/compress/encoding_search.hpp"
-#include "offline/compress/field_size.hpp"
+#include "offline/compress/encode/touchable_nodes.hpp"
+#include "offline/compress/measure/field_size.hpp"
+#include "offline/compress/search/encoding_search.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {
@@ -19,23 +20,6 @@ double thread_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-struct TouchableNode {
-  std::uint32_t node = 0, row = 0;  // in the file, in the domain
-};
-
-std::vector<TouchableNode> touchable_nodes(const ModelView& view) {
-  std::vector<TouchableNode> nodes;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      if ((level.nodes[i].flags & layout::node_touchable) != 0) {
-        nodes.push_back({level.node_begin + i, level.domain_begin + i});
-      }
-    }
-  }
-  return nodes;
 }
 
 // Sets that are pressed by a thousandth of the body's height.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "offline/compress/model_tables.hpp"
+#include "offline/compress/encode/model_tables.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -22,7 +22,7 @@ ModelData tables_of(const ExactBody& body, const SurfaceWavelet& wavelet) {
 
 WaveletCompliance transformed(const ExactBody& body, const SurfaceWavelet& wavelet, double floor, ExactSample& sample,
                               const Progress& progress) {
-  const ColumnSource columns = [&](std::size_t first, std::size_t count) {
+  const ExactColumns columns = [&](std::size_t first, std::size_t count) {
     Eigen::MatrixXd block = body.columns(first, count);
     sample.add(block, first);
     return block;
@@ -58,9 +58,9 @@ TwoSidedForm::TwoSidedForm(const ExactBody& body, const WaveletKind& kind, doubl
 std::vector<LevelRates> TwoSidedForm::rates(const std::vector<double>& thresholds, double quantum) const {
   std::vector<Trial> trials;
   for (const double threshold : thresholds) {
-    trials.push_back(try_encoding(bench(), patches_, {.threshold = threshold, .quantum = quantum * threshold}));
+    trials.push_back({.encoding = {.threshold = threshold, .quantum = quantum * threshold}});
   }
-  auto points = measure_frontier(bench(), coarse_, trials);
+  auto points = measure_frontier(bench(), patches_, coarse_, trials);
   std::reverse(points.begin(), points.end());
   std::vector<LevelRates> levels;
   for (const LevelTrial& first : points.front().levels) {

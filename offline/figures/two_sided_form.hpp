@@ -3,12 +3,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "offline/compress/encoding_search.hpp"
-#include "offline/compress/exact_sample.hpp"
-#include "offline/compress/frontier.hpp"
+#include "offline/compress/measure/exact_sample.hpp"
+#include "offline/compress/search/encoding_search.hpp"
+#include "offline/compress/search/frontier.hpp"
 #include "offline/figures/column_form.hpp"
 #include "offline/figures/exact_body.hpp"
 #include "offline/figures/rate_curve.hpp"
+#include "offline/progress.hpp"
 
 namespace greenloop::offline {
 

@@ -9,17 +9,15 @@
 #include "formats/layout.hpp"
 #include "formats/mesh/surface_io.hpp"
 #include "formats/mesh/volume_io.hpp"
-#include "offline/compress/node_order.hpp"
+#include "offline/compress/wavelet/node_order.hpp"
 #include "offline/remesh/remesh.hpp"
-#include "offline/solve/boundary_interpolation.hpp"
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/tetrahedralize.hpp"
+#include "offline/surface/lumped_areas.hpp"
 #include "offline/surface/surface_preparation.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace greenloop::offline {
 namespace {
-
-using nlohmann::json;
 
 Eigen::AlignedBox3d bounding_box(const std::vector<Eigen::Vector3d>& positions) {
   Eigen::AlignedBox3d box;
@@ -61,18 +59,6 @@ PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& v
     scale(volume->vertices, unit);
   }
   return prepared;
-}
-
-json quality_record(const RemeshQuality& quality) {
-  return {{"base_vertices", quality.base_vertices},
-          {"levels", quality.levels},
-          {"triangles", quality.triangles},
-          {"kept_connectivity", quality.kept_connectivity},
-          {"smallest_angle_degrees", quality.smallest_angle_degrees},
-          {"hausdorff_metres", quality.hausdorff},
-          {"hausdorff_relative", quality.hausdorff_relative},
-          {"flipped", quality.flipped},
-          {"self_intersections", quality.self_intersections}};
 }
 
 std::vector<std::uint32_t> node_flags(const Scene& scene, const SemiRegularMesh& mesh) {
@@ -118,11 +104,6 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   progress.begin("surface");
   std::optional<TetrahedralMesh> tetrahedra;
   const auto prepared = read_input(scene, tetrahedra);
-  body.record["surface"] = {{"file", scene.mesh.name},
-                            {"vertices", prepared.report.vertex_count},
-                            {"triangles", prepared.report.triangle_count},
-                            {"genus", prepared.report.genus()},
-                            {"repairs", prepared.repairs}};
   progress.end(fmt::format("{} vertices, {} triangles, {} repairs", prepared.report.vertex_count,
                            prepared.report.triangle_count, prepared.repairs.size()));
 
@@ -134,7 +115,7 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
     return remesh(prepared.mesh, options,
                   [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
   });
-  body.record["remesh"] = quality_record(remeshed.quality);
+  body.report = {scene.mesh.name, prepared.report, prepared.repairs, remeshed.quality};
   progress.end(
       fmt::format("{} vertices on {} levels over {}, smallest angle {:.1f} degrees, Hausdorff {:.2f} % of the diagonal",
                   remeshed.mesh.positions.size(), remeshed.quality.levels + 1, remeshed.quality.base_vertices,
@@ -148,15 +129,14 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   auto ordered = order_nodes(remeshed.mesh, flags);
   body.flags = ordered.reorder(flags);
   body.surface = std::move(ordered.mesh);
-  const Eigen::VectorXd area = lumped_areas(finest_surface(body.surface));
-  body.area.assign(area.data(), area.data() + area.size());
+  body.area = lumped_areas(finest_surface(body.surface));
   if (tetrahedra) {
     body.volume = attach(scene, std::move(*tetrahedra), body.surface);
   }
   return body;
 }
 
-Volume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress, nlohmann::json& record) {
+FilledVolume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress) {
   progress.begin("tetrahedra");
   auto filled = tetrahedralize(finest_surface(body.surface));
   const auto vertices = filled.mesh.vertices.size();
@@ -164,16 +144,12 @@ Volume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress, nlo
   for (std::size_t i = 0; i < body.flags.size(); ++i) {
     fixed[i] = (body.flags[i] & layout::node_fixed) != 0 ? 1 : 0;
   }
-  record["volume"] = {{"mesher", filled.mesher},
-                      {"vertices", vertices},
-                      {"interior_vertices", filled.quality.interior_nodes},
-                      {"tetrahedra", filled.mesh.tetrahedra.size()},
-                      {"smallest_mean_ratio", filled.quality.min_quality},
-                      {"slivers", filled.quality.slivers}};
   progress.end(fmt::format("{} tetrahedra, {} vertices inside, by {}", filled.mesh.tetrahedra.size(),
                            filled.quality.interior_nodes, filled.mesher));
-  return {std::move(filled.mesh), std::move(fixed),
-          select_first_vertices(static_cast<int>(body.flags.size()), static_cast<int>(vertices))};
+  return {{std::move(filled.mesh), std::move(fixed),
+           select_first_vertices(static_cast<int>(body.flags.size()), static_cast<int>(vertices))},
+          std::move(filled.mesher),
+          filled.quality};
 }
 
 }  // namespace greenloop::offline

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,8 +10,11 @@
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/mesh/tetrahedral_mesh.hpp"
 #include "offline/pipeline/progress_bar.hpp"
+#include "offline/remesh/quality.hpp"
 #include "offline/scene/scene.hpp"
-#include "offline/solve/boundary_interpolation.hpp"
+#include "offline/surface/surface_report.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+#include "offline/volume/tetrahedra_quality.hpp"
 
 namespace greenloop::offline {
 
@@ -23,20 +25,35 @@ struct Volume {
   Interpolation interpolation;      ///< surface displacement from the vertices'
 };
 
+/// What came out on the way to a body's surface, for people.
+struct GeometryReport {
+  std::string file;                  ///< of the mesh, as the scene names it
+  SurfaceReport surface;             ///< what was remeshed
+  std::vector<std::string> repairs;  ///< of the mesh, one sentence each
+  RemeshQuality remesh;
+};
+
 /// The body a scene describes, before anything is solved: its semi-regular surface in the model file's node order.
 struct BodyGeometry {
   SemiRegularMesh surface;           ///< m
   std::vector<std::uint32_t> flags;  ///< layout::NodeFlag per node, domain marked
   std::vector<double> area;          ///< m^2 per node, its hat function's integral
   std::optional<Volume> volume;      ///< the user's own, if the scene names one
-  nlohmann::json record;             ///< what came out, for people: input, repairs, remesh quality
+  GeometryReport report;
 };
 
 /// Reads, checks, scales and remeshes what the scene names, finds the scene's node sets and orders the nodes.
 /// Throws SceneError or std::runtime_error that name what is wrong and how to mend it.
 [[nodiscard]] BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress);
 
-/// Tetrahedra inside the surface, made by tetrahedralize; what came out is added to `record`.
-[[nodiscard]] Volume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress, nlohmann::json& record);
+/// A volume that a program made, and what it is worth.
+struct FilledVolume {
+  Volume volume;
+  std::string mesher;
+  TetrahedraQuality quality;
+};
+
+/// Tetrahedra inside the surface, made by tetrahedralize.
+[[nodiscard]] FilledVolume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress);
 
 }  // namespace greenloop::offline

@@ -7,12 +7,58 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "formats/layout.hpp"
+#include "offline/pipeline/stage_records.hpp"
 #include "offline/scene/fingerprint.hpp"
 
 namespace greenloop::offline {
+namespace {
+
+// what followed the body's text in the scenes that stores were first keyed with: the same for all, so that those fit
+constexpr std::string_view other_keys = R"(
+[constraints]
+coarsest = 0
+
+[accuracy]
+rms = 0.02
+worst_column = 0.1
+patch_force = 0.05
+
+[compression]
+wavelet = "lifted linear"
+
+[budget]
+rate = "1000 Hz"
+contacts = 16
+)";
+
+/// The columns that are wanted of a body, whatever they come from: in two-sided wavelet coordinates every row needs its
+/// column.
+GreenStoreContents describe_columns(BodyGeometry body) {
+  GreenStoreContents contents;
+  for (std::size_t i = 0; i < body.flags.size(); ++i) {
+    if ((body.flags[i] & layout::node_domain) != 0) contents.row_node.push_back(static_cast<int>(i));
+  }
+  contents.column_node = contents.row_node;
+  contents.surface = std::move(body.surface);
+  contents.flags = std::move(body.flags);
+  contents.area = std::move(body.area);
+  return contents;
+}
+
+/// What finite elements make them of.
+void add_finite_elements(const Material& material, Volume volume, GreenStoreContents& contents) {
+  contents.volume = std::move(volume.mesh);
+  contents.volume_fixed = std::move(volume.fixed);
+  contents.interpolation.swap(volume.interpolation);
+  contents.young = material.young;
+  contents.poisson = material.poisson;
+}
+
+}  // namespace
 
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -22,16 +68,9 @@ std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-std::string column_fingerprint(Scene scene, const std::string& mesh) {
-  scene.coarsest_constraints = 0;
-  scene.accuracy = {};
-  // not in the text: stores from before these goals still fit
-  scene.accuracy.field = scene.accuracy.field_peak = scene.accuracy.field_rough = 0;
-  scene.wavelet = layout::Wavelet::lifted_linear;
-  scene.budget = {};
-  scene.store.reset();
-  scene.store_name.clear();
-  return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();
+std::string column_fingerprint(const Scene& scene, const std::string& mesh) {
+  const Fingerprint of_mesh = fingerprint(mesh, fingerprint(pipeline_version));
+  return fingerprint(other_keys, fingerprint(body_text(scene), of_mesh)).hex();
 }
 
 std::size_t domain_size(const BodyGeometry& body) {
@@ -41,25 +80,15 @@ std::size_t domain_size(const BodyGeometry& body) {
 
 GreenStoreContents describe_problem(const Scene& scene, BodyGeometry body, const std::string& fingerprint,
                                     ProgressBar& progress) {
-  nlohmann::json record = body.record;
-  auto volume = body.volume ? std::move(*body.volume) : fill_with_tetrahedra(body, progress, record);
-  GreenStoreContents contents;
-  contents.surface = std::move(body.surface);
-  contents.area = Eigen::VectorXd::Map(body.area.data(), static_cast<Eigen::Index>(body.area.size()));
-  for (std::size_t i = 0; i < body.flags.size(); ++i) {
-    const auto flags = body.flags[i];
-    contents.flags.push_back(static_cast<std::uint8_t>(flags));
-    // the compliance is kept in two-sided wavelet coordinates: every row needs its column
-    if ((flags & layout::node_domain) != 0) {
-      contents.row_node.push_back(static_cast<int>(i));
-      contents.column_node.push_back(static_cast<int>(i));
-    }
+  nlohmann::json record = geometry_record(body.report);
+  if (!body.volume) {
+    auto filled = fill_with_tetrahedra(body, progress);
+    record["volume"] = volume_record(filled);
+    body.volume = std::move(filled.volume);
   }
-  contents.volume = std::move(volume.mesh);
-  contents.volume_fixed = std::move(volume.fixed);
-  contents.interpolation.swap(volume.interpolation);
-  contents.young = scene.material.young;
-  contents.poisson = scene.material.poisson;
+  Volume volume = std::move(*body.volume);
+  GreenStoreContents contents = describe_columns(std::move(body));
+  add_finite_elements(scene.material, std::move(volume), contents);
   contents.provenance = record.dump();
   contents.fingerprint = fingerprint;
   return contents;

@@ -18,8 +18,8 @@ inline constexpr std::string_view pipeline_version = "greenloop 0.2.0";
 /// The whole file. Throws std::runtime_error if it cannot be opened.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// What the exact columns of a scene over the text of its mesh depend on: everything but accuracy, budget and coding.
-[[nodiscard]] std::string column_fingerprint(Scene scene, const std::string& mesh);
+/// Of what the exact columns of a scene over the text of its mesh follow from: see body_text.
+[[nodiscard]] std::string column_fingerprint(const Scene& scene, const std::string& mesh);
 
 /// Domain nodes, each of which is a row and a column.
 [[nodiscard]] std::size_t domain_size(const BodyGeometry& body);

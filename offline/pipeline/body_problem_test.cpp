@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "offline/scene/fingerprint.hpp"
 
@@ -23,13 +25,31 @@ axis = "y"
 
 TEST_CASE("what the columns do not depend on does not change their fingerprint") {
   const std::string of_smallest = column_fingerprint(parse_scene(smallest, "s.toml"), "mesh");
-  for (const char* more : {"[accuracy]\nrms = 0.01\nfield = 0.02\nfield_peak = 0.5\n", "[budget]\ncontacts = 64\n",
-                           "[compression]\nwavelet = \"linear\"\n", "[store]\nfile = \"bear.h5\"\n"}) {
+  for (const char* more :
+       {"[accuracy]\nrms = 0.01\nfield = 0.02\nfield_peak = 0.5\n", "[budget]\ncontacts = 64\n",
+        "[constraints]\ncoarsest = 1\n", "[compression]\nwavelet = \"linear\"\n", "[store]\nfile = \"bear.h5\"\n"}) {
     CAPTURE(more);
     CHECK(column_fingerprint(parse_scene(smallest + more, "s.toml"), "mesh") == of_smallest);
   }
   CHECK(column_fingerprint(parse_scene(smallest + "[remesh]\nlevels = 2\n", "s.toml"), "mesh") != of_smallest);
   CHECK(column_fingerprint(parse_scene(smallest, "s.toml"), "another mesh") != of_smallest);
+}
+
+TEST_CASE("every part of the body's text is in the fingerprint of its columns") {
+  const std::string of_smallest = column_fingerprint(parse_scene(smallest, "s.toml"), "mesh");
+  for (const auto& [from, to] : {std::pair("bear.off", "bull.off"), std::pair("unit = \"cm\"", "size = \"30 cm\""),
+                                 std::pair("20 kPa", "21 kPa"), std::pair("poisson = 0.4", "poisson = 0.3"),
+                                 std::pair("below = 0.1", "below = 0.2")}) {
+    std::string other = smallest;
+    other.replace(other.find(from), std::string_view(from).size(), to);
+    CAPTURE(other);
+    CHECK(column_fingerprint(parse_scene(other, "s.toml"), "mesh") != of_smallest);
+  }
+  for (const char* more : {"[[touched]]\nabove = 0.5\naxis = \"y\"\n", "[[read]]\nabove = 0.5\naxis = \"y\"\n",
+                           "[[fixed]]\nabove = 0.9\naxis = \"y\"\n", "[remesh]\nbase_vertices = 50\n"}) {
+    CAPTURE(more);
+    CHECK(column_fingerprint(parse_scene(smallest + more, "s.toml"), "mesh") != of_smallest);
+  }
 }
 
 TEST_CASE("stores made before scenes had goals for fields keep their fingerprint") {

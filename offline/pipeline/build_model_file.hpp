@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -16,13 +17,19 @@ struct BuildRequest {
   bool force = false;            ///< build even if the model is up to date
 };
 
+/// What a build came to.
+struct BuildOutcome {
+  bool up_to_date = false;                 ///< nothing was built
+  std::size_t bytes = 0, dense_bytes = 0;  ///< of the model and of its dense matrix, if it was built
+  nlohmann::json record;                   ///< for people; `up_to_date` says there, too, that it is an older one
+};
+
 /// Where the record of a model's build stands: model.gloop -> model.build.json.
 [[nodiscard]] std::filesystem::path build_record_path(const std::filesystem::path& model);
 
 /// From a scene to a verified model file: surface, remesh, solve, compress, write. Columns already in the store are
-/// kept, a model that is up to date is left alone. Returns the build's record, which is also written to
-/// build_record_path. Throws SceneError or std::runtime_error saying what to mend; what was computed
-/// until then stays in the store.
-nlohmann::json build_model_file(const BuildRequest& asked, ProgressBar& progress);
+/// kept, a model that is up to date is left alone. The record is also written to build_record_path. Throws SceneError
+/// or std::runtime_error saying what to mend; what was computed until then stays in the store.
+BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress);
 
 }  // namespace greenloop::offline

@@ -12,7 +12,7 @@
 
 #include "formats/mesh/surface_io.hpp"
 #include "offline/pipeline/build_model_file.hpp"
-#include "offline/solve/testing/shapes.hpp"
+#include "offline/volume/testing/shapes.hpp"
 
 namespace greenloop::offline {
 namespace {

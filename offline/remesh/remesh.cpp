@@ -141,7 +141,7 @@ SemiRegularMesh attempt(const TriangleMesh& input, const Surface& surface, int b
 
 }  // namespace
 
-Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const RemeshProgress& progress) {
+Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress) {
   check(input, options);
   const auto report = [&](double fraction, std::string_view stage) {
     if (progress) progress(fraction, stage);

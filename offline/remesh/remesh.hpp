@@ -1,11 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <optional>
-#include <string_view>
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/mesh/triangle_mesh.hpp"
+#include "offline/progress.hpp"
 #include "offline/remesh/quality.hpp"
 
 namespace greenloop::offline {
@@ -29,20 +28,16 @@ struct Remeshed {
   RemeshQuality quality;
 };
 
-/// Gets the fraction done (0..1, not decreasing) and what is being done.
-using RemeshProgress = std::function<void(double fraction, std::string_view stage)>;
-
 /// Gives a closed, connected, manifold, outward oriented surface of any genus subdivision connectivity.
 /// If it has such connectivity already, its vertices are kept exactly, with as many levels as it has, options.levels at
 /// most (quality.levels says how many). Otherwise it is decimated to a base whose bijection with the input is kept
 /// (see decimate), the base is split at midpoints, and the vertices slide along the input until the triangles are
 /// even (see relax): every vertex lies on the input. An input with no more vertices than the base may have is itself
 /// the base, or its splits that are no larger, and is reproduced exactly. A base too small for the shape is grown step
-/// by step until accuracy and smallest angle hold and nothing is flipped or self-intersecting. The same input and
-/// options give the same bits. Needs memory and time linear in input plus result. Throws std::invalid_argument on
-/// impossible options or an input that is not closed and manifold, and std::runtime_error, naming what was reached and
-/// what to change, if no base of at most most_base_vertices will do.
-[[nodiscard]] Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options,
-                              const RemeshProgress& progress = {});
+/// by step until accuracy and smallest angle hold and nothing is flipped or self-intersecting; the fraction told to
+/// `progress` does not go back. The same input and options give the same bits. Needs memory and time linear in input
+/// plus result. Throws std::invalid_argument on impossible options or an input that is not closed and manifold, and
+/// std::runtime_error, naming what was reached and what to change, if no base of at most most_base_vertices will do.
+[[nodiscard]] Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress = {});
 
 }  // namespace greenloop::offline

@@ -10,7 +10,7 @@
 
 #include "formats/stored_blocks.hpp"
 #include "formats/write/describe.hpp"
-#include "offline/compress/field_size.hpp"
+#include "offline/compress/measure/field_size.hpp"
 #include "offline/report/axis.hpp"
 
 namespace greenloop::offline {

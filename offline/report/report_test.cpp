@@ -11,7 +11,7 @@
 
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/write/model_file.hpp"
-#include "offline/compress/field_size.hpp"
+#include "offline/compress/measure/field_size.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
 #include "offline/report/level_frontiers.hpp"

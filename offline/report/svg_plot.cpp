@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "offline/report/decimation.hpp"
+#include "offline/report/downsampling.hpp"
 #include "offline/report/theme.hpp"
 
 namespace greenloop::offline {
@@ -90,15 +90,15 @@ std::vector<Point> SvgPlot::placed(const std::vector<Point>& data) const {
 }
 
 void SvgPlot::curve(const std::vector<Point>& data, const Stroke& stroke) {
-  canvas_.polyline(placed(decimate(data, static_cast<int>(area_.width))), stroke);
+  canvas_.polyline(placed(downsample(data, static_cast<int>(area_.width))), stroke);
 }
 
 void SvgPlot::steps(const std::vector<Point>& data, const Stroke& stroke) {
-  canvas_.polyline(placed(staircase(decimate(data, static_cast<int>(area_.width)))), stroke);
+  canvas_.polyline(placed(staircase(downsample(data, static_cast<int>(area_.width)))), stroke);
 }
 
 void SvgPlot::area_below(const std::vector<Point>& data, const std::string& fill, double opacity) {
-  std::vector<Point> outline = placed(decimate(data, static_cast<int>(area_.width)));
+  std::vector<Point> outline = placed(downsample(data, static_cast<int>(area_.width)));
   if (outline.empty()) return;
   outline.push_back({outline.back().x, area_.bottom()});
   outline.push_back({outline.front().x, area_.bottom()});

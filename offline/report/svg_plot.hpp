@@ -40,11 +40,11 @@ class SvgPlot {
 
   [[nodiscard]] Point at(double x, double y) const { return {x_(x), y_(y)}; }
 
-  /// A line through data points (x, y), decimated to the pixels it covers.
+  /// A line through data points (x, y), downsampled to the pixels it covers.
   void curve(const std::vector<Point>& data, const Stroke& stroke);
-  /// A line that holds each y until the next x, decimated likewise.
+  /// A line that holds each y until the next x, downsampled likewise.
   void steps(const std::vector<Point>& data, const Stroke& stroke);
-  /// The area between the curve and the axis, decimated likewise.
+  /// The area between the curve and the axis, downsampled likewise.
   void area_below(const std::vector<Point>& data, const std::string& fill, double opacity);
   void dots(const std::vector<Point>& data, double radius, const std::string& fill, const Stroke& stroke = {"none"});
   /// Crosses, e.g. for failures; at most one per pixel column.

@@ -82,6 +82,10 @@ struct Scene {
 /// The same for a scene already in memory; `file` is for messages and for paths relative to it.
 [[nodiscard]] Scene parse_scene(std::string_view text, const std::filesystem::path& file);
 
+/// The beginning of canonical_text: mesh, levels, material and regions, all that exact columns follow from. A key that
+/// changes them belongs here; any other does not, and leaves stores valid.
+[[nodiscard]] std::string body_text(const Scene& scene);
+
 /// The scene as TOML: every key in SI with defaults filled in, always in the same order, numbers that read back as the
 /// same doubles. Scenes that mean the same have the same text; parsing it gives the same scene. For provenance, and
 /// through fingerprint() to tell whether a stored result belongs to this scene.

@@ -101,11 +101,13 @@ std::string budget_text(const StepBudget& budget) {
 
 }  // namespace
 
-std::string canonical_text(const Scene& scene) {
+std::string body_text(const Scene& scene) {
   return mesh_text(scene.mesh) + remesh_text(scene) + material_text(scene.material) +
-         regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) +
-         regions_text("read", scene.read) +
-         "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
+         regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) + regions_text("read", scene.read);
+}
+
+std::string canonical_text(const Scene& scene) {
+  return body_text(scene) + "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
          accuracy_text(scene.accuracy) + compression_text(scene.wavelet) + budget_text(scene.budget) +
          (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
 }

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "offline/solve/elasticity.hpp"
-#include "offline/solve/factorization.hpp"
+#include "offline/sources/fem/elasticity.hpp"
+#include "offline/sources/fem/factorization.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 
 #ifdef GREENLOOP_HAS_CHOLMOD

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <functional>
+
+namespace greenloop::offline {
+
+/// Reads exact columns [first, first + count) of the compliance, m/N: 3 rows per domain node and 3 columns per column.
+using ExactColumns = std::function<Eigen::MatrixXd(std::size_t first, std::size_t count)>;
+
+}  // namespace greenloop::offline

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/store/material.hpp"
+
+namespace greenloop::offline {
+
+/// Throws std::invalid_argument naming the value out of range.
+void require_valid(const Material& material);
+
+/// Stiffness of one linear tetrahedron, N/m; degree of freedom 3a + i is vertex a's displacement along axis i.
+/// `corners` holds the four vertices as columns, m, positively oriented.
+[[nodiscard]] Eigen::Matrix<double, 12, 12> element_stiffness(const Eigen::Matrix<double, 3, 4>& corners,
+                                                              const Material& material);
+
+/// Degrees of freedom 3v + i of the vertices that are not fixed, numbered in vertex order.
+struct FreeVertices {
+  std::vector<int> number;  ///< per vertex: its number among the free ones, or -1 when fixed
+  int count = 0;
+
+  /// `fixed` holds one byte per vertex, nonzero = fixed.
+  explicit FreeVertices(const std::vector<std::uint8_t>& fixed);
+};
+
+/// Stiffness matrix over the free vertices, N/m: lower triangle only, 3 count x 3 count, fixed vertices eliminated.
+/// Linear work, deterministic. Throws std::invalid_argument on a tetrahedron without positive volume.
+[[nodiscard]] Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const Material& material,
+                                                             const FreeVertices& free);
+
+}  // namespace greenloop::offline

@@ -1,0 +1,55 @@
+#include "offline/sources/fem/green_functions.hpp"
+
+#include <chrono>
+#include <stdexcept>
+#include <string>
+
+#include "offline/sources/fem/fem_source.hpp"
+#include "offline/sources/fem/rigid_motion.hpp"
+#include "offline/sources/reciprocity.hpp"
+#include "offline/volume/boundary_interpolation.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+constexpr double kMostAsymmetry = 1e-8;
+
+void require_solvable(const GreenStore& store) {
+  const auto& contents = store.contents();
+  if (contents.volume.vertices.empty()) {
+    throw std::runtime_error(store.path().string() +
+                             ": /volume: there is no volume to solve; only a store with tetrahedra can be completed");
+  }
+  require_no_rigid_motion(contents.volume, contents.volume_fixed);
+  require_independent(contents.interpolation, contents.column_node, contents.volume_fixed);
+}
+
+SolveReport solve_missing(GreenStore& store, const FillProgressCallback& progress) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  FemSource source(fem_problem(store.contents()));
+  SolveReport report{.unknowns = source.unknowns(),
+                     .factor_entries = source.factor_entries(),
+                     .factor_seconds = std::chrono::duration<double>(Clock::now() - start).count()};
+  const FillReport filled = fill_store(store, source, progress);
+  report.columns_solved = filled.columns;
+  report.solve_seconds = filled.seconds;
+  return report;
+}
+
+}  // namespace
+
+SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback& progress) {
+  require_solvable(store);
+  SolveReport report;
+  if (!store.missing_columns().empty()) report = solve_missing(store, progress);
+  report.largest_asymmetry = largest_asymmetry(store);
+  if (!(report.largest_asymmetry <= kMostAsymmetry)) {
+    throw std::runtime_error(store.path().string() + ": /green/displacement: reciprocity is violated by " +
+                             std::to_string(report.largest_asymmetry) +
+                             "; the tetrahedra are too badly shaped, remesh the surface");
+  }
+  return report;
+}
+
+}  // namespace greenloop::offline

@@ -1,0 +1,102 @@
+#include "offline/sources/fill_store.hpp"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/layout.hpp"
+#include "offline/volume/testing/shapes.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+struct TemporaryFile {
+  TemporaryFile() = default;
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() { std::filesystem::remove(path); }
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("greenloop-" + std::to_string(getpid()) + "-fill.h5");
+};
+
+/// A surface without a volume: columns at five of its nodes, rows at all.
+GreenStoreContents measured_body() {
+  GreenStoreContents contents;
+  contents.surface = testing::ellipsoid(0, {1, 1, 1});
+  const auto nodes = static_cast<int>(contents.surface.positions.size());
+  contents.area.assign(contents.surface.positions.size(), 1.0);
+  contents.flags.assign(contents.surface.positions.size(), layout::node_domain);
+  for (int node = 0; node < nodes; ++node) contents.row_node.push_back(node);
+  contents.column_node = {2, 3, 5, 7, 11};
+  contents.young = 1e5;
+  contents.poisson = 0.4;
+  return contents;
+}
+
+/// Its columns are full of their numbers.
+class NumberedColumns final : public ColumnSource {
+ public:
+  explicit NumberedColumns(const GreenStoreContents& contents)
+      : row_set{.surface_nodes = contents.row_node}, nodes(contents.column_node) {}
+
+  [[nodiscard]] int components() const override { return component_count; }
+  [[nodiscard]] std::string_view unit() const override { return unit_name; }
+  [[nodiscard]] const RowSet& rows() const override { return row_set; }
+  [[nodiscard]] std::span<const int> column_nodes() const override { return nodes; }
+  [[nodiscard]] std::size_t columns_at_once() const override { return 2; }
+  [[nodiscard]] Eigen::MatrixXd read(std::span<const int> columns) override {
+    asked.emplace_back(columns.begin(), columns.end());
+    Eigen::MatrixXd block(3 * row_set.size(), 3 * columns.size());
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      block.middleCols<3>(static_cast<Eigen::Index>(3 * k)).setConstant(1.0 + columns[k]);
+    }
+    return block;
+  }
+
+  int component_count = 3;
+  std::string_view unit_name = "m/N";
+  RowSet row_set;
+  std::vector<int> nodes;
+  std::vector<std::vector<int>> asked;
+};
+
+TEST_CASE("a store is filled with the columns it lacks, in blocks of neighbours") {
+  const TemporaryFile file;
+  const auto contents = measured_body();
+  auto store = GreenStore::create(file.path, contents);
+  store.write_columns(1, Eigen::MatrixXd::Constant(36, 3, -1.0));
+  NumberedColumns source(contents);
+  std::vector<double> fractions;
+  const auto report = fill_store(store, source, [&](const FillProgress& at) { fractions.push_back(at.fraction); });
+  CHECK(report.columns == 4);
+  CHECK(source.asked == std::vector<std::vector<int>>{{0}, {2, 3}, {4}});
+  CHECK(fractions == std::vector<double>{0.4, 0.8, 1.0});
+  const Eigen::MatrixXd columns = store.read_columns(0, 5);
+  for (int c = 0; c < 5; ++c) CHECK(columns.middleCols<3>(3 * c).isConstant(c == 1 ? -1.0 : 1.0 + c));
+  CHECK(fill_store(store, source).columns == 0);
+}
+
+TEST_CASE("a source of other blocks, units, rows or columns than the store's is refused") {
+  const TemporaryFile file;
+  const auto contents = measured_body();
+  auto store = GreenStore::create(file.path, contents);
+  const auto refuses = [&](const char* why, auto change) {
+    NumberedColumns source(contents);
+    change(source);
+    CHECK_THROWS_WITH_AS(fill_store(store, source), doctest::Contains(why), std::runtime_error);
+    CHECK(source.asked.empty());
+  };
+  refuses("1 components", [](NumberedColumns& source) { source.component_count = 1; });
+  refuses("in K/W", [](NumberedColumns& source) { source.unit_name = "K/W"; });
+  refuses("7 rows inside the body", [](NumberedColumns& source) { source.row_set.interior = 7; });
+  refuses("row_node", [](NumberedColumns& source) { source.row_set.surface_nodes.pop_back(); });
+  refuses("column_node", [](NumberedColumns& source) { source.nodes.back() = 9; });
+}
+
+}  // namespace
+}  // namespace greenloop::offline
