@@ -20,7 +20,7 @@ ControlLoop::ControlLoop(const Elastostatic& body, const BodySurface& surface, c
       force_(std::size_t{3} * setup.max_contacts),
       field_(surface.position.size()) {}
 
-void ControlLoop::cycle(const messages::device_state& state) noexcept {
+void ControlLoop::cycle(const DeviceState& state) noexcept {
   if (!read(state)) {
     field_is_new_ = false;
     report_.status = Status::held_not_finite;
@@ -35,15 +35,15 @@ void ControlLoop::cycle(const messages::device_state& state) noexcept {
 }
 
 /// False, with the probes as they were, if a place is not finite.
-bool ControlLoop::read(const messages::device_state& state) noexcept {
+bool ControlLoop::read(const DeviceState& state) noexcept {
   cycle_ = state.cycle;
   const double scale = norm({state.origin[0], state.origin[1], state.origin[2]}) + std::abs(state.resolution);
   if (!(scale < largest_place)) return false;
-  probe_count_ = static_cast<std::size_t>(std::clamp<std::int32_t>(state.probe_count, 0, state.max_probes));
+  probe_count_ = std::min(state.num_tools, max_tools);
   const Vec3 origin{state.origin[0], state.origin[1], state.origin[2]};
   for (std::size_t p = 0; p < probe_count_; ++p) {
-    probe_[p].centre = origin + encoder_value(state.position[p], state.resolution);
-    const std::int16_t(&axis)[3] = state.axis[p];
+    probe_[p].centre = origin + encoder_value(state.tools[p].position, state.resolution);
+    const std::int16_t(&axis)[3] = state.tools[p].axis;
     probe_[p].axis = unit({static_cast<double>(axis[0]), static_cast<double>(axis[1]), static_cast<double>(axis[2])});
   }
   return true;
@@ -79,7 +79,7 @@ void ControlLoop::sum_hand_force() noexcept {
   }
 }
 
-void ControlLoop::answer(messages::loop_command& command) noexcept {
+void ControlLoop::answer(LoopCommand& command) noexcept {
   digest_.add(std::as_bytes(force()));
   if (field_is_new_) digest_.add(std::as_bytes(field()));
   command.cycle = cycle_;
@@ -89,16 +89,17 @@ void ControlLoop::answer(messages::loop_command& command) noexcept {
   command.field_level = static_cast<std::int32_t>(report_.field_level);
   command.status = static_cast<std::int32_t>(report_.status);
   command.digest = static_cast<std::int64_t>(digest_.value());
-  for (std::size_t p = 0; p < probe_.size(); ++p) {
+  command.num_tools = static_cast<std::uint32_t>(probe_count_);
+  for (std::size_t p = 0; p < probe_count_; ++p) {
     const Vec3& force_on_hand = hand_force_[p];
-    command.hand_force[p][0] = force_on_hand.x;
-    command.hand_force[p][1] = force_on_hand.y;
-    command.hand_force[p][2] = force_on_hand.z;
+    command.tool_force[p][0] = force_on_hand.x;
+    command.tool_force[p][1] = force_on_hand.y;
+    command.tool_force[p][2] = force_on_hand.z;
   }
-  command.contact_count = static_cast<std::int32_t>(contacts_.size());
+  command.num_contacts = static_cast<std::uint32_t>(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    command.contact_node[i] = static_cast<std::int32_t>(contacts_[i].node);
-    std::copy_n(&force_[3 * i], 3, command.contact_force[i]);
+    command.contacts[i].node = contacts_[i].node;
+    std::copy_n(&force_[3 * i], 3, command.contacts[i].force);
   }
 }
 

@@ -5,17 +5,17 @@
 #include <span>
 #include <vector>
 
-#include "greenloop/messages/device_state.hpp"
-#include "greenloop/messages/loop_command.hpp"
 #include "runtime/elastostatic.hpp"
 #include "sim_hw/control_loop/fnv1a.hpp"
 #include "sim_hw/control_loop/probe_contacts.hpp"
+#include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/loop_command.hpp"
 
 namespace greenloop {
 
 struct LoopSetup {
   double probe_radius = 0;          ///< m
-  std::uint32_t max_contacts = 64;  ///< as in the body's Limits, at most loop_command::max_contacts
+  std::uint32_t max_contacts = 64;  ///< as in the body's Limits, at most LoopCommand::max_contacts
   Budget budget;                    ///< of every cycle
   std::int64_t field_every = 1;     ///< the displacement of the whole body in every so-manieth cycle
   std::int64_t overrun_cycle = -1;  ///< negative control: this cycle spends more than its budget; -1: none does
@@ -30,10 +30,10 @@ class ControlLoop {
 
   /// Finds the contacts, steps the body, sums the force on every probe. A state that is not finite is refused like a
   /// contact that is not: held_not_finite, and the last good force stays.
-  void cycle(const messages::device_state& state) noexcept;
+  void cycle(const DeviceState& state) noexcept;
 
   /// Writes the answer to the last cycle and adds its response to the digest.
-  void answer(messages::loop_command& command) noexcept;
+  void answer(LoopCommand& command) noexcept;
 
   [[nodiscard]] const Elastostatic::StepReport& report() const noexcept { return report_; }
   [[nodiscard]] std::span<const Probe> probes() const noexcept { return {probe_.data(), probe_count_}; }
@@ -53,7 +53,7 @@ class ControlLoop {
     return static_cast<const float*>(static_cast<const void*>(field_.data()));
   }
   [[nodiscard]] float* field_data() noexcept { return static_cast<float*>(static_cast<void*>(field_.data())); }
-  [[nodiscard]] bool read(const messages::device_state& state) noexcept;
+  [[nodiscard]] bool read(const DeviceState& state) noexcept;
   void step(std::int64_t cycle) noexcept;
   void overrun(const Elastostatic::Response& response) noexcept;
   void sum_hand_force() noexcept;
@@ -62,8 +62,8 @@ class ControlLoop {
   Elastostatic body_;
   LoopSetup setup_;
   ProbeContacts probe_contacts_;
-  std::array<Probe, messages::device_state::max_probes> probe_{};
-  std::array<Vec3, messages::device_state::max_probes> hand_force_{};
+  std::array<Probe, max_tools> probe_{};
+  std::array<Vec3, max_tools> hand_force_{};
   std::size_t probe_count_ = 0;
   std::int64_t cycle_ = 0;
   std::span<const Constraint> contacts_;

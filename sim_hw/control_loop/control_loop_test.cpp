@@ -56,42 +56,42 @@ struct Bench {
 };
 
 /// A probe from above, `depth` m into the top of the sphere.
-messages::device_state pressed(std::int64_t cycle, double depth) {
-  messages::device_state state{};
+DeviceState pressed(std::int64_t cycle, double depth) {
+  DeviceState state{};
   state.cycle = cycle;
   state.resolution = 1e-6;
-  state.probe_count = 1;
-  state.position[0][2] = encoder_counts(sphere_radius + probe_radius - depth, state.resolution);
-  state.axis[0][2] = -messages::device_state::axis_unit;
+  state.num_tools = 1;
+  state.tools[0].position[2] = encoder_counts(sphere_radius + probe_radius - depth, state.resolution);
+  state.tools[0].axis[2] = -ToolState::axis_unit;
   return state;
 }
 
 TEST_CASE("without touching there is no force, and the answer belongs to its cycle") {
   Bench bench;
-  messages::loop_command command{};
+  LoopCommand command{};
   bench.loop->cycle(pressed(41, -0.01));
   bench.loop->answer(command);
   CHECK(command.cycle == 41);
-  CHECK(command.contact_count == 0);
-  CHECK(command.hand_force[0][2] == 0);
+  CHECK(command.num_contacts == 0);
+  CHECK(command.tool_force[0][2] == 0);
   CHECK(command.budget == 1000000);
 }
 
 TEST_CASE("the hand is pushed back out with what holds the contacts") {
   Bench bench;
-  messages::loop_command command{};
+  LoopCommand command{};
   for (std::int64_t k = 0; k < 10; ++k) {
     bench.loop->cycle(pressed(k, 0.005));
     bench.loop->answer(command);
   }
-  REQUIRE(command.contact_count > 0);
-  CHECK(command.hand_force[0][2] > 0);
+  REQUIRE(command.num_contacts > 0);
+  CHECK(command.tool_force[0][2] > 0);
   double sum = 0;
-  for (std::int32_t i = 0; i < command.contact_count; ++i) {
-    CHECK(command.contact_force[i][2] <= 0);  // none is pulled once the set has settled
-    sum += static_cast<double>(command.contact_force[i][2]);
+  for (std::uint32_t i = 0; i < command.num_contacts; ++i) {
+    CHECK(command.contacts[i].force[2] <= 0);  // none is pulled once the set has settled
+    sum += static_cast<double>(command.contacts[i].force[2]);
   }
-  CHECK(command.hand_force[0][2] == doctest::Approx(-sum));
+  CHECK(command.tool_force[0][2] == doctest::Approx(-sum));
 }
 
 TEST_CASE("the contacts lie on the probe in the deformed field, and no touchable node lies inside it") {
@@ -114,17 +114,17 @@ TEST_CASE("the contacts lie on the probe in the deformed field, and no touchable
 TEST_CASE("a state that is not finite is refused, and the hands keep the last good force") {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Bench bench;
-  messages::loop_command good{}, refused{};
+  LoopCommand good{}, refused{};
   bench.loop->cycle(pressed(0, 0.005));
   bench.loop->answer(good);
-  REQUIRE(good.hand_force[0][2] > 0);
+  REQUIRE(good.tool_force[0][2] > 0);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), infinity, -infinity, 1e300}) {
-    messages::device_state state = pressed(1, 0.005);
+    DeviceState state = pressed(1, 0.005);
     state.resolution = bad;
     bench.loop->cycle(state);
     bench.loop->answer(refused);
     CHECK(static_cast<Status>(refused.status) == Status::held_not_finite);
-    CHECK(refused.hand_force[0][2] == good.hand_force[0][2]);
+    CHECK(refused.tool_force[0][2] == good.tool_force[0][2]);
     state = pressed(1, 0.005);
     state.origin[1] = bad;
     bench.loop->cycle(state);
@@ -174,10 +174,10 @@ TEST_CASE("contacts, step, answer and hand-over use no heap, no lock and no syst
   const bool watched = system_call_guard::install();
   if (!watched) MESSAGE("the kernel offers no Syscall User Dispatch: system calls are not counted");
   Bench bench;
-  Newest<messages::device_state> states;
-  Newest<messages::loop_command> commands;
-  messages::device_state state{};
-  messages::loop_command command{};
+  Newest<DeviceState> states;
+  Newest<LoopCommand> commands;
+  DeviceState state{};
+  LoopCommand command{};
   Counts total{0, 0, 0};
   for (std::int64_t k = 0; k < 200; ++k) {
     const Counts cycle = counted([&] {
@@ -191,7 +191,7 @@ TEST_CASE("contacts, step, answer and hand-over use no heap, no lock and no syst
     total.locks += cycle.locks;
     total.system_calls += cycle.system_calls;
   }
-  CHECK(command.contact_count > 0);
+  CHECK(command.num_contacts > 0);
   CHECK(total.allocations == 0);
   CHECK(total.locks == 0);
   CHECK(total.system_calls == 0);

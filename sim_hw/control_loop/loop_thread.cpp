@@ -23,7 +23,7 @@ LoopThread::~LoopThread() {
   thread_.join();
 }
 
-const messages::loop_command& LoopThread::answer(const messages::device_state& state) {
+const LoopCommand& LoopThread::answer(const DeviceState& state) {
   states_.put(state);
   state_waits_.release();
   command_waits_.acquire();

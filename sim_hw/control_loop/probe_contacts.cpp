@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "greenloop/messages/device_state.hpp"
+#include "sim_hw/messages/device_state.hpp"
 
 namespace greenloop {
 namespace {
@@ -23,7 +23,7 @@ ProbeContacts::ProbeContacts(const BodySurface& surface, double radius, std::uin
       radius_(radius),
       grid_(surface.position, touchable_nodes(surface), radius),
       pushed_by_(surface.position.size(), nobody),
-      candidate_(touchable_nodes(surface).size() * messages::device_state::max_probes),
+      candidate_(touchable_nodes(surface).size() * max_tools),
       contact_(max_contacts),
       holder_(max_contacts) {}
 

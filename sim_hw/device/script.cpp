@@ -108,6 +108,19 @@ void grasp(Track& first, Track& second, const std::array<TouchPlace, 2>& places)
   }
 }
 
+/// Probes beyond the two of the scripts, each with a place of its own where there are as many.
+void press_beside(std::vector<Track>& tracks, const BodySurface& surface, const ProbeSize& probe, std::size_t probes) {
+  constexpr int times = 3;
+  if (probes <= 2) return;
+  const std::vector<TouchPlace> places = touch_places(surface, probe.radius, probes);
+  for (std::size_t i = 2; i < probes; ++i) {
+    const TouchPlace& place = places[i % places.size()];
+    Track& track = tracks.emplace_back(surface, probe);
+    track.begin_above(place);
+    press(track, std::vector<TouchPlace>(times, place));
+  }
+}
+
 std::vector<MotionScript> finish(std::vector<Track> tracks, double seconds) {
   std::vector<MotionScript> scripts;
   for (Track& track : tracks) {
@@ -124,25 +137,27 @@ ProbeSize probe_size(const BodySurface& surface) {
   return {radius, 0.75 * radius};
 }
 
-std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe,
-                                      double seconds) {
+std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe, double seconds,
+                                      std::size_t probes) {
   const std::vector<TouchPlace> places = touch_places(surface, probe.radius, 3);
-  const bool wants_grasp = script == Script::grasp || script == Script::all;
+  const bool wants_grasp = probes > 1 && (script == Script::grasp || script == Script::all);
   const auto pair = wants_grasp ? opposing_places(surface, probe.radius) : std::nullopt;
   if (script == Script::grasp && !pair) {
-    throw std::runtime_error("--script grasp: the model has no two places that two probes could hold; use press");
+    throw std::runtime_error(
+        "--script grasp: there are no two probes, or no two places that they could hold; use press");
   }
-  Track first(surface, probe);
-  first.begin_above(places.front());
-  if (script == Script::press || script == Script::all) press(first, places);
+  std::vector<Track> tracks(1, Track(surface, probe));
+  tracks[0].begin_above(places.front());
+  if (script == Script::press || script == Script::all) press(tracks[0], places);
   if (script == Script::slide || script == Script::all) {
-    slide(first, sliding_row(surface, probe.radius, 0.15 * surface.diagonal, places));
+    slide(tracks[0], sliding_row(surface, probe.radius, 0.15 * surface.diagonal, places));
   }
-  if (!pair) return finish({std::move(first)}, seconds);
-  Track second(surface, probe);
-  second.begin_above((*pair)[1]);
-  grasp(first, second, *pair);
-  return finish({std::move(first), std::move(second)}, seconds);
+  if (pair) {
+    tracks.emplace_back(surface, probe).begin_above((*pair)[1]);
+    grasp(tracks[0], tracks[1], *pair);
+  }
+  press_beside(tracks, surface, probe, probes);
+  return finish(std::move(tracks), seconds);
 }
 
 }  // namespace greenloop
