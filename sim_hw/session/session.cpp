@@ -68,17 +68,22 @@ void choose_transport(const SessionOptions& options, SessionResult& result) {
   }
 }
 
+/// Answers through `channel` what `loop` says, and notes the digest of what was said last.
+LoopEnd loop_end(Channel& channel, LoopThread& loop, SessionResult& result) {
+  const auto answer = [&loop](const DeviceState& state) -> const LoopCommand& { return loop.answer(state); };
+  const auto send = [&channel, &result](const LoopCommand& command) {
+    result.loop_digest = command.digest;
+    channel.send(command);
+  };
+  return {answer, send};
+}
+
 /// Both ends in one process, each driven by the messages of the other.
 void run_in_memory(HapticDevice& device, LoopThread& loop, SessionResult& result) {
   Channel channel(Channel::memory);
   DeviceEnd device_end(device, [&](const DeviceState& state) { channel.send(state); });
-  LoopEnd loop_end(
-      [&](const DeviceState& state) -> const auto& { return loop.answer(state); },
-      [&](const LoopCommand& command) {
-        result.loop_digest = command.digest;
-        channel.send(command);
-      });
-  channel.on_state([&](const DeviceState& state) { loop_end.receive(state); });
+  LoopEnd end = loop_end(channel, loop, result);
+  channel.on_state([&](const DeviceState& state) { end.receive(state); });
   channel.on_command([&](const LoopCommand& command) { device_end.receive(command); });
   device_end.start();
   while (!device.finished()) {
@@ -89,13 +94,8 @@ void run_in_memory(HapticDevice& device, LoopThread& loop, SessionResult& result
 /// The loop's end here, the device in a process of its own.
 void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& result) {
   Channel channel(Channel::multicast);
-  LoopEnd loop_end(
-      [&](const DeviceState& state) -> const auto& { return loop.answer(state); },
-      [&](const LoopCommand& command) {
-        result.loop_digest = command.digest;
-        channel.send(command);
-      });
-  channel.on_state([&](const DeviceState& state) { loop_end.receive(state); });
+  LoopEnd end = loop_end(channel, loop, result);
+  channel.on_state([&](const DeviceState& state) { end.receive(state); });
   device.start();
   while (!device.ended()) {
     while (channel.receive(20)) {
