@@ -40,7 +40,7 @@ bool ControlLoop::read(const DeviceState& state) noexcept {
   const double scale = norm({state.origin[0], state.origin[1], state.origin[2]}) + std::abs(state.resolution);
   if (!(scale < largest_place)) return false;
   probe_count_ = std::min(state.num_tools, max_tools);
-  const Vec3 origin{state.origin[0], state.origin[1], state.origin[2]};
+  const Double3 origin{state.origin[0], state.origin[1], state.origin[2]};
   for (std::size_t p = 0; p < probe_count_; ++p) {
     probe_[p].centre = origin + encoder_value(state.tools[p].position, state.resolution);
     const std::int16_t(&axis)[3] = state.tools[p].axis;
@@ -75,7 +75,7 @@ void ControlLoop::sum_hand_force() noexcept {
   hand_force_ = {};
   const auto holder = probe_contacts_.holder();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    hand_force_[holder[i]] += -Vec3{force_[3 * i], force_[3 * i + 1], force_[3 * i + 2]};
+    hand_force_[holder[i]] += -Double3{force_[3 * i], force_[3 * i + 1], force_[3 * i + 2]};
   }
 }
 
@@ -91,7 +91,7 @@ void ControlLoop::answer(LoopCommand& command) noexcept {
   command.digest = static_cast<std::int64_t>(digest_.value());
   command.num_tools = static_cast<std::uint32_t>(probe_count_);
   for (std::size_t p = 0; p < probe_count_; ++p) {
-    const Vec3& force_on_hand = hand_force_[p];
+    const Double3& force_on_hand = hand_force_[p];
     command.tool_force[p][0] = force_on_hand.x;
     command.tool_force[p][1] = force_on_hand.y;
     command.tool_force[p][2] = force_on_hand.z;

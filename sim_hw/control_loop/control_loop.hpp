@@ -37,7 +37,7 @@ class ControlLoop {
 
   [[nodiscard]] const Elastostatic::StepReport& report() const noexcept { return report_; }
   [[nodiscard]] std::span<const Probe> probes() const noexcept { return {probe_.data(), probe_count_}; }
-  [[nodiscard]] std::span<const Vec3> hand_force() const noexcept { return {hand_force_.data(), probe_count_}; }
+  [[nodiscard]] std::span<const Double3> hand_force() const noexcept { return {hand_force_.data(), probe_count_}; }
   [[nodiscard]] std::span<const Constraint> contacts() const noexcept { return contacts_; }
   /// [4 * node_count] m, as of the last cycle that asked for it.
   [[nodiscard]] std::span<const float> field() const noexcept { return {field_data(), 4 * field_.size()}; }
@@ -63,7 +63,7 @@ class ControlLoop {
   LoopSetup setup_;
   ProbeContacts probe_contacts_;
   std::array<Probe, max_tools> probe_{};
-  std::array<Vec3, max_tools> hand_force_{};
+  std::array<Double3, max_tools> hand_force_{};
   std::size_t probe_count_ = 0;
   std::int64_t cycle_ = 0;
   std::span<const Constraint> contacts_;

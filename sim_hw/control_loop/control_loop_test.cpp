@@ -97,10 +97,10 @@ TEST_CASE("the hand is pushed back out with what holds the contacts") {
 TEST_CASE("the contacts lie on the probe in the deformed field, and no touchable node lies inside it") {
   Bench bench;
   for (std::int64_t k = 0; k < 20; ++k) bench.loop->cycle(pressed(k, 0.005));
-  const Vec3 centre = bench.loop->probes()[0].centre;
+  const Double3 centre = bench.loop->probes()[0].centre;
   const auto distance = [&](std::uint32_t node) {
     const float* moved = &bench.loop->field()[std::size_t{4} * node];
-    return norm(bench.surface.position[node] + Vec3{moved[0], moved[1], moved[2]} - centre);
+    return norm(bench.surface.position[node] + Double3{moved[0], moved[1], moved[2]} - centre);
   };
   REQUIRE_FALSE(bench.loop->contacts().empty());
   for (const Constraint& contact : bench.loop->contacts()) {
@@ -139,7 +139,7 @@ TEST_CASE("a step that is refused counts as held") {
   bench.loop->cycle(pressed(0, 0.005));
   CHECK(bench.loop->report().status == Status::held_over_budget);
   CHECK(held(bench.loop->report().status));
-  CHECK(bench.loop->hand_force()[0] == Vec3{});
+  CHECK(bench.loop->hand_force()[0] == Double3{});
 }
 
 TEST_CASE("the overrun of the negative control spends more than the budget, in its cycle only") {

@@ -6,13 +6,13 @@ namespace greenloop {
 namespace {
 
 struct Box {
-  Vec3 low, high;
+  Double3 low, high;
 };
 
-Box bounding_box(const std::vector<Vec3>& position, const std::vector<std::uint32_t>& nodes) {
+Box bounding_box(const std::vector<Double3>& position, const std::vector<std::uint32_t>& nodes) {
   Box box{position[nodes.front()], position[nodes.front()]};
   for (const std::uint32_t node : nodes) {
-    const Vec3& p = position[node];
+    const Double3& p = position[node];
     box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
     box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
   }
@@ -21,9 +21,9 @@ Box bounding_box(const std::vector<Vec3>& position, const std::vector<std::uint3
 
 }  // namespace
 
-NodeGrid::NodeGrid(const std::vector<Vec3>& position, const std::vector<std::uint32_t>& nodes, double cell) {
+NodeGrid::NodeGrid(const std::vector<Double3>& position, const std::vector<std::uint32_t>& nodes, double cell) {
   const Box box = bounding_box(position, nodes);
-  const Vec3 size = box.high - box.low;
+  const Double3 size = box.high - box.low;
   const double width = std::max(cell, std::max({size.x, size.y, size.z}) / most_in_a_row);
   low_ = box.low;
   inverse_cell_ = 1 / width;

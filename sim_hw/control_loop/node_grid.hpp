@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim_hw/body/vec3.hpp"
+#include "runtime/algebra/double3.hpp"
 
 namespace greenloop {
 
@@ -14,14 +14,14 @@ class NodeGrid {
  public:
   /// `nodes` name the `position`s to sort in; cells are `cell` m wide (> 0), wider if there would be more than 64 in a
   /// row.
-  NodeGrid(const std::vector<Vec3>& position, const std::vector<std::uint32_t>& nodes, double cell);
+  NodeGrid(const std::vector<Double3>& position, const std::vector<std::uint32_t>& nodes, double cell);
 
   /// Calls visit(node) once for every node in the cells that the box `centre` +- `radius` meets, always in the same
   /// order. No heap. Work: those cells, at most all of them, and their nodes.
   template <typename Visit>
-  void near(const Vec3& centre, double radius, Visit visit) const noexcept {
-    const std::array<int, 3> low = cell_of(centre - Vec3{radius, radius, radius});
-    const std::array<int, 3> high = cell_of(centre + Vec3{radius, radius, radius});
+  void near(const Double3& centre, double radius, Visit visit) const noexcept {
+    const std::array<int, 3> low = cell_of(centre - Double3{radius, radius, radius});
+    const std::array<int, 3> high = cell_of(centre + Double3{radius, radius, radius});
     for (int z = low[2]; z <= high[2]; ++z) {
       for (int y = low[1]; y <= high[1]; ++y) {
         for (int x = low[0]; x <= high[0]; ++x) {
@@ -35,8 +35,8 @@ class NodeGrid {
  private:
   static constexpr int most_in_a_row = 64;
 
-  [[nodiscard]] std::array<int, 3> cell_of(const Vec3& point) const noexcept {
-    const Vec3 place = inverse_cell_ * (point - low_);
+  [[nodiscard]] std::array<int, 3> cell_of(const Double3& point) const noexcept {
+    const Double3 place = inverse_cell_ * (point - low_);
     return {clamped(place.x, 0), clamped(place.y, 1), clamped(place.z, 2)};
   }
   [[nodiscard]] int clamped(double place, int axis) const noexcept {
@@ -47,7 +47,7 @@ class NodeGrid {
     return static_cast<std::size_t>(number);
   }
 
-  Vec3 low_;
+  Double3 low_;
   double inverse_cell_ = 1;
   std::array<int, 3> count_{1, 1, 1};
   std::vector<std::uint32_t> begin_;  ///< [cells + 1]

@@ -38,12 +38,12 @@ std::span<const Constraint> ProbeContacts::find(std::span<const Probe> probes, s
 void ProbeContacts::gather(const Probe& probe, std::uint8_t number, std::span<const float> field) noexcept {
   const double touching = radius_ * (1 - margin);
   grid_.near(probe.centre, radius_, [&](std::uint32_t node) {
-    const Vec3 offset = surface_->position[node] - probe.centre;
+    const Double3 offset = surface_->position[node] - probe.centre;
     const double outside = dot(offset, offset) - radius_ * radius_;
     if (outside >= 0 || -dot(surface_->normal[node], probe.axis) < least_facing) return;
     if (pushed_by_[node] != number) {
       const float* moved = &field[std::size_t{4} * node];
-      const Vec3 now = offset + Vec3{moved[0], moved[1], moved[2]};
+      const Double3 now = offset + Double3{moved[0], moved[1], moved[2]};
       if (dot(now, now) >= touching * touching) return;
     }
     const double along = dot(offset, probe.axis);
@@ -70,7 +70,7 @@ void ProbeContacts::choose_deepest() noexcept {
 void ProbeContacts::place(std::span<const Probe> probes) noexcept {
   for (std::size_t i = 0; i < count_; ++i) {
     const Candidate& chosen = candidate_[i];
-    const Vec3 displacement = chosen.depth * probes[chosen.probe].axis;
+    const Double3 displacement = chosen.depth * probes[chosen.probe].axis;
     contact_[i] = {
         chosen.node,
         {static_cast<float>(displacement.x), static_cast<float>(displacement.y), static_cast<float>(displacement.z)}};
@@ -81,7 +81,7 @@ void ProbeContacts::place(std::span<const Probe> probes) noexcept {
 void ProbeContacts::settle(std::span<const Probe> probes, std::span<const float> force) noexcept {
   std::fill(pushed_by_.begin(), pushed_by_.end(), nobody);
   for (std::size_t i = 0; i < count_; ++i) {
-    const Vec3 holding{force[3 * i], force[3 * i + 1], force[3 * i + 2]};
+    const Double3 holding{force[3 * i], force[3 * i + 1], force[3 * i + 2]};
     const bool pushed = dot(holding, probes[holder_[i]].axis) >= 0;
     if (pushed) pushed_by_[contact_[i].node] = holder_[i];
   }

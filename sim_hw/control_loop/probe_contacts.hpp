@@ -4,17 +4,17 @@
 #include <span>
 #include <vector>
 
+#include "runtime/algebra/double3.hpp"
 #include "runtime/elastostatic.hpp"
 #include "sim_hw/body/body_surface.hpp"
-#include "sim_hw/body/vec3.hpp"
 #include "sim_hw/control_loop/node_grid.hpp"
 
 namespace greenloop {
 
 /// A sphere pushed into the body.
 struct Probe {
-  Vec3 centre;  ///< m
-  Vec3 axis;    ///< unit vector, where it pushes
+  Double3 centre;  ///< m
+  Double3 axis;    ///< unit vector, where it pushes
 };
 
 /// Which nodes the probes hold, and where: unilateral contact by an active set that takes one step per cycle.

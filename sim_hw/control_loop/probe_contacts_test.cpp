@@ -61,7 +61,7 @@ TEST_CASE("the nodes inside the sphere are held where it leaves them, along its 
     CHECK(contact.value[0] == 0);
     CHECK(contact.value[1] == 0);
     CHECK(contact.value[2] < 0);
-    const Vec3 held = bench.surface.position[contact.node] + Vec3{0, 0, contact.value[2]};
+    const Double3 held = bench.surface.position[contact.node] + Double3{0, 0, contact.value[2]};
     CHECK(norm(held - probe.centre) == doctest::Approx(radius).epsilon(1e-6));
   }
 }
@@ -95,7 +95,7 @@ TEST_CASE("a node inside two probes is held once, by the one that pushes it deep
   std::set<std::uint32_t> nodes;
   for (std::size_t i = 0; i < found.size(); ++i) {
     CHECK(nodes.insert(found[i].node).second);
-    const Vec3& place = bench.surface.position[found[i].node];
+    const Double3& place = bench.surface.position[found[i].node];
     if (std::abs(place.x) < 1e-12) CHECK(bench.contacts.holder()[i] == 1);
     if (place.x < -0.035) CHECK(bench.contacts.holder()[i] == 0);
   }
@@ -137,7 +137,7 @@ TEST_CASE("the grid finds what a search through all nodes finds") {
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
   };
-  std::vector<Vec3> position(500);
+  std::vector<Double3> position(500);
   std::vector<std::uint32_t> nodes;
   for (std::uint32_t i = 0; i < position.size(); ++i) {
     position[i] = {uniform(0, 1), uniform(0, 0.3), uniform(0, 0.01)};
@@ -145,7 +145,7 @@ TEST_CASE("the grid finds what a search through all nodes finds") {
   }
   const NodeGrid grid(position, nodes, 0.07);
   for (int trial = 0; trial < 500; ++trial) {
-    const Vec3 centre{uniform(-0.3, 1.3), uniform(-0.3, 0.6), uniform(-0.1, 0.1)};
+    const Double3 centre{uniform(-0.3, 1.3), uniform(-0.3, 0.6), uniform(-0.1, 0.1)};
     std::multiset<std::uint32_t> found;
     grid.near(centre, 0.1, [&](std::uint32_t node) {
       if (norm(position[node] - centre) < 0.1) found.insert(node);

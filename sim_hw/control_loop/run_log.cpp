@@ -46,9 +46,9 @@ std::string vector_names(const char* prefix, std::size_t count) {
   return names;
 }
 
-std::string vector_columns(std::span<const Vec3> vectors) {
+std::string vector_columns(std::span<const Double3> vectors) {
   std::string columns;
-  for (const Vec3& vector : vectors) columns += fmt::format("{},{},{},", vector.x, vector.y, vector.z);
+  for (const Double3& vector : vectors) columns += fmt::format("{},{},{},", vector.x, vector.y, vector.z);
   return columns;
 }
 

@@ -12,8 +12,8 @@ namespace greenloop {
 /// What one cycle of the loop did.
 struct CycleRecord {
   std::int64_t cycle = 0;
-  std::array<Vec3, max_tools> centre{};      ///< m, of the probes
-  std::array<Vec3, max_tools> hand_force{};  ///< N, on the probes
+  std::array<Double3, max_tools> centre{};      ///< m, of the probes
+  std::array<Double3, max_tools> hand_force{};  ///< N, on the probes
   std::uint32_t contacts = 0;
   Elastostatic::StepReport report;
   double cpu_us = 0;  ///< thread CPU time of the cycle
@@ -21,7 +21,7 @@ struct CycleRecord {
   /// N, sum of the magnitudes: two fingers of a grasp do not cancel.
   [[nodiscard]] double total_force() const {
     double sum = 0;
-    for (const Vec3& force : hand_force) sum += norm(force);
+    for (const Double3& force : hand_force) sum += norm(force);
     return sum;
   }
   [[nodiscard]] bool missed(const Budget& budget) const { return report.work > budget.work || held(report.status); }

@@ -38,7 +38,7 @@ void HapticDevice::apply(const LoopCommand& command) {
   if (!arrival_.late(cycle, command.work, command.budget)) {
     for (std::size_t p = 0; p < hands_.size(); ++p) {
       const double(&force)[3] = command.tool_force[p];
-      motor_force_[p] = setup_.coupling.force_scale * Vec3{force[0], force[1], force[2]};
+      motor_force_[p] = setup_.coupling.force_scale * Double3{force[0], force[1], force[2]};
     }
   }
   const double time = static_cast<double>(cycle) * setup_.period;
@@ -57,7 +57,7 @@ void HapticDevice::apply(const LoopCommand& command) {
 void HapticDevice::measure() {
   const double time = static_cast<double>(state_.cycle) * setup_.period;
   for (std::size_t p = 0; p < hands_.size(); ++p) {
-    const Vec3 position = hands_[p].position(), axis = setup_.motion[p].target(time).axis;
+    const Double3 position = hands_[p].position(), axis = setup_.motion[p].target(time).axis;
     const double coordinate[3] = {position.x, position.y, position.z}, direction[3] = {axis.x, axis.y, axis.z};
     for (int i = 0; i < 3; ++i) {
       state_.tools[p].position[i] = encoder_counts(coordinate[i], Coupling::resolution);
@@ -67,7 +67,7 @@ void HapticDevice::measure() {
   }
 }
 
-Vec3 HapticDevice::handle_target(std::size_t probe, double time) const {
+Double3 HapticDevice::handle_target(std::size_t probe, double time) const {
   return (1 / setup_.coupling.motion_scale) * (setup_.motion[probe].target(time).centre - setup_.origin);
 }
 

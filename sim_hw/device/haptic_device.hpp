@@ -41,7 +41,7 @@ struct DeviceSetup {
   std::vector<MotionScript> motion;  ///< of each tool, at most max_tools
   Coupling coupling;
   HandParameters hand;
-  Vec3 origin;              ///< m, middle of the workspace in the frame of the body
+  Double3 origin;           ///< m, middle of the workspace in the frame of the body
   double period = 1e-3;     ///< s
   std::int64_t cycles = 0;  ///< how many the run has
   InjectedFaults faults;
@@ -65,12 +65,12 @@ class HapticDevice {
 
  private:
   void measure();
-  [[nodiscard]] Vec3 handle_target(std::size_t probe, double time) const;
+  [[nodiscard]] Double3 handle_target(std::size_t probe, double time) const;
 
   DeviceSetup setup_;
   CommandArrival arrival_;
   std::vector<Hand> hands_;
-  std::vector<Vec3> motor_force_;  ///< N on the handle, held
+  std::vector<Double3> motor_force_;  ///< N on the handle, held
   DeviceState state_{};
   DeviceSummary summary_;
 };

@@ -13,7 +13,7 @@ namespace {
 /// A hand that wants to stay where it is.
 DeviceSetup still(std::int64_t cycles, const InjectedFaults& faults = {}) {
   DeviceSetup setup;
-  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Vec3{0, 0, 0}}, Vec3{0, 0, -1}}}, 1.0);
+  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Double3{0, 0, 0}}, Double3{0, 0, -1}}}, 1.0);
   setup.cycles = cycles;
   setup.faults = faults;
   return setup;

@@ -19,22 +19,22 @@ class Track {
       : centre_(surface.centre), shell_(0.5 * surface.diagonal + 2 * probe.radius), depth_(probe.depth) {}
 
   /// The point of the shell from where the place is reached along its outward direction.
-  [[nodiscard]] Vec3 above(const TouchPlace& place) const {
-    const Vec3 from = place.centre - centre_;
+  [[nodiscard]] Double3 above(const TouchPlace& place) const {
+    const Double3 from = place.centre - centre_;
     const double along = dot(from, place.outward);
     return place.centre + (std::sqrt(along * along + shell_ * shell_ - dot(from, from)) - along) * place.outward;
   }
 
   void begin_above(const TouchPlace& place) { start_ = at_ = above(place); }
 
-  void move(double duration, std::vector<Vec3> knots, const Vec3& axis) {
+  void move(double duration, std::vector<Double3> knots, const Double3& axis) {
     knots.insert(knots.begin(), at_);
     at_ = knots.back();
     elapsed_ += duration;
     segments_.push_back({duration, std::move(knots), axis});
   }
 
-  void wait(double duration) { move(duration, {}, segments_.empty() ? Vec3{0, 0, -1} : segments_.back().axis); }
+  void wait(double duration) { move(duration, {}, segments_.empty() ? Double3{0, 0, -1} : segments_.back().axis); }
 
   void press_in(const TouchPlace& place) {
     move(0.8, {place.centre + (0.5 * depth_) * place.outward}, -place.outward);
@@ -46,9 +46,9 @@ class Track {
     move(0.8, {above(place)}, -place.outward);
   }
 
-  [[nodiscard]] Vec3 pressed(const TouchPlace& place) const { return place.centre - depth_ * place.outward; }
+  [[nodiscard]] Double3 pressed(const TouchPlace& place) const { return place.centre - depth_ * place.outward; }
 
-  void travel(const Vec3& to, const Vec3& axis) { move(1.0, arc(unit(at_ - centre_), unit(to - centre_)), axis); }
+  void travel(const Double3& to, const Double3& axis) { move(1.0, arc(unit(at_ - centre_), unit(to - centre_)), axis); }
   void travel_home() { travel(start_, segments_.back().axis); }
 
   [[nodiscard]] double elapsed() const { return elapsed_; }
@@ -56,22 +56,22 @@ class Track {
 
  private:
   /// Round the body from direction `a` to `b`; between opposite ones with a bulge to the side.
-  [[nodiscard]] std::vector<Vec3> arc(const Vec3& a, const Vec3& b) const {
+  [[nodiscard]] std::vector<Double3> arc(const Double3& a, const Double3& b) const {
     constexpr int pieces = 16;
     const double bulge = dot(a, b) < -0.5 ? 1 : 0;
-    const Vec3 side = perpendicular(a);
-    std::vector<Vec3> knots;
+    const Double3 side = perpendicular(a);
+    std::vector<Double3> knots;
     for (int i = 1; i <= pieces; ++i) {
       const double s = static_cast<double>(i) / pieces;
-      const Vec3 direction = (1 - s) * a + s * b + (4 * s * (1 - s) * bulge) * side;
+      const Double3 direction = (1 - s) * a + s * b + (4 * s * (1 - s) * bulge) * side;
       knots.push_back(centre_ + shell_ * unit(direction));
     }
     return knots;
   }
 
-  Vec3 centre_;
+  Double3 centre_;
   double shell_, depth_;
-  Vec3 start_, at_;
+  Double3 start_, at_;
   double elapsed_ = 0;
   std::vector<MotionSegment> segments_;
 };
@@ -86,10 +86,10 @@ void press(Track& track, const std::vector<TouchPlace>& places) {
 }
 
 void slide(Track& track, const std::vector<TouchPlace>& row) {
-  std::vector<Vec3> there, back;
+  std::vector<Double3> there, back;
   for (const TouchPlace& place : row) there.push_back(track.pressed(place));
   std::copy(there.rbegin(), there.rend(), std::back_inserter(back));
-  const Vec3 axis = -row.front().outward;
+  const Double3 axis = -row.front().outward;
   track.travel(track.above(row.front()), axis);
   track.press_in(row.front());
   track.move(2.0, there, axis);

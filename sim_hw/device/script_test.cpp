@@ -22,9 +22,9 @@ BodySurface sphere(double touchable_above) {
 }
 
 /// How deep a sphere reaches beyond the nearest node, m; negative outside.
-double penetration(const BodySurface& surface, const ProbeSize& probe, const Vec3& centre) {
+double penetration(const BodySurface& surface, const ProbeSize& probe, const Double3& centre) {
   double nearest = norm(surface.position[0] - centre);
-  for (const Vec3& position : surface.position) nearest = std::min(nearest, norm(position - centre));
+  for (const Double3& position : surface.position) nearest = std::min(nearest, norm(position - centre));
   return probe.radius - nearest;
 }
 
