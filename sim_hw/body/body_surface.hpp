@@ -18,6 +18,9 @@ struct BodySurface {
   Double3 centre;                                       ///< m, of the bounding box
   double diagonal = 0;                                  ///< m, of the bounding box
   double spacing = 0;                                   ///< m, mean length of the triangles' edges
+
+  /// Those that are touchable, increasing.
+  [[nodiscard]] std::vector<std::uint32_t> touchable_nodes() const;
 };
 
 /// Rebuilds the surface by splitting the base triangles at the model's refinement nodes.

@@ -16,9 +16,14 @@ constexpr double largest_place = 1e12;  // m, and m per count: farther than any 
 ControlLoop::ControlLoop(const Elastostatic& body, const BodySurface& surface, const LoopSetup& setup)
     : body_(body),
       setup_(setup),
-      probe_contacts_(surface, setup.probe_radius, setup.max_contacts),
+      touchable_(surface.touchable_nodes()),
       force_(std::size_t{3} * setup.max_contacts),
-      field_(surface.position.size()) {}
+      field_(surface.position.size()) {
+  const SurfaceNodes nodes{surface.position, surface.normal, touchable_};
+  const SphereContacts::Limits limits{.radius = setup.probe_radius, .max_contacts = setup.max_contacts};
+  contact_memory_ = AlignedBytes(SphereContacts::required(nodes, limits));
+  sphere_contacts_ = SphereContacts::create(nodes, limits, {contact_memory_.data(), contact_memory_.size()}).contacts;
+}
 
 void ControlLoop::cycle(const DeviceState& state) noexcept {
   if (!read(state)) {
@@ -27,10 +32,10 @@ void ControlLoop::cycle(const DeviceState& state) noexcept {
     report_.work = 0;
     return;
   }
-  contacts_ = probe_contacts_.find(probes(), field());
+  contacts_ = sphere_contacts_.find(probes(), field());
   step(state.cycle);
   if (held(report_.status)) return;  // the hands feel the last good force
-  probe_contacts_.settle(probes(), force());
+  sphere_contacts_.settle(probes(), force());
   sum_hand_force();
 }
 
@@ -73,7 +78,7 @@ void ControlLoop::overrun(const Elastostatic::Response& response) noexcept {
 
 void ControlLoop::sum_hand_force() noexcept {
   hand_force_ = {};
-  const auto holder = probe_contacts_.holder();
+  const auto holder = sphere_contacts_.holder();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     hand_force_[holder[i]] += -Double3{force_[3 * i], force_[3 * i + 1], force_[3 * i + 2]};
   }

@@ -5,16 +5,18 @@
 #include <span>
 #include <vector>
 
+#include "formats/write/aligned_bytes.hpp"
+#include "runtime/contact/sphere_contacts.hpp"
 #include "runtime/elastostatic.hpp"
+#include "sim_hw/body/body_surface.hpp"
 #include "sim_hw/control_loop/fnv1a.hpp"
-#include "sim_hw/control_loop/probe_contacts.hpp"
 #include "sim_hw/messages/device_state.hpp"
 #include "sim_hw/messages/loop_command.hpp"
 
 namespace greenloop {
 
 struct LoopSetup {
-  double probe_radius = 0;          ///< m
+  double probe_radius = 0;          ///< m, > 0
   std::uint32_t max_contacts = 64;  ///< as in the body's Limits, at most LoopCommand::max_contacts
   Budget budget;                    ///< of every cycle
   std::int64_t field_every = 1;     ///< the displacement of the whole body in every so-manieth cycle
@@ -36,7 +38,7 @@ class ControlLoop {
   void answer(LoopCommand& command) noexcept;
 
   [[nodiscard]] const Elastostatic::StepReport& report() const noexcept { return report_; }
-  [[nodiscard]] std::span<const Probe> probes() const noexcept { return {probe_.data(), probe_count_}; }
+  [[nodiscard]] std::span<const SphereTool> probes() const noexcept { return {probe_.data(), probe_count_}; }
   [[nodiscard]] std::span<const Double3> hand_force() const noexcept { return {hand_force_.data(), probe_count_}; }
   [[nodiscard]] std::span<const Constraint> contacts() const noexcept { return contacts_; }
   /// [4 * node_count] m, as of the last cycle that asked for it.
@@ -61,8 +63,10 @@ class ControlLoop {
 
   Elastostatic body_;
   LoopSetup setup_;
-  ProbeContacts probe_contacts_;
-  std::array<Probe, max_tools> probe_{};
+  std::vector<std::uint32_t> touchable_;
+  AlignedBytes contact_memory_;
+  SphereContacts sphere_contacts_;
+  std::array<SphereTool, max_tools> probe_{};
   std::array<Double3, max_tools> hand_force_{};
   std::size_t probe_count_ = 0;
   std::int64_t cycle_ = 0;
