@@ -13,12 +13,8 @@ constexpr double largest_place = 1e12;  // m, and m per count: farther than any 
 
 }  // namespace
 
-ControlLoop::ControlLoop(const Elastostatic& body, const BodySurface& surface, const LoopSetup& setup)
-    : body_(body),
-      setup_(setup),
-      touchable_(surface.touchable_nodes()),
-      force_(std::size_t{3} * setup.max_contacts),
-      field_(surface.position.size()) {
+ControlLoop::ControlLoop(LoopBody& body, const BodySurface& surface, const LoopSetup& setup)
+    : body_(&body), setup_(setup), touchable_(surface.touchable_nodes()) {
   const SurfaceNodes nodes{surface.position, surface.normal, touchable_};
   const SphereContacts::Limits limits{.radius = setup.probe_radius, .max_contacts = setup.max_contacts};
   contact_memory_ = AlignedBytes(SphereContacts::required(nodes, limits));
@@ -34,8 +30,8 @@ void ControlLoop::cycle(const DeviceState& state) noexcept {
   }
   contacts_ = sphere_contacts_.find(probes(), field());
   step(state.cycle);
-  if (held(report_.status)) return;  // the hands feel the last good force
-  sphere_contacts_.settle(probes(), force());
+  if (!answered(report_.status)) return;  // the hands feel the last good force
+  sphere_contacts_.settle(probes(), body_->force());
   sum_hand_force();
 }
 
@@ -56,21 +52,19 @@ bool ControlLoop::read(const DeviceState& state) noexcept {
 
 void ControlLoop::step(std::int64_t cycle) noexcept {
   field_is_new_ = cycle % setup_.field_every == 0;
-  Elastostatic::Response response{.force = {force_.data(), 3 * contacts_.size()}, .displacement = {}};
-  if (field_is_new_) response.displacement = {field_data(), 4 * field_.size()};
   if (cycle == setup_.overrun_cycle) {
-    overrun(response);
+    overrun();
   } else {
-    report_ = body_.step(contacts_, setup_.budget, response);
+    report_ = body_->step(contacts_, setup_.budget.work, field_is_new_);
   }
 }
 
 /// Repeats the step without a limit until more than the budget is spent.
-void ControlLoop::overrun(const Elastostatic::Response& response) noexcept {
-  constexpr Budget unlimited{std::numeric_limits<std::uint64_t>::max()};
+void ControlLoop::overrun() noexcept {
+  constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t work = 0;
   do {
-    report_ = body_.step(contacts_, unlimited, response);
+    report_ = body_->step(contacts_, unlimited, field_is_new_);
     work += std::max<std::uint64_t>(report_.work, 1);
   } while (work <= setup_.budget.work);
   report_.work = work;
@@ -79,13 +73,15 @@ void ControlLoop::overrun(const Elastostatic::Response& response) noexcept {
 void ControlLoop::sum_hand_force() noexcept {
   hand_force_ = {};
   const auto holder = sphere_contacts_.holder();
+  const auto force = body_->force();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    hand_force_[holder[i]] += -Double3{force_[3 * i], force_[3 * i + 1], force_[3 * i + 2]};
+    hand_force_[holder[i]] += -Double3{force[3 * i], force[3 * i + 1], force[3 * i + 2]};
   }
 }
 
 void ControlLoop::answer(LoopCommand& command) noexcept {
-  digest_.add(std::as_bytes(force()));
+  const auto force = body_->force();
+  digest_.add(std::as_bytes(force));
   if (field_is_new_) digest_.add(std::as_bytes(field()));
   command.cycle = cycle_;
   command.work = static_cast<std::int64_t>(report_.work);
@@ -104,7 +100,7 @@ void ControlLoop::answer(LoopCommand& command) noexcept {
   command.num_contacts = static_cast<std::uint32_t>(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     command.contacts[i].node = contacts_[i].node;
-    std::copy_n(&force_[3 * i], 3, command.contacts[i].force);
+    std::copy_n(&force[3 * i], 3, command.contacts[i].force);
   }
 }
 

@@ -15,7 +15,7 @@ struct CycleRecord {
   std::array<Double3, max_tools> centre{};      ///< m, of the probes
   std::array<Double3, max_tools> hand_force{};  ///< N, on the probes
   std::uint32_t contacts = 0;
-  Elastostatic::StepReport report;
+  LoopReport report;
   double cpu_us = 0;  ///< thread CPU time of the cycle
 
   /// N, sum of the magnitudes: two fingers of a grasp do not cancel.
@@ -24,7 +24,9 @@ struct CycleRecord {
     for (const Double3& force : hand_force) sum += norm(force);
     return sum;
   }
-  [[nodiscard]] bool missed(const Budget& budget) const { return report.work > budget.work || held(report.status); }
+  [[nodiscard]] bool missed(const Budget& budget) const {
+    return report.work > budget.work || !answered(report.status);
+  }
 };
 
 /// Everything a run is judged and drawn by. All memory is taken at start-up.

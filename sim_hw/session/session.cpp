@@ -6,8 +6,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "runtime/elastostatic.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"
 #include "sim_hw/session/device_process.hpp"
+#include "sim_hw/session/hosted_loop_body.hpp"
 #include "sim_hw/session/loaded_model.hpp"
 #include "sim_hw/transport/channel.hpp"
 #include "sim_hw/transport/lock_step.hpp"
@@ -120,8 +122,8 @@ SessionResult run_session(const SessionOptions& options) {
   result.cycles_asked = std::llround(options.seconds * options.rate);
   result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count());
 
-  const LoadedBody body = create_body(model, limits);
-  ControlLoop loop(body.body, surface,
+  HostedLoopBody<Elastostatic> body(model, limits);
+  ControlLoop loop(body, surface,
                    {.probe_radius = probe_size(surface).radius,
                     .max_contacts = limits.max_contacts,
                     .budget = result.budget,
