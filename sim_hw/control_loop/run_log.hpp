@@ -52,6 +52,4 @@ class RunLog {
   double largest_force_ = -1;
 };
 
-[[nodiscard]] const char* name(Status status);
-
 }  // namespace greenloop
