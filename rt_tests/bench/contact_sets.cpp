@@ -4,6 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "runtime/testing/touchable_nodes.hpp"
+
 namespace greenloop::bench {
 namespace {
 
@@ -14,15 +16,9 @@ struct Point {
 
 std::vector<Point> touchable_points(const ModelView& model) {
   std::vector<Point> points;
-  for (std::uint32_t q = 0; q < model.levels; ++q) {
-    const LevelView& level = model.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      const auto& node = level.nodes[i];
-      if ((node.flags & layout::node_touchable) != 0) {
-        points.push_back({level.node_begin + i, {node.position[0], node.position[1], node.position[2]}});
-      }
-    }
-  }
+  visit_touchable(model, [&points](std::uint32_t node, const layout::NodeRecord& record) {
+    points.push_back({node, {record.position[0], record.position[1], record.position[2]}});
+  });
   return points;
 }
 
@@ -50,14 +46,6 @@ Constraint pressed(std::uint32_t node, std::uint64_t direction, float depth) {
 }
 
 }  // namespace
-
-std::vector<std::uint32_t> touchable_nodes(const ModelView& model) {
-  std::vector<std::uint32_t> nodes;
-  for (const Point& point : touchable_points(model)) {
-    nodes.push_back(point.node);
-  }
-  return nodes;
-}
 
 std::vector<std::vector<Constraint>> patch_contacts(const ModelView& model, std::size_t sets, std::size_t contacts,
                                                     std::uint64_t seed) {

@@ -15,7 +15,4 @@ namespace greenloop::bench {
 [[nodiscard]] std::vector<std::vector<Constraint>> patch_contacts(const ModelView& model, std::size_t sets,
                                                                   std::size_t contacts, std::uint64_t seed);
 
-/// File indices of the nodes that may be touched, increasing.
-[[nodiscard]] std::vector<std::uint32_t> touchable_nodes(const ModelView& model);
-
 }  // namespace greenloop::bench

@@ -9,9 +9,9 @@
 #include "rt_tests/bench/contact_sets.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/median.hpp"
-#include "rt_tests/bench/stepper.hpp"
-#include "rt_tests/bench/thread_time.hpp"
+#include "rt_tests/harness/time_of.hpp"
 #include "runtime/compliance/field.hpp"
+#include "runtime/testing/hosted.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/wavelet/domain.hpp"
 
@@ -22,6 +22,10 @@ constexpr std::uint64_t seed = 20030101;
 constexpr std::size_t columns_in_turn = 512;  ///< dense columns that take turns: more than a second-level cache holds
 constexpr std::size_t fewest_sets = 4, most_sets = 64;
 
+Elastostatic::Limits limits_of(std::size_t contacts, std::size_t factors) {
+  return {.max_contacts = static_cast<std::uint32_t>(contacts), .cached_factors = static_cast<std::uint32_t>(factors)};
+}
+
 bool is_read(const ModelView& view, std::uint32_t node) {
   return (node_record(view, node).flags & layout::node_read) != 0;
 }
@@ -31,13 +35,13 @@ struct ErrorSum {
   const ModelView& view;
   double error = 0, exact = 0, worst_force = 0, worst_total = 0;
 
-  void add(const Solution& truth, const std::vector<int>& row_node, Stepper& answer) {
+  void add(const Solution& truth, const std::vector<int>& row_node, const Hosted<Elastostatic>& answer) {
     for (std::size_t r = 0; r < row_node.size(); ++r) {
       if (!is_read(view, static_cast<std::uint32_t>(row_node[r]))) {
         continue;
       }
       const Eigen::Vector3d u = truth.displacement.segment<3>(3 * static_cast<Eigen::Index>(r));
-      const Eigen::Map<const Eigen::Vector3f> found(answer.displacement() + 4 * static_cast<std::size_t>(row_node[r]));
+      const Eigen::Map<const Eigen::Vector3f> found(answer.field().data() + 4 * static_cast<std::size_t>(row_node[r]));
       error += (found.cast<double>() - u).squaredNorm();
       exact += u.squaredNorm();
     }
@@ -104,7 +108,7 @@ struct Bench {
   const std::vector<int>& row_node;
   std::vector<Solution> truth;
   std::vector<std::vector<float>> forces;  ///< what the dense sum is given
-  Stepper& cached;
+  Hosted<Elastostatic>& cached;
 };
 
 // microseconds for each of the sets
@@ -119,9 +123,9 @@ void sum_dense(const Bench& bench, Eigen::VectorXf& field) {
   }
 }
 
-void step_sets(const std::vector<std::vector<Constraint>>& sets, Stepper& stepper) {
+void step_sets(const std::vector<std::vector<Constraint>>& sets, Hosted<Elastostatic>& body) {
   for (const auto& set : sets) {
-    stepper.step(set);
+    body.step(set);
   }
 }
 
@@ -168,7 +172,7 @@ void measure_same_set(Bench& bench, std::size_t rounds, FieldFigures& figures) {
 
 /// Lowers every set's budget to just below what its last answer took, until nothing coarser is left.
 void descend(Bench& bench, std::size_t rounds, FieldFigures& figures) {
-  std::vector<std::uint64_t> budget(bench.sets.size(), UINT64_MAX);
+  std::vector<std::uint64_t> budget(bench.sets.size(), any_budget);
   while (true) {
     Rung rung;
     ErrorSum errors{*bench.view};
@@ -212,19 +216,19 @@ FieldFigures measure_field(const Model& model, const GreenStore& store, std::siz
   figures.sets = sets.size();
   const ExactColumns columns(store, sets);
   // room for every set's factor on every level it may descend to
-  Stepper cached(model, figures.contacts, sets.size() * model.level_count());
+  Hosted<Elastostatic> cached(model, limits_of(figures.contacts, sets.size() * model.level_count()));
   Bench bench{&model.view(), sets, columns, store.contents().row_node, {}, {}, cached};
 
   ErrorSum errors{model.view()};
   std::vector<double> work;
   for (const auto& set : sets) {
-    if (cached.step(set).status > Status::coarser) {
+    if (!answered(cached.step(set).status)) {
       throw std::runtime_error("a set of " + std::to_string(set.size()) + " contacts was refused with status " +
                                std::to_string(static_cast<int>(cached.step(set).status)));
     }
     work.push_back(static_cast<double>(cached.step(set).work));
     bench.truth.push_back(columns.solve(set));
-    bench.forces.emplace_back(cached.force());
+    bench.forces.emplace_back(cached.force().begin(), cached.force().end());
     errors.add(bench.truth.back(), bench.row_node, cached);
   }
   figures.work = static_cast<std::uint64_t>(median(work));
@@ -236,7 +240,7 @@ FieldFigures measure_field(const Model& model, const GreenStore& store, std::siz
   measure_same_set(bench, rounds, figures);
   figures.backsolve_ratio = 1e6 * back_substitution_seconds / figures.step_us;
 
-  Stepper fresh(model, figures.contacts, 1);
+  Hosted<Elastostatic> fresh(model, limits_of(figures.contacts, 1));
   std::vector<double> time;
   for (std::size_t round = 0; round < std::max<std::size_t>(1, rounds / 10); ++round) {
     time.push_back(time_of_sets(bench, [&] { step_sets(sets, fresh); }));

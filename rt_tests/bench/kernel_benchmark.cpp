@@ -9,10 +9,10 @@
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/patch.hpp"
-#include "rt_tests/bench/stepper.hpp"
-#include "rt_tests/bench/thread_time.hpp"
+#include "rt_tests/harness/time_of.hpp"
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
+#include "runtime/testing/hosted.hpp"
 
 namespace greenloop::bench {
 namespace {
@@ -163,11 +163,11 @@ CapacitanceFigures measure_capacitance(const Model& model, std::size_t contacts,
 
 ForceFigures measure_forces(const Model& model, std::size_t contacts, std::size_t rounds) {
   const auto set = patch_contacts(model.view(), 1, contacts, seed).front();
-  Stepper stepper(model, set.size(), 2);
-  stepper.step_forces(set);
+  Hosted<Elastostatic> body(model, {.max_contacts = static_cast<std::uint32_t>(set.size()), .cached_factors = 2});
+  body.step(set, any_budget, false);
   std::vector<double> time;
   for (std::size_t round = 0; round < rounds; ++round) {
-    time.push_back(time_of(5 * at_once, [&] { stepper.step_forces(set); }));
+    time.push_back(time_of(5 * at_once, [&] { body.step(set, any_budget, false); }));
   }
   return {set.size(), median(time)};
 }

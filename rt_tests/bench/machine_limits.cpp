@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "rt_tests/bench/thread_time.hpp"
+#include "rt_tests/harness/time_of.hpp"
 
 namespace greenloop::bench {
 namespace {

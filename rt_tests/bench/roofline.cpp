@@ -5,7 +5,7 @@
 
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/patch.hpp"
-#include "rt_tests/bench/thread_time.hpp"
+#include "rt_tests/harness/time_of.hpp"
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/couplings.hpp"
 #include "runtime/compliance/field.hpp"

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "rt_tests/harness/elastostatic_driver.hpp"
 #include "rt_tests/instructions/counted.hpp"
 #include "rt_tests/stress/heaviest_step.hpp"
 #include "runtime/algebra/cholesky.hpp"
@@ -186,10 +187,9 @@ TEST_CASE("whole steps take the same instructions when repeated and whatever the
     CAPTURE(value);
     CHECK(step(value) == first);
   }
-  const Elastostatic::Limits limits{.max_contacts = 3, .cached_factors = 1};
-  const std::int64_t heaviest = instructions_of_heaviest_step(model.model(), limits);
+  const std::int64_t heaviest = instructions_of_heaviest_step<ElastostaticDriver>(model.model(), 3, 1);
   CHECK(heaviest > static_cast<std::int64_t>(first));
-  CHECK(instructions_of_heaviest_step(model.model(), limits) == heaviest);
+  CHECK(instructions_of_heaviest_step<ElastostaticDriver>(model.model(), 3, 1) == heaviest);
 }
 
 }  // namespace

@@ -8,42 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "formats/write/aligned_bytes.hpp"
 #include "rt_tests/instructions/counted.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
 namespace {
-
-// bodies one after the other in the same memory
-class Steps {
- public:
-  Steps(const TestModel& model, const Elastostatic::Limits& limits)
-      : model_(&model),
-        limits_(limits),
-        requirement_(Elastostatic::required(model.model(), limits)),
-        arena_(requirement_.bytes),
-        field_(std::size_t{16} * model.model().node_count()),
-        force_(std::size_t{3} * limits.max_contacts) {}
-
-  void renew() { body_ = Elastostatic::create(model_->model(), limits_, {arena_.data(), arena_.size()}).body; }
-
-  Elastostatic::StepReport step(const std::vector<Constraint>& contacts, std::uint64_t work, bool with_field) {
-    const std::span<float> field(reinterpret_cast<float*>(field_.data()), field_.size() / sizeof(float));
-    return body_.step(contacts, {work},
-                      {std::span(force_).first(3 * contacts.size()), with_field ? field : std::span<float>()});
-  }
-
-  [[nodiscard]] const Elastostatic::Requirement& requirement() const { return requirement_; }
-
- private:
-  const TestModel* model_;
-  Elastostatic::Limits limits_;
-  Elastostatic::Requirement requirement_;
-  AlignedBytes arena_, field_;
-  std::vector<float> force_;
-  Elastostatic body_;
-};
 
 std::vector<Constraint> contacts(const std::vector<std::uint32_t>& nodes, float value) {
   std::vector<Constraint> result(nodes.size());
@@ -68,20 +37,20 @@ struct Outcome {
   Elastostatic::StepReport report;
 };
 
-Outcome take(const Way& way, Steps& steps, std::initializer_list<float> values) {
+Outcome take(const Way& way, TestBody& body, std::initializer_list<float> values) {
   Outcome outcome;
   const auto prepare = [&] {
-    steps.renew();
+    body.renew();
     if (!way.before.empty()) {
-      steps.step(contacts(way.before, 1e-3F), any_budget, true);
+      body.step(contacts(way.before, 1e-3F), any_budget, true);
     }
   };
   const auto count = [&](float value) {
     const auto set = contacts(way.nodes, value);
-    return count_instructions(prepare, [&] { outcome.report = steps.step(set, way.budget, way.with_field); });
+    return count_instructions(prepare, [&] { outcome.report = body.step(set, way.budget, way.with_field); });
   };
   prepare();  // every library function has been called before
-  steps.step(contacts(way.nodes, *values.begin()), way.budget, way.with_field);
+  body.step(contacts(way.nodes, *values.begin()), way.budget, way.with_field);
   for (const float value : values) {
     outcome.instructions.push_back(count(value));
   }
@@ -89,9 +58,9 @@ Outcome take(const Way& way, Steps& steps, std::initializer_list<float> values) 
 }
 
 // the work of a step that is not limited, and the greatest budget below it that still is answered
-std::uint64_t budget_below(Steps& steps, const std::vector<std::uint32_t>& nodes) {
-  steps.renew();
-  return steps.step(contacts(nodes, 1e-3F), any_budget, true).work - 1;
+std::uint64_t budget_below(TestBody& body, const std::vector<std::uint32_t>& nodes) {
+  body.renew();
+  return body.step(contacts(nodes, 1e-3F), any_budget, true).work - 1;
 }
 
 // those of a patch, from `first` on
@@ -104,7 +73,7 @@ std::vector<std::uint32_t> nodes_of(const TestModel& model, std::size_t first, s
   return result;
 }
 
-std::vector<Way> ways(const TestModel& model, Steps& steps, std::size_t contacts) {
+std::vector<Way> ways(const TestModel& model, TestBody& body, std::size_t contacts) {
   const auto patch = nodes_of(model, 0, contacts), moved = nodes_of(model, 1, contacts);
   return {{"released", patch, {}, any_budget, true},
           {"cached", patch, patch, any_budget, true},
@@ -112,7 +81,7 @@ std::vector<Way> ways(const TestModel& model, Steps& steps, std::size_t contacts
           {"changed", patch, moved, any_budget, true},
           {"fresh", {}, patch, any_budget, true},
           {"fresh, forces only", {}, patch, any_budget, false},
-          {"coarser", {}, patch, budget_below(steps, patch), true}};
+          {"coarser", {}, patch, budget_below(body, patch), true}};
 }
 
 void check_way(const Way& way, const Elastostatic::StepReport& report, std::uint32_t finest) {
@@ -125,9 +94,9 @@ void check_way(const Way& way, const Elastostatic::StepReport& report, std::uint
   CHECK((name == "coarsest, field cut") == (report.field_level < finest));
 }
 
-void compare(const Way& way, const TestModel& model, Steps& steps) {
+void compare(const Way& way, const TestModel& model, TestBody& body) {
   CAPTURE(way.name);
-  const Outcome outcome = take(way, steps, {1e-3F, 0.0F, FLT_TRUE_MIN});
+  const Outcome outcome = take(way, body, {1e-3F, 0.0F, FLT_TRUE_MIN});
   check_way(way, outcome.report, model.model().level_count() - 1);
   CHECK(all_equal(outcome.instructions));
 }
@@ -144,9 +113,9 @@ TEST_CASE("on every way of the planner a step takes the same instructions whatev
       {{.levels = 3, .wavelet = layout::Wavelet::equilibrated}, 6}};
   for (const auto& [synthetic, contacts] : patches) {
     const TestModel model(synthetic);
-    Steps steps(model, {.max_contacts = contacts, .cached_factors = 2});
-    for (const Way& way : ways(model, steps, contacts)) {
-      compare(way, model, steps);
+    TestBody body(model, {.max_contacts = contacts, .cached_factors = 2});
+    for (const Way& way : ways(model, body, contacts)) {
+      compare(way, model, body);
     }
   }
 }
@@ -157,8 +126,8 @@ TEST_CASE("a step that cuts the field takes the same instructions whatever the d
   }
   // the field of one node is dear beside its forces
   const TestModel model({.levels = 3});
-  Steps steps(model, {.max_contacts = 1, .cached_factors = 1});
-  compare({"coarsest, field cut", {}, {model.touchable().back()}, steps.requirement().least_work, true}, model, steps);
+  TestBody body(model, {.max_contacts = 1, .cached_factors = 1});
+  compare({"coarsest, field cut", {}, {model.touchable().back()}, body.requirement().least_work, true}, model, body);
 }
 
 // the same structure with other numbers in the couplings and predictions
@@ -183,14 +152,14 @@ TEST_CASE("forces take the same instructions whatever the numbers in the model")
     std::vector<std::vector<std::uint64_t>> counts(3);
     for (const std::int16_t value : std::initializer_list<std::int16_t>{0, 1, -1}) {
       const TestModel model = with_numbers(synthetic, value);
-      Steps steps(model, {.max_contacts = contacts, .cached_factors = 2});
+      TestBody body(model, {.max_contacts = contacts, .cached_factors = 2});
       const auto patch = nodes_of(model, 0, contacts), moved = nodes_of(model, 1, contacts);
       const Way of_forces[] = {{"cached", patch, patch, any_budget, false},
                                {"changed", patch, moved, any_budget, false},
                                {"fresh", {}, patch, any_budget, false}};
       for (std::size_t i = 0; i < std::size(of_forces); ++i) {
         CAPTURE(of_forces[i].name);
-        const Outcome outcome = take(of_forces[i], steps, {1e-3F});
+        const Outcome outcome = take(of_forces[i], body, {1e-3F});
         check_way(of_forces[i], outcome.report, model.model().level_count() - 1);
         counts[i].push_back(outcome.instructions[0]);
       }

@@ -36,7 +36,7 @@ downwards() {  # downwards FOLDER ROOM...
   done
 }
 downwards formats layout layout.hpp view view.hpp stored_blocks.hpp verify.hpp verify write transport mesh store
-downwards runtime loop.hpp constraint.hpp model.hpp memory algebra wavelet compliance factor elastostatic.hpp elastostatic
+downwards runtime loop.hpp constraint.hpp model.hpp memory algebra contact wavelet compliance factor elastostatic.hpp elastostatic
 downwards offline surface remesh scene solve compress pipeline report figures cli
-downwards sim_hw guard body device transport control_loop session
+downwards sim_hw guard body messages device transport control_loop session
 exit $status

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 #include <pthread.h>
 #include <semaphore.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,10 +17,9 @@
 #include <shared_mutex>
 #include <vector>
 
+#include "rt_tests/harness/minor_faults.hpp"
 #include "runtime/testing/test_body.hpp"
-#include "sim_hw/guard/allocation_guard.hpp"
-#include "sim_hw/guard/mutex_guard.hpp"
-#include "sim_hw/guard/system_call_guard.hpp"
+#include "sim_hw/guard/guarded.hpp"
 
 namespace greenloop {
 namespace {
@@ -45,7 +43,6 @@ class Scripted {
         contacts.push_back({0xffffffff, {}});
       }
       sets_.push_back(contacts);
-      forces_.emplace_back(3 * contacts.size());
     }
   }
 
@@ -53,22 +50,14 @@ class Scripted {
     const std::size_t k = static_cast<std::size_t>(i) * 7 % sets_.size();
     const auto& need = body_.requirement();
     const std::uint64_t budget = i % 3 == 0 ? need.least_work : need.worst_work[3];
-    const auto field = i % 5 == 0 ? std::span<float>() : body_.field();
-    return body_.body().step(sets_[k], {budget}, {forces_[k], field});
+    return body_.step(sets_[k], budget, i % 5 != 0);
   }
 
  private:
   TestModel model_;
   TestBody body_;
   std::vector<std::vector<Constraint>> sets_;
-  std::vector<std::vector<float>> forces_;
 };
-
-long minor_faults() {
-  rusage usage{};
-  getrusage(RUSAGE_THREAD, &usage);
-  return usage.ru_minflt;
-}
 
 TEST_CASE("the allocation guard trips on malloc, new and free") {
   void* volatile memory = nullptr;
@@ -130,19 +119,13 @@ TEST_CASE("no allocation and no lock in the loop") {
   SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
   SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
   Scripted scripted(kind);
-  const std::uint64_t allocations = allocation_guard::count();
-  const std::uint64_t locks = mutex_guard::count();
+  GuardCounts seen;
   int refused = 0;
   for (int i = 0; i < cycles; ++i) {
-    allocation_guard::arm();
-    mutex_guard::arm();
-    const Elastostatic::StepReport report = scripted.cycle(i);
-    mutex_guard::disarm();
-    allocation_guard::disarm();
-    refused += !answered(report.status) ? 1 : 0;
+    seen += guarded([&] { refused += !answered(scripted.cycle(i).status) ? 1 : 0; });
   }
-  CHECK(allocation_guard::count() == allocations);
-  CHECK(mutex_guard::count() == locks);
+  CHECK(seen.allocations == 0);
+  CHECK(seen.locks == 0);
   CHECK(refused > 0);
   CHECK(refused < cycles / 2);
 }
@@ -152,7 +135,7 @@ TEST_CASE("no minor page fault in the loop once it is warm; a fresh page is seen
   for (int i = 0; i < 100; ++i) {
     scripted.cycle(i);
   }
-  const long before = minor_faults();
+  const std::uint64_t before = minor_faults();
   for (int i = 0; i < cycles; ++i) {
     scripted.cycle(i);
   }

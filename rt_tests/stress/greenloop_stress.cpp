@@ -10,11 +10,13 @@
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/pipeline/progress_bar.hpp"
+#include "rt_tests/harness/elastostatic_driver.hpp"
 #include "rt_tests/stress/heaviest_step.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 
 namespace {
 
+using greenloop::ElastostaticDriver;
 using greenloop::InjectedFault;
 using greenloop::ScriptKind;
 using greenloop::StressReport;
@@ -28,8 +30,8 @@ struct Arguments {
 
 std::map<std::string, ScriptKind> script_kinds() {
   std::map<std::string, ScriptKind> kinds;
-  for (std::size_t i = 0; i < greenloop::script_names.size(); ++i) {
-    kinds[greenloop::script_names[i]] = static_cast<ScriptKind>(i);
+  for (std::size_t i = 0; i < greenloop::contact_script_names.size(); ++i) {
+    kinds[greenloop::contact_script_names[i]] = static_cast<ScriptKind>(i);
   }
   return kinds;
 }
@@ -43,11 +45,9 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", options.seed, "of the scripts")->capture_default_str();
   app.add_option("--script", options.script, "this script alone; else all, each on a body of its own")
       ->transform(CLI::CheckedTransformer(script_kinds()));
-  app.add_option("--contacts", options.limits.max_contacts, "most contacts of a step; else what the model asks for")
+  app.add_option("--contacts", options.contacts, "most contacts of a step; else what the model asks for")
       ->check(CLI::Range(1, 4096));
-  app.add_option("--factors", options.limits.cached_factors, "cached factors")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  app.add_option("--factors", options.factors, "cached factors")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--histogram", options.histogram_bins, "bins of the histogram, one microsecond each")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
@@ -70,23 +70,24 @@ StressReport stress(const Arguments& arguments) {
     throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
   }
   StressReport report{.model = arguments.model, .options = arguments.options, .result = {}};
-  greenloop::Elastostatic::Limits& limits = report.options.limits;
-  if (limits.max_contacts == 0) {
-    limits.max_contacts = opened.model.view().info->max_contacts;
+  greenloop::StressOptions& options = report.options;
+  if (options.contacts == 0) {
+    options.contacts = opened.model.view().info->max_contacts;
   }
   greenloop::offline::ProgressBar bar(arguments.json);
   bar.begin("stress");
-  report.options.progress = [&](ScriptKind kind, std::uint64_t done) {
-    bar.update(static_cast<double>(done) / static_cast<double>(report.options.cycles), name(kind));
+  options.progress = [&](ScriptKind kind, std::uint64_t done) {
+    bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
   };
   const auto begin = std::chrono::steady_clock::now();
-  report.result = greenloop::run_stress(opened.model, report.options);
+  report.result = greenloop::run_stress<ElastostaticDriver>(opened.model, options);
   const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
   report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
   bar.end(fmt::format("{} cycles", report.result.cycles));
   if (arguments.count_instructions) {
     bar.begin("instructions");
-    report.instructions_max = greenloop::instructions_of_heaviest_step(opened.model, limits);
+    report.instructions_max =
+        greenloop::instructions_of_heaviest_step<ElastostaticDriver>(opened.model, options.contacts, options.factors);
     bar.end("of the heaviest step");
   }
   return report;
@@ -97,7 +98,7 @@ StressReport stress(const Arguments& arguments) {
 int main(int argc, char** argv) {
   CLI::App app("Random and adversarial contacts on a model; every step is checked against its declared work.");
   Arguments arguments;
-  arguments.options.limits.max_contacts = 0;
+  arguments.options.contacts = 0;
   declare(app, arguments);
   CLI11_PARSE(app, argc, argv);
   try {

@@ -2,21 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
+#include "sim_hw/control_loop/status_name.hpp"
+
 namespace greenloop {
 namespace {
 
 using nlohmann::json;
-
-constexpr std::array<const char*, 10> status_names = {"ok",
-                                                      "coarser",
-                                                      "held_not_finite",
-                                                      "held_out_of_range",
-                                                      "held_not_touchable",
-                                                      "held_duplicate",
-                                                      "held_response_size",
-                                                      "held_over_budget",
-                                                      "held_singular",
-                                                      "held_overflow"};
 
 struct NamedCount {
   const char* name;
@@ -35,13 +28,13 @@ std::array<NamedCount, 6> named(const Violations& violations) {
 json as_json(const ScriptResult& script) {
   return {{"name", name(script.kind)},
           {"cycles", script.cycles},
-          {"answered", script.answered},
-          {"coarser", script.coarser},
-          {"cached", script.cached},
-          {"changed", script.changed},
-          {"mixed_levels", script.mixed_levels},
-          {"refused", script.refused},
-          {"worst_work", script.worst_work},
+          {"answered", script.counts.answers()},
+          {"coarser", script.counts.of(Status::coarser)},
+          {"cached", script.counts.cached},
+          {"changed", script.counts.changed},
+          {"mixed_levels", script.counts.mixed},
+          {"refused", script.counts.refusals()},
+          {"worst_work", script.counts.worst_work},
           {"worst_us", script.worst_us},
           {"force_step_max", script.force_step_max},
           {"digest", script.digest}};
@@ -59,22 +52,22 @@ void print_scripts(const std::vector<ScriptResult>& scripts) {
              "coarser", "mixed", "cached", "changed", "refused", "worst work", "worst us", "force step");
   for (const ScriptResult& s : scripts) {
     fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9.0f} {:>10.2g}\n", name(s.kind), s.cycles,
-               s.answered, s.coarser, s.mixed_levels, s.cached, s.changed, s.refused, s.worst_work, s.worst_us,
-               s.force_step_max);
+               s.counts.answers(), s.counts.of(Status::coarser), s.counts.mixed, s.counts.cached, s.counts.changed,
+               s.counts.refusals(), s.counts.worst_work, s.worst_us, s.force_step_max);
   }
 }
 
 void print_counts(const StressResult& result) {
   fmt::print("steps by status:");
-  for (std::size_t i = 0; i < status_names.size(); ++i) {
-    if (result.by_status[i] > 0) {
-      fmt::print("  {} {}", status_names[i], result.by_status[i]);
+  for (std::size_t i = 0; i < statuses; ++i) {
+    if (result.counts.by_status[i] > 0) {
+      fmt::print("  {} {}", name(static_cast<Status>(i)), result.counts.by_status[i]);
     }
   }
   fmt::print("\nanswers by constraint level:");
   for (std::uint32_t c = 0; c < layout::max_levels; ++c) {
-    if (result.levels[c] > 0) {
-      fmt::print("  {}: {}", c, result.levels[c]);
+    if (result.counts.by_level[c] > 0) {
+      fmt::print("  {}: {}", c, result.counts.by_level[c]);
     }
   }
   fmt::print("\n");
@@ -116,16 +109,16 @@ std::string StressReport::replay() const {
   }
   return fmt::format("greenloop-stress {} --seed {} --script {} --cycles {} --contacts {} --factors {}", model,
                      options.seed, name(result.first_violation->script), result.first_violation->cycle + 1,
-                     options.limits.max_contacts, options.limits.cached_factors);
+                     options.contacts, options.factors);
 }
 
 nlohmann::json StressReport::json() const {
   nlohmann::json all = {{"model", model},
                         {"seed", options.seed},
-                        {"contacts", options.limits.max_contacts},
-                        {"factors", options.limits.cached_factors},
+                        {"contacts", options.contacts},
+                        {"factors", options.factors},
                         {"cycles", result.cycles},
-                        {"worst_work", result.worst_work},
+                        {"worst_work", result.counts.worst_work},
                         {"declared_work", result.declared_work},
                         {"instructions_max", nullptr},
                         {"force_step_max", result.force_step_max},
@@ -149,8 +142,8 @@ nlohmann::json StressReport::json() const {
   for (const ScriptResult& script : result.scripts) {
     all["scripts"].push_back(as_json(script));
   }
-  for (std::size_t i = 0; i < status_names.size(); ++i) {
-    all["statuses"][status_names[i]] = result.by_status[i];
+  for (std::size_t i = 0; i < statuses; ++i) {
+    all["statuses"][name(static_cast<Status>(i))] = result.counts.by_status[i];
   }
   if (result.first_violation) {
     all["first_violation"] = {{"script", name(result.first_violation->script)},
@@ -163,12 +156,12 @@ nlohmann::json StressReport::json() const {
 
 void StressReport::print() const {
   fmt::print("{}: {} cycles, seed {}, at most {} contacts, {} cached factors; arena {} bytes, created in {:.1f} ms\n\n",
-             model, result.cycles, options.seed, options.limits.max_contacts, options.limits.cached_factors,
-             result.arena_bytes, result.create_ms);
+             model, result.cycles, options.seed, options.contacts, options.factors, result.arena_bytes,
+             result.create_ms);
   print_scripts(result.scripts);
   fmt::print("\n");
   print_counts(result);
-  fmt::print("worst work {} of {} declared units\n", result.worst_work, result.declared_work);
+  fmt::print("worst work {} of {} declared units\n", result.counts.worst_work, result.declared_work);
   if (instructions_max >= 0) {
     fmt::print("instructions of the heaviest kind of step {}\n", instructions_max);
   } else {

@@ -1,14 +1,14 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
 
-#include "rt_tests/stress/contact_script.hpp"
-#include "rt_tests/stress/time_histogram.hpp"
-#include "runtime/elastostatic.hpp"
+#include "rt_tests/harness/contact_script.hpp"
+#include "rt_tests/harness/driver.hpp"
+#include "rt_tests/harness/time_histogram.hpp"
+#include "runtime/model.hpp"
 
 namespace greenloop {
 
@@ -19,7 +19,8 @@ struct StressOptions {
   std::uint64_t cycles = 20000;
   std::uint64_t seed = 1;
   std::optional<ScriptKind> script = std::nullopt;  ///< this one alone; else all, in turn
-  Elastostatic::Limits limits;
+  std::uint32_t contacts = 64;                      ///< most of a step
+  std::uint32_t factors = 8;                        ///< sets of contacts that the body remembers
   std::size_t histogram_bins = 400;
   InjectedFault fault = InjectedFault::none;
   std::function<void(ScriptKind, std::uint64_t)> progress = nullptr;  ///< called every so often with the cycles done
@@ -42,9 +43,8 @@ struct Violations {
 /// One script, on a body of its own: the same in any run of its kind, seed, limits and cycles.
 struct ScriptResult {
   ScriptKind kind = ScriptKind::mixed;
-  std::uint64_t cycles = 0, answered = 0, refused = 0;
-  std::uint64_t coarser = 0, mixed_levels = 0, cached = 0, changed = 0;  ///< of those answered
-  std::uint64_t worst_work = 0;
+  std::uint64_t cycles = 0;
+  AnswerCounts counts;
   double worst_us = 0;
   double force_step_max = 0;  ///< see StressResult
   std::uint64_t digest = 0;   ///< of every step's outcome
@@ -59,18 +59,16 @@ struct FirstViolation {
 struct StressResult {
   std::uint64_t cycles = 0;
   std::vector<ScriptResult> scripts;
-  std::array<std::uint64_t, 10> by_status{};      ///< steps by Status
-  std::uint64_t levels[layout::max_levels] = {};  ///< answers by constraint level
+  AnswerCounts counts;  ///< of all scripts
   Violations violations;
   bool watches_system_calls = false;  ///< false: this kernel cannot tell
   std::optional<FirstViolation> first_violation;
-  std::uint64_t worst_work = 0;
-  std::uint64_t declared_work = 0;
+  std::uint64_t declared_work = 0;  ///< units, the most that any step may take
   /// Largest change of the contact forces from one answered cycle to the next, contacts and displacements the same, so
   /// that it comes of a change of level alone: ||f - f'|| over the larger of ||f|| and ||f'||.
   double force_step_max = 0;
   std::uint64_t digest = 0;  ///< of the scripts' digests
-  double create_ms = 0;      ///< Elastostatic::create, thread CPU time
+  double create_ms = 0;      ///< of `create`, thread CPU time
   std::size_t arena_bytes = 0;
   TimeHistogram times;  ///< of steps, thread CPU time
 
@@ -78,7 +76,8 @@ struct StressResult {
 };
 
 /// Runs a ContactScript of every kind on bodies of `model`, every step with the guards of sim_hw/guard armed, and
-/// checks each outcome against what Elastostatic declares. Throws std::runtime_error if no body can be created.
+/// checks each outcome against what the solver declares. Throws std::runtime_error if no body can be created.
+template <Driver D>
 [[nodiscard]] StressResult run_stress(const Model& model, const StressOptions& options);
 
 }  // namespace greenloop

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
+#include "rt_tests/harness/elastostatic_driver.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 #include "runtime/testing/test_body.hpp"
 
@@ -11,7 +13,7 @@ namespace {
 
 StressResult stress(const SyntheticOptions& synthetic, const StressOptions& options) {
   const TestModel model(synthetic);
-  return run_stress(model.model(), options);
+  return run_stress<ElastostaticDriver>(model.model(), options);
 }
 
 const ScriptResult& result_of(const StressResult& result, ScriptKind kind) {
@@ -27,24 +29,23 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
                                      {.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly},
                                      {.levels = 4, .wavelet = layout::Wavelet::butterfly},
                                      {.levels = 4, .wavelet = layout::Wavelet::equilibrated}};
-  const Elastostatic::Limits limits[] = {{.max_contacts = 1, .cached_factors = 1},
-                                         {.max_contacts = 16, .cached_factors = 3},
-                                         {.max_contacts = 33, .cached_factors = 8}};
+  constexpr std::pair<std::uint32_t, std::uint32_t> limits[] = {{1, 1}, {16, 3}, {33, 8}};
   std::uint64_t seed = 0;
   for (const auto& synthetic : models) {
-    for (const auto& limit : limits) {
+    for (const auto& [contacts, factors] : limits) {
       ++seed;
       CAPTURE(synthetic.levels);
-      CAPTURE(limit.max_contacts);
+      CAPTURE(contacts);
       CAPTURE(seed);
-      const StressResult result = stress(synthetic, {.cycles = 1300, .seed = seed, .limits = limit});
+      const StressResult result =
+          stress(synthetic, {.cycles = 1300, .seed = seed, .contacts = contacts, .factors = factors});
       CHECK(result.violations.work_overruns == 0);
       CHECK(result.violations.wrong_answers == 0);
       CHECK(result.violations.allocations == 0);
       CHECK(result.violations.locks == 0);
       CHECK(result.violations.system_calls == 0);
       CHECK(result.violations.minor_faults == 0);
-      CHECK(result.worst_work > result.declared_work / 8);
+      CHECK(result.counts.worst_work > result.declared_work / 8);
       CHECK(result.times.total() == result.cycles);
       CHECK(result.held());
     }
@@ -52,38 +53,38 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
 }
 
 TEST_CASE("every script does what its name says") {
-  const StressResult result =
-      stress({.levels = 4}, {.cycles = 13003, .seed = 5, .limits = {.max_contacts = 16, .cached_factors = 3}});
-  REQUIRE(result.scripts.size() == script_names.size());
+  const StressResult result = stress({.levels = 4}, {.cycles = 13003, .seed = 5, .contacts = 16, .factors = 3});
+  REQUIRE(result.scripts.size() == contact_script_names.size());
   CHECK(result.cycles == 13003);
   std::set<std::uint64_t> digests;
   for (const ScriptResult& script : result.scripts) {
     CAPTURE(name(script.kind));
-    CHECK(script.answered + script.refused == script.cycles);
+    CHECK(script.counts.answers() + script.counts.refusals() == script.cycles);
     CHECK(script.cycles >= 1000);
     CHECK(script.cycles <= 1001);
-    CHECK((script.kind == ScriptKind::garbage) == (script.answered == 0));
-    CHECK(script.worst_work <= result.worst_work);
+    CHECK((script.kind == ScriptKind::garbage) == (script.counts.answers() == 0));
+    CHECK(script.counts.worst_work <= result.counts.worst_work);
     digests.insert(script.digest);
   }
-  CHECK(digests.size() == script_names.size());
-  CHECK(result_of(result, ScriptKind::press).cached > 500);
-  CHECK(result_of(result, ScriptKind::slide).changed > 100);
-  CHECK(result_of(result, ScriptKind::neighbours).cached > 500);
-  CHECK(result_of(result, ScriptKind::random).cached < 100);
-  CHECK(result_of(result, ScriptKind::defeat_cache).cached < 300);
-  CHECK(result_of(result, ScriptKind::flap_levels).coarser > 100);
+  CHECK(digests.size() == contact_script_names.size());
+  CHECK(result_of(result, ScriptKind::press).counts.cached > 500);
+  CHECK(result_of(result, ScriptKind::slide).counts.changed > 100);
+  CHECK(result_of(result, ScriptKind::neighbours).counts.cached > 500);
+  CHECK(result_of(result, ScriptKind::random).counts.cached < 100);
+  CHECK(result_of(result, ScriptKind::defeat_cache).counts.cached < 300);
+  CHECK(result_of(result, ScriptKind::flap_levels).counts.of(Status::coarser) > 100);
   CHECK(result_of(result, ScriptKind::flap_levels).force_step_max > 0.01);
   CHECK(result_of(result, ScriptKind::press).force_step_max == 0);
-  CHECK(result_of(result, ScriptKind::single).worst_work < result_of(result, ScriptKind::every_node).worst_work);
+  CHECK(result_of(result, ScriptKind::single).counts.worst_work <
+        result_of(result, ScriptKind::every_node).counts.worst_work);
   for (const Status status : {Status::held_not_finite, Status::held_out_of_range, Status::held_not_touchable,
                               Status::held_duplicate, Status::held_over_budget}) {
-    CHECK(result.by_status[static_cast<std::size_t>(status)] > 0);
+    CHECK(result.counts.of(status) > 0);
   }
 }
 
 TEST_CASE("the same seed gives the same digest, another seed another") {
-  const StressOptions options{.cycles = 1300, .seed = 3, .limits = {.max_contacts = 8, .cached_factors = 2}};
+  const StressOptions options{.cycles = 1300, .seed = 3, .contacts = 8, .factors = 2};
   StressOptions other = options;
   other.seed = 4;
   const std::uint64_t digest = stress({.levels = 3}, options).digest;
@@ -92,27 +93,26 @@ TEST_CASE("the same seed gives the same digest, another seed another") {
 }
 
 TEST_CASE("a script alone does what it did among the others") {
-  StressOptions options{.cycles = 2600, .seed = 9, .limits = {.max_contacts = 8, .cached_factors = 2}};
+  StressOptions options{.cycles = 2600, .seed = 9, .contacts = 8, .factors = 2};
   const TestModel model({.levels = 3});
-  const StressResult all = run_stress(model.model(), options);
+  const StressResult all = run_stress<ElastostaticDriver>(model.model(), options);
   options.cycles = 200;
   for (const ScriptResult& among : all.scripts) {
     CAPTURE(name(among.kind));
     options.script = among.kind;
-    const StressResult alone = run_stress(model.model(), options);
+    const StressResult alone = run_stress<ElastostaticDriver>(model.model(), options);
     REQUIRE(alone.scripts.size() == 1);
     CHECK(alone.scripts[0].digest == among.digest);
-    CHECK(alone.scripts[0].worst_work == among.worst_work);
+    CHECK(alone.scripts[0].counts.worst_work == among.counts.worst_work);
   }
 }
 
 TEST_CASE("every fault is seen, counted and can be met again") {
-  const Elastostatic::Limits limits{.max_contacts = 4};
   for (const InjectedFault fault : {InjectedFault::none, InjectedFault::allocation, InjectedFault::lock,
                                     InjectedFault::system_call, InjectedFault::page_fault, InjectedFault::overrun}) {
     StressReport report{
         .model = "m.gloop",
-        .options = {.cycles = 300, .seed = 7, .script = ScriptKind::slide, .limits = limits, .fault = fault},
+        .options = {.cycles = 300, .seed = 7, .script = ScriptKind::slide, .contacts = 4, .fault = fault},
         .result = {}};
     report.result = stress({.levels = 2}, report.options);
     const StressResult& result = report.result;

@@ -2,11 +2,11 @@
 //   loop_timing [MODEL.gloop]      without a model: a synthetic sphere
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <random>
 #include <vector>
 
 #include "formats/write/model_file.hpp"
+#include "rt_tests/harness/time_of.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/body.hpp"
 #include "runtime/testing/placed_body.hpp"
@@ -15,22 +15,13 @@
 namespace greenloop {
 namespace {
 
-double thread_nanoseconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) * 1e9 + static_cast<double>(time.tv_nsec);
-}
-
 // median over batches, so that the clock's own cost does not count
 template <class Work>
 double median_nanoseconds(int batch, Work work) {
   std::vector<double> times;
   for (int repeat = 0; repeat < 301; ++repeat) {
-    const double begin = thread_nanoseconds();
-    for (int i = 0; i < batch; ++i) {
-      work(i);
-    }
-    times.push_back((thread_nanoseconds() - begin) / batch);
+    int i = 0;
+    times.push_back(1e3 * time_of(static_cast<std::size_t>(batch), [&] { work(i++); }));
   }
   std::nth_element(times.begin(), times.begin() + 150, times.end());
   return times[150];

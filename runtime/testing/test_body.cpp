@@ -13,35 +13,6 @@ TestModel::TestModel(std::span<const std::byte> bytes) : bytes_(bytes) {
   model_ = opened.model;
 }
 
-std::vector<std::uint32_t> TestModel::touchable() const {
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t q = 0; q < view().levels; ++q) {
-    const LevelView& level = view().level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      if ((level.nodes[i].flags & layout::node_touchable) != 0) {
-        nodes.push_back(level.node_begin + i);
-      }
-    }
-  }
-  return nodes;
-}
-
-TestBody::TestBody(const TestModel& model, const Elastostatic::Limits& limits)
-    : requirement_(Elastostatic::required(model.model(), limits)),
-      arena_(requirement_.bytes),
-      field_(std::size_t{16} * model.model().node_count()) {
-  const auto created = Elastostatic::create(model.model(), limits, {arena_.data(), arena_.size()});
-  if (!created) {
-    throw std::runtime_error("no body: error " + std::to_string(static_cast<int>(created.error)));
-  }
-  body_ = created.body;
-}
-
-Elastostatic::StepReport TestBody::step(std::span<const Constraint> contacts, std::uint64_t work, bool with_field) {
-  force_.resize(3 * contacts.size());
-  return body_.step(contacts, {work}, {force_, with_field ? field() : std::span<float>()});
-}
-
 std::vector<Constraint> patch(const TestModel& model, std::size_t first, std::size_t count) {
   const auto nodes = model.touchable();
   std::vector<Constraint> contacts;
@@ -71,10 +42,9 @@ ModelData indefinite_model(const SyntheticOptions& options) {
 }
 
 std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes) {
-  for (const std::byte byte : bytes) {
-    hash = (hash ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3;
-  }
-  return hash;
+  Fnv1a chained(hash);
+  chained.add(bytes);
+  return chained.value();
 }
 
 std::uint64_t hash_step(std::uint64_t hash, const Elastostatic::StepReport& report, std::span<const float> force,

@@ -8,7 +8,10 @@
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/writer.hpp"
+#include "runtime/algebra/fnv1a.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/testing/hosted.hpp"
+#include "runtime/testing/touchable_nodes.hpp"
 
 namespace greenloop {
 
@@ -20,32 +23,17 @@ class TestModel {
 
   [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const ModelView& view() const { return model_.view(); }
-  [[nodiscard]] std::vector<std::uint32_t> touchable() const;  ///< nodes, increasing
+  [[nodiscard]] std::vector<std::uint32_t> touchable() const { return touchable_nodes(view()); }
 
  private:
   AlignedBytes bytes_;
   Model model_;
 };
 
-/// A body with its own arena and response buffers. Throws std::runtime_error if it cannot be created.
-class TestBody {
+/// A body of a TestModel, which must outlive it.
+class TestBody : public Hosted<Elastostatic> {
  public:
-  TestBody(const TestModel& model, const Elastostatic::Limits& limits);
-
-  /// Steps with a force buffer of the right size and, if wanted, the field.
-  Elastostatic::StepReport step(std::span<const Constraint> contacts, std::uint64_t work, bool with_field = true);
-
-  [[nodiscard]] const Elastostatic::Requirement& requirement() const { return requirement_; }
-  [[nodiscard]] std::span<const float> force() const { return force_; }
-  [[nodiscard]] std::span<float> field() { return {reinterpret_cast<float*>(field_.data()), field_.size() / 4}; }
-  [[nodiscard]] Elastostatic& body() { return body_; }
-
- private:
-  Elastostatic::Requirement requirement_;
-  AlignedBytes arena_;
-  AlignedBytes field_;
-  std::vector<float> force_;
-  Elastostatic body_;
+  TestBody(const TestModel& model, const Elastostatic::Limits& limits) : Hosted(model.model(), limits) {}
 };
 
 /// `count` touchable nodes from the `first` on, held at displacements that differ.
@@ -62,7 +50,6 @@ std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes);
 std::uint64_t hash_step(std::uint64_t hash, const Elastostatic::StepReport& report, std::span<const float> force,
                         std::span<const float> field);
 
-inline constexpr std::uint64_t empty_hash = 0xcbf29ce484222325;
-inline constexpr std::uint64_t any_budget = std::uint64_t{1} << 60;
+inline constexpr std::uint64_t empty_hash = Fnv1a{}.value();
 
 }  // namespace greenloop

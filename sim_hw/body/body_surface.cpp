@@ -64,16 +64,24 @@ void measure(BodySurface& surface) {
   surface.normal.assign(surface.position.size(), {});
   double edges = 0;
   for (const auto& [a, b, c] : surface.triangles) {
-    const Vec3 ab = surface.position[b] - surface.position[a], ac = surface.position[c] - surface.position[a];
-    const Vec3 area = cross(ab, ac);
+    const Double3 ab = surface.position[b] - surface.position[a], ac = surface.position[c] - surface.position[a];
+    const Double3 area = cross(ab, ac);
     for (const std::uint32_t node : {a, b, c}) surface.normal[node] += area;
     edges += norm(ab) + norm(ac) + norm(ac - ab);
   }
-  for (Vec3& normal : surface.normal) normal = unit(normal);
+  for (Double3& normal : surface.normal) normal = unit(normal);
   surface.spacing = edges / (3 * static_cast<double>(surface.triangles.size()));
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> BodySurface::touchable_nodes() const {
+  std::vector<std::uint32_t> nodes;
+  for (std::uint32_t i = 0; i < touchable.size(); ++i) {
+    if (touchable[i]) nodes.push_back(i);
+  }
+  return nodes;
+}
 
 BodySurface body_surface(const ModelView& model) {
   BodySurface surface;
@@ -85,7 +93,7 @@ BodySurface body_surface(const ModelView& model) {
   surface.triangles = finest_triangles(model);
   measure(surface);
   const float *low = model.info->box_min, *high = model.info->box_max;
-  const Vec3 lower{low[0], low[1], low[2]}, upper{high[0], high[1], high[2]};
+  const Double3 lower{low[0], low[1], low[2]}, upper{high[0], high[1], high[2]};
   surface.centre = 0.5 * (lower + upper);
   surface.diagonal = norm(upper - lower);
   return surface;

@@ -1,19 +1,9 @@
 #include "sim_hw/control_loop/loop_thread.hpp"
 
-#include <ctime>
-
 #include "sim_hw/guard/allocation_guard.hpp"
+#include "sim_hw/guard/thread_clock.hpp"
 
 namespace greenloop {
-namespace {
-
-std::int64_t thread_cpu_ns() {
-  timespec now{};
-  (void)clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return std::int64_t{1000000000} * now.tv_sec + now.tv_nsec;
-}
-
-}  // namespace
 
 LoopThread::LoopThread(ControlLoop& loop, RunLog& log) : loop_(&loop), log_(&log), thread_([this] { run(); }) {}
 
@@ -23,7 +13,7 @@ LoopThread::~LoopThread() {
   thread_.join();
 }
 
-const messages::loop_command& LoopThread::answer(const messages::device_state& state) {
+const LoopCommand& LoopThread::answer(const DeviceState& state) {
   states_.put(state);
   state_waits_.release();
   command_waits_.acquire();
@@ -40,11 +30,11 @@ void LoopThread::run() {
 
 void LoopThread::run_cycle() {
   if (!states_.take(state_)) return;
-  const std::int64_t begin = thread_cpu_ns();
+  const std::int64_t begin = thread_nanoseconds();
   allocation_guard::arm();
   loop_->cycle(state_);
   allocation_guard::disarm();
-  const std::int64_t end = thread_cpu_ns();
+  const std::int64_t end = thread_nanoseconds();
   allocation_guard::arm();
   loop_->answer(command_);
   commands_.put(command_);

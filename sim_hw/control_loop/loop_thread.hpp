@@ -21,7 +21,7 @@ class LoopThread {
   LoopThread& operator=(const LoopThread&) = delete;
 
   /// Hands over `state` and sleeps until its answer is there. Not loop-safe.
-  [[nodiscard]] const messages::loop_command& answer(const messages::device_state& state);
+  [[nodiscard]] const LoopCommand& answer(const DeviceState& state);
 
   /// Heap allocations and releases seen while a cycle ran.
   [[nodiscard]] std::uint64_t allocations() const { return allocations_.load(); }
@@ -32,11 +32,11 @@ class LoopThread {
 
   ControlLoop* loop_;
   RunLog* log_;
-  Newest<messages::device_state> states_;
-  Newest<messages::loop_command> commands_;
-  messages::device_state state_{};          ///< the loop thread's
-  messages::loop_command command_{};        ///< the loop thread's
-  messages::loop_command newest_answer_{};  ///< the caller's
+  Newest<DeviceState> states_;
+  Newest<LoopCommand> commands_;
+  DeviceState state_{};          ///< the loop thread's
+  LoopCommand command_{};        ///< the loop thread's
+  LoopCommand newest_answer_{};  ///< the caller's
   std::binary_semaphore state_waits_{0}, command_waits_{0};
   std::atomic<bool> stop_{false};
   std::atomic<std::uint64_t> allocations_{0};

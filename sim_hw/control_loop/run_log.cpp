@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "sim_hw/control_loop/status_name.hpp"
 
 namespace greenloop {
 namespace {
@@ -39,9 +41,17 @@ class TextFile {
   std::FILE* file_;
 };
 
-std::string vector_columns(const std::array<Vec3, messages::device_state::max_probes>& vectors) {
-  return fmt::format("{},{},{},{},{},{}", vectors[0].x, vectors[0].y, vectors[0].z, vectors[1].x, vectors[1].y,
-                     vectors[1].z);
+/// "x0,y0,z0,x1,..." with `prefix` before each.
+std::string vector_names(const char* prefix, std::size_t count) {
+  std::string names;
+  for (std::size_t i = 0; i < count; ++i) names += fmt::format("{0}x{1},{0}y{1},{0}z{1},", prefix, i);
+  return names;
+}
+
+std::string vector_columns(std::span<const Double3> vectors) {
+  std::string columns;
+  for (const Double3& vector : vectors) columns += fmt::format("{},{},{},", vector.x, vector.y, vector.z);
+  return columns;
 }
 
 }  // namespace
@@ -63,14 +73,15 @@ void RunLog::add(const ControlLoop& loop, std::int64_t cycle, double cpu_us) noe
   }
 }
 
-void RunLog::write_trace(const std::filesystem::path& file, double period, const Budget& budget) const {
+void RunLog::write_trace(const std::filesystem::path& file, std::size_t probes, double period,
+                         const Budget& budget) const {
   TextFile out(file);
-  out.write(
-      "time,x0,y0,z0,x1,y1,z1,force_x0,force_y0,force_z0,force_x1,force_y1,force_z1,force,contacts,level,field_level,"
-      "work,budget,status\n");
+  out.write(fmt::format("time,{}{}force,contacts,level,field_level,work,budget,status\n", vector_names("", probes),
+                        vector_names("force_", probes)));
   for (const CycleRecord& r : records_) {
-    out.write(fmt::format("{},{},{},{},{},{},{},{},{},{}\n", static_cast<double>(r.cycle) * period,
-                          vector_columns(r.centre), vector_columns(r.hand_force), r.total_force(), r.contacts,
+    out.write(fmt::format("{},{}{}{},{},{},{},{},{},{}\n", static_cast<double>(r.cycle) * period,
+                          vector_columns(std::span(r.centre).first(probes)),
+                          vector_columns(std::span(r.hand_force).first(probes)), r.total_force(), r.contacts,
                           r.report.constraint_level, r.report.field_level, r.report.work, budget.work,
                           name(r.report.status)));
   }
@@ -84,34 +95,6 @@ void RunLog::write_snapshot(const std::filesystem::path& file) const {
     out.write(fmt::format("{},{},{},{}\n", i / 4, largest_field_[i], largest_field_[i + 1], largest_field_[i + 2]));
   }
   out.close();
-}
-
-const char* name(Status status) {
-  switch (status) {
-    case Status::ok:
-      return "ok";
-    case Status::coarser:
-      return "coarser";
-    case Status::held_not_finite:
-      return "held_not_finite";
-    case Status::held_out_of_range:
-      return "held_out_of_range";
-    case Status::held_not_touchable:
-      return "held_not_touchable";
-    case Status::held_duplicate:
-      return "held_duplicate";
-    case Status::held_response_size:
-      return "held_response_size";
-    case Status::held_over_budget:
-      return "held_over_budget";
-    case Status::held_singular:
-      return "held_singular";
-    case Status::held_overflow:
-      return "held_overflow";
-    case Status::held_unsupported:
-      return "held_unsupported";
-  }
-  return "unknown";
 }
 
 }  // namespace greenloop

@@ -12,15 +12,21 @@ namespace greenloop {
 /// What one cycle of the loop did.
 struct CycleRecord {
   std::int64_t cycle = 0;
-  std::array<Vec3, messages::device_state::max_probes> centre{};      ///< m, of the probes
-  std::array<Vec3, messages::device_state::max_probes> hand_force{};  ///< N, on the probes
+  std::array<Double3, max_tools> centre{};      ///< m, of the probes
+  std::array<Double3, max_tools> hand_force{};  ///< N, on the probes
   std::uint32_t contacts = 0;
-  Elastostatic::StepReport report;
+  LoopReport report;
   double cpu_us = 0;  ///< thread CPU time of the cycle
 
   /// N, sum of the magnitudes: two fingers of a grasp do not cancel.
-  [[nodiscard]] double total_force() const { return norm(hand_force[0]) + norm(hand_force[1]); }
-  [[nodiscard]] bool missed(const Budget& budget) const { return report.work > budget.work || held(report.status); }
+  [[nodiscard]] double total_force() const {
+    double sum = 0;
+    for (const Double3& force : hand_force) sum += norm(force);
+    return sum;
+  }
+  [[nodiscard]] bool missed(const Budget& budget) const {
+    return report.work > budget.work || !answered(report.status);
+  }
 };
 
 /// Everything a run is judged and drawn by. All memory is taken at start-up.
@@ -33,9 +39,9 @@ class RunLog {
 
   [[nodiscard]] const std::vector<CycleRecord>& records() const { return records_; }
 
-  /// One line per cycle: time in s, positions in m, forces in N. Numbers read back exactly.
-  /// Throws std::runtime_error if the file cannot be written.
-  void write_trace(const std::filesystem::path& file, double period, const Budget& budget) const;
+  /// One line per cycle: time in s, positions in m and forces in N of `probes` probes (at most max_tools). Numbers read
+  /// back exactly. Throws std::runtime_error if the file cannot be written.
+  void write_trace(const std::filesystem::path& file, std::size_t probes, double period, const Budget& budget) const;
 
   /// node, x, y, z: the displacement in m of every node in the cycle of the largest total force that had a field.
   void write_snapshot(const std::filesystem::path& file) const;
@@ -45,7 +51,5 @@ class RunLog {
   std::vector<float> largest_field_;  ///< [4 * nodes] m
   double largest_force_ = -1;
 };
-
-[[nodiscard]] const char* name(Status status);
 
 }  // namespace greenloop

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "sim_hw/body/vec3.hpp"
+#include "runtime/algebra/double3.hpp"
 
 namespace greenloop {
 
@@ -17,7 +17,7 @@ namespace greenloop {
 /// The value that `counts` stand for: within half a resolution of what was measured.
 [[nodiscard]] inline double encoder_value(std::int32_t counts, double resolution) { return counts * resolution; }
 
-[[nodiscard]] inline Vec3 encoder_value(const std::int32_t (&counts)[3], double resolution) {
+[[nodiscard]] inline Double3 encoder_value(const std::int32_t (&counts)[3], double resolution) {
   return {encoder_value(counts[0], resolution), encoder_value(counts[1], resolution),
           encoder_value(counts[2], resolution)};
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sim_hw/body/vec3.hpp"
+#include "runtime/algebra/double3.hpp"
 
 namespace greenloop {
 
@@ -13,27 +13,27 @@ struct HandParameters {
 
 /// Where the person wants to be at the start, the middle and the end of a step, m.
 struct HandTarget {
-  Vec3 begin, middle, end;
+  Double3 begin, middle, end;
 };
 
 /// m x'' = k (target - x) - b x' + f, integrated by the classical fourth-order Runge-Kutta method.
 class Hand {
  public:
   Hand() = default;
-  Hand(const HandParameters& parameters, const Vec3& position) : parameters_(parameters), position_(position) {}
+  Hand(const HandParameters& parameters, const Double3& position) : parameters_(parameters), position_(position) {}
 
   /// One step of `dt` seconds under a constant `force` in N. Stable for dt * sqrt(stiffness / mass) < 2.
-  void advance(const HandTarget& target, const Vec3& force, double dt);
+  void advance(const HandTarget& target, const Double3& force, double dt);
 
-  [[nodiscard]] const Vec3& position() const { return position_; }  ///< m
-  [[nodiscard]] const Vec3& velocity() const { return velocity_; }  ///< m/s
+  [[nodiscard]] const Double3& position() const { return position_; }  ///< m
+  [[nodiscard]] const Double3& velocity() const { return velocity_; }  ///< m/s
 
  private:
-  [[nodiscard]] Vec3 acceleration(const Vec3& position, const Vec3& velocity, const Vec3& target,
-                                  const Vec3& force) const;
+  [[nodiscard]] Double3 acceleration(const Double3& position, const Double3& velocity, const Double3& target,
+                                     const Double3& force) const;
 
   HandParameters parameters_;
-  Vec3 position_, velocity_;
+  Double3 position_, velocity_;
 };
 
 }  // namespace greenloop

@@ -17,8 +17,8 @@ double damped_oscillation(const HandParameters& p, double x0, double time) {
 
 double worst_error(double dt, double duration) {
   const HandParameters p;
-  const Vec3 target{0.01, 0, 0}, force{0, 3, 0};
-  const Vec3 equilibrium{0.01, 3 / p.stiffness, 0};
+  const Double3 target{0.01, 0, 0}, force{0, 3, 0};
+  const Double3 equilibrium{0.01, 3 / p.stiffness, 0};
   Hand hand(p, {0.03, 0, 0});
   double worst = 0;
   const int steps = static_cast<int>(std::lround(duration / dt));
@@ -44,7 +44,7 @@ TEST_CASE("a hand that follows a uniformly moving target lags by damping times s
   Hand hand(p, {});
   constexpr double dt = 1e-3, speed = 0.05;
   for (int i = 0; i < 1000; ++i) {
-    const auto at = [&](double fraction) { return Vec3{speed * (i + fraction) * dt, 0, 0}; };
+    const auto at = [&](double fraction) { return Double3{speed * (i + fraction) * dt, 0, 0}; };
     hand.advance({at(0), at(0.5), at(1)}, {}, dt);
   }
   CHECK(hand.velocity().x == doctest::Approx(speed).epsilon(1e-9));

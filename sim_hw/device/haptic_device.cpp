@@ -23,7 +23,7 @@ Coupling coupling(const layout::Info& info, const BodySurface& surface, const Pr
 HapticDevice::HapticDevice(DeviceSetup setup) : setup_(std::move(setup)), arrival_(setup_.faults) {
   for (std::size_t p = 0; p < setup_.motion.size(); ++p) hands_.emplace_back(setup_.hand, handle_target(p, 0));
   motor_force_.resize(hands_.size());
-  state_.probe_count = static_cast<std::int32_t>(hands_.size());
+  state_.num_tools = static_cast<std::uint32_t>(hands_.size());
   state_.resolution = Coupling::resolution * setup_.coupling.motion_scale;
   state_.origin[0] = setup_.origin.x;
   state_.origin[1] = setup_.origin.y;
@@ -31,14 +31,14 @@ HapticDevice::HapticDevice(DeviceSetup setup) : setup_(std::move(setup)), arriva
   measure();
 }
 
-void HapticDevice::apply(const messages::loop_command& command) {
+void HapticDevice::apply(const LoopCommand& command) {
   const std::int64_t cycle = state_.cycle;
   summary_.digest = command.digest;
   summary_.late_injected += arrival_.injected(cycle);
   if (!arrival_.late(cycle, command.work, command.budget)) {
     for (std::size_t p = 0; p < hands_.size(); ++p) {
-      const double(&force)[3] = command.hand_force[p];
-      motor_force_[p] = setup_.coupling.force_scale * Vec3{force[0], force[1], force[2]};
+      const double(&force)[3] = command.tool_force[p];
+      motor_force_[p] = setup_.coupling.force_scale * Double3{force[0], force[1], force[2]};
     }
   }
   const double time = static_cast<double>(cycle) * setup_.period;
@@ -57,17 +57,17 @@ void HapticDevice::apply(const messages::loop_command& command) {
 void HapticDevice::measure() {
   const double time = static_cast<double>(state_.cycle) * setup_.period;
   for (std::size_t p = 0; p < hands_.size(); ++p) {
-    const Vec3 position = hands_[p].position(), axis = setup_.motion[p].target(time).axis;
+    const Double3 position = hands_[p].position(), axis = setup_.motion[p].target(time).axis;
     const double coordinate[3] = {position.x, position.y, position.z}, direction[3] = {axis.x, axis.y, axis.z};
     for (int i = 0; i < 3; ++i) {
-      state_.position[p][i] = encoder_counts(coordinate[i], Coupling::resolution);
-      const double unit_counts = direction[i] * int{messages::device_state::axis_unit};
-      state_.axis[p][i] = static_cast<std::int16_t>(encoder_counts(unit_counts, 1));
+      state_.tools[p].position[i] = encoder_counts(coordinate[i], Coupling::resolution);
+      const double unit_counts = direction[i] * ToolState::axis_unit;
+      state_.tools[p].axis[i] = static_cast<std::int16_t>(encoder_counts(unit_counts, 1));
     }
   }
 }
 
-Vec3 HapticDevice::handle_target(std::size_t probe, double time) const {
+Double3 HapticDevice::handle_target(std::size_t probe, double time) const {
   return (1 / setup_.coupling.motion_scale) * (setup_.motion[probe].target(time).centre - setup_.origin);
 }
 

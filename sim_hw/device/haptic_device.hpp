@@ -3,13 +3,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "greenloop/messages/device_state.hpp"
-#include "greenloop/messages/loop_command.hpp"
 #include "sim_hw/body/body_surface.hpp"
 #include "sim_hw/device/command_arrival.hpp"
 #include "sim_hw/device/hand.hpp"
 #include "sim_hw/device/motion_script.hpp"
 #include "sim_hw/device/script.hpp"
+#include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/loop_command.hpp"
 
 namespace greenloop {
 
@@ -38,10 +38,10 @@ struct DeviceSummary {
 };
 
 struct DeviceSetup {
-  std::vector<MotionScript> motion;  ///< one or two probes
+  std::vector<MotionScript> motion;  ///< of each tool, at most max_tools
   Coupling coupling;
   HandParameters hand;
-  Vec3 origin;              ///< m, middle of the workspace in the frame of the body
+  Double3 origin;           ///< m, middle of the workspace in the frame of the body
   double period = 1e-3;     ///< s
   std::int64_t cycles = 0;  ///< how many the run has
   InjectedFaults faults;
@@ -54,10 +54,10 @@ class HapticDevice {
   explicit HapticDevice(DeviceSetup setup);
 
   /// What the encoders say at the start of the current cycle.
-  [[nodiscard]] const messages::device_state& state() const { return state_; }
+  [[nodiscard]] const DeviceState& state() const { return state_; }
 
   /// Renders the command of the current cycle, or holds the last one if it is late, and goes to the next cycle.
-  void apply(const messages::loop_command& command);
+  void apply(const LoopCommand& command);
 
   [[nodiscard]] bool finished() const { return summary_.stopped || summary_.cycles >= setup_.cycles; }
   [[nodiscard]] const DeviceSummary& summary() const { return summary_; }
@@ -65,13 +65,13 @@ class HapticDevice {
 
  private:
   void measure();
-  [[nodiscard]] Vec3 handle_target(std::size_t probe, double time) const;
+  [[nodiscard]] Double3 handle_target(std::size_t probe, double time) const;
 
   DeviceSetup setup_;
   CommandArrival arrival_;
   std::vector<Hand> hands_;
-  std::vector<Vec3> motor_force_;  ///< N on the handle, held
-  messages::device_state state_{};
+  std::vector<Double3> motor_force_;  ///< N on the handle, held
+  DeviceState state_{};
   DeviceSummary summary_;
 };
 

@@ -13,23 +13,23 @@ namespace {
 /// A hand that wants to stay where it is.
 DeviceSetup still(std::int64_t cycles, const InjectedFaults& faults = {}) {
   DeviceSetup setup;
-  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Vec3{0, 0, 0}}, Vec3{0, 0, -1}}}, 1.0);
+  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Double3{0, 0, 0}}, Double3{0, 0, -1}}}, 1.0);
   setup.cycles = cycles;
   setup.faults = faults;
   return setup;
 }
 
-messages::loop_command push(std::int64_t cycle, double force) {
-  messages::loop_command command{};
+LoopCommand push(std::int64_t cycle, double force) {
+  LoopCommand command{};
   command.cycle = cycle;
   command.budget = 100;
   command.work = 50;
-  command.hand_force[0][2] = force;
+  command.tool_force[0][2] = force;
   return command;
 }
 
 double height(const HapticDevice& device) {
-  return encoder_value(device.state().position[0], device.state().resolution).z;
+  return encoder_value(device.state().tools[0].position, device.state().resolution).z;
 }
 
 TEST_CASE("a constant force moves the hand to where the spring balances it, as far as the encoder sees") {
@@ -53,7 +53,7 @@ TEST_CASE("a late command is dropped and the last one held") {
     const bool dropped = k >= 40 && k < 50;
     faulty.apply(push(k, dropped ? 1e6 : 2.0));
     holding.apply(push(k, 2.0));
-    CHECK(faulty.state().position[0][2] == holding.state().position[0][2]);
+    CHECK(faulty.state().tools[0].position[2] == holding.state().tools[0].position[2]);
   }
   CHECK(faulty.summary().late == 10);
   CHECK(faulty.summary().late_injected == 10);
@@ -70,7 +70,7 @@ TEST_CASE("twenty late commands in a row stop the device") {
 TEST_CASE("a command over its budget is late although nothing was injected") {
   HapticDevice device(still(10));
   for (std::int64_t k = 0; k < 10; ++k) {
-    messages::loop_command command = push(k, 0);
+    LoopCommand command = push(k, 0);
     if (k == 4) command.work = 101;
     device.apply(command);
   }

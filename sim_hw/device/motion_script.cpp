@@ -7,7 +7,7 @@
 namespace greenloop {
 namespace {
 
-Vec3 along(const std::vector<Vec3>& knots, double fraction) {
+Double3 along(const std::vector<Double3>& knots, double fraction) {
   const double place = fraction * static_cast<double>(knots.size() - 1);
   const auto first = std::min(static_cast<std::size_t>(place), knots.size() - 1);
   const std::size_t second = std::min(first + 1, knots.size() - 1);

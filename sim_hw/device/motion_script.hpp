@@ -2,21 +2,21 @@
 
 #include <vector>
 
-#include "sim_hw/body/vec3.hpp"
+#include "runtime/algebra/double3.hpp"
 
 namespace greenloop {
 
 /// Where a person wants a probe to be, in the frame of the body.
 struct ProbeTarget {
-  Vec3 centre;  ///< m
-  Vec3 axis;    ///< unit vector, where the probe points
+  Double3 centre;  ///< m
+  Double3 axis;    ///< unit vector, where the probe points
 };
 
 /// Part of a motion: from the first to the last knot, starting and ending at rest.
 struct MotionSegment {
-  double duration = 0;      ///< share of the script, in any unit
-  std::vector<Vec3> knots;  ///< m, at least one; passed at equal intervals
-  Vec3 axis;
+  double duration = 0;         ///< share of the script, in any unit
+  std::vector<Double3> knots;  ///< m, at least one; passed at equal intervals
+  Double3 axis;
 };
 
 /// The motion of one probe, made of segments and polynomials in time only.

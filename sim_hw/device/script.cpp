@@ -19,22 +19,22 @@ class Track {
       : centre_(surface.centre), shell_(0.5 * surface.diagonal + 2 * probe.radius), depth_(probe.depth) {}
 
   /// The point of the shell from where the place is reached along its outward direction.
-  [[nodiscard]] Vec3 above(const TouchPlace& place) const {
-    const Vec3 from = place.centre - centre_;
+  [[nodiscard]] Double3 above(const TouchPlace& place) const {
+    const Double3 from = place.centre - centre_;
     const double along = dot(from, place.outward);
     return place.centre + (std::sqrt(along * along + shell_ * shell_ - dot(from, from)) - along) * place.outward;
   }
 
   void begin_above(const TouchPlace& place) { start_ = at_ = above(place); }
 
-  void move(double duration, std::vector<Vec3> knots, const Vec3& axis) {
+  void move(double duration, std::vector<Double3> knots, const Double3& axis) {
     knots.insert(knots.begin(), at_);
     at_ = knots.back();
     elapsed_ += duration;
     segments_.push_back({duration, std::move(knots), axis});
   }
 
-  void wait(double duration) { move(duration, {}, segments_.empty() ? Vec3{0, 0, -1} : segments_.back().axis); }
+  void wait(double duration) { move(duration, {}, segments_.empty() ? Double3{0, 0, -1} : segments_.back().axis); }
 
   void press_in(const TouchPlace& place) {
     move(0.8, {place.centre + (0.5 * depth_) * place.outward}, -place.outward);
@@ -46,9 +46,9 @@ class Track {
     move(0.8, {above(place)}, -place.outward);
   }
 
-  [[nodiscard]] Vec3 pressed(const TouchPlace& place) const { return place.centre - depth_ * place.outward; }
+  [[nodiscard]] Double3 pressed(const TouchPlace& place) const { return place.centre - depth_ * place.outward; }
 
-  void travel(const Vec3& to, const Vec3& axis) { move(1.0, arc(unit(at_ - centre_), unit(to - centre_)), axis); }
+  void travel(const Double3& to, const Double3& axis) { move(1.0, arc(unit(at_ - centre_), unit(to - centre_)), axis); }
   void travel_home() { travel(start_, segments_.back().axis); }
 
   [[nodiscard]] double elapsed() const { return elapsed_; }
@@ -56,22 +56,22 @@ class Track {
 
  private:
   /// Round the body from direction `a` to `b`; between opposite ones with a bulge to the side.
-  [[nodiscard]] std::vector<Vec3> arc(const Vec3& a, const Vec3& b) const {
+  [[nodiscard]] std::vector<Double3> arc(const Double3& a, const Double3& b) const {
     constexpr int pieces = 16;
     const double bulge = dot(a, b) < -0.5 ? 1 : 0;
-    const Vec3 side = perpendicular(a);
-    std::vector<Vec3> knots;
+    const Double3 side = perpendicular(a);
+    std::vector<Double3> knots;
     for (int i = 1; i <= pieces; ++i) {
       const double s = static_cast<double>(i) / pieces;
-      const Vec3 direction = (1 - s) * a + s * b + (4 * s * (1 - s) * bulge) * side;
+      const Double3 direction = (1 - s) * a + s * b + (4 * s * (1 - s) * bulge) * side;
       knots.push_back(centre_ + shell_ * unit(direction));
     }
     return knots;
   }
 
-  Vec3 centre_;
+  Double3 centre_;
   double shell_, depth_;
-  Vec3 start_, at_;
+  Double3 start_, at_;
   double elapsed_ = 0;
   std::vector<MotionSegment> segments_;
 };
@@ -86,10 +86,10 @@ void press(Track& track, const std::vector<TouchPlace>& places) {
 }
 
 void slide(Track& track, const std::vector<TouchPlace>& row) {
-  std::vector<Vec3> there, back;
+  std::vector<Double3> there, back;
   for (const TouchPlace& place : row) there.push_back(track.pressed(place));
   std::copy(there.rbegin(), there.rend(), std::back_inserter(back));
-  const Vec3 axis = -row.front().outward;
+  const Double3 axis = -row.front().outward;
   track.travel(track.above(row.front()), axis);
   track.press_in(row.front());
   track.move(2.0, there, axis);
@@ -105,6 +105,19 @@ void grasp(Track& first, Track& second, const std::array<TouchPlace, 2>& places)
     tracks[i]->press_in(places[i]);
     tracks[i]->wait(1.0);
     tracks[i]->lift(places[i]);
+  }
+}
+
+/// Probes beyond the two of the scripts, each with a place of its own where there are as many.
+void press_beside(std::vector<Track>& tracks, const BodySurface& surface, const ProbeSize& probe, std::size_t probes) {
+  constexpr int times = 3;
+  if (probes <= 2) return;
+  const std::vector<TouchPlace> places = touch_places(surface, probe.radius, probes);
+  for (std::size_t i = 2; i < probes; ++i) {
+    const TouchPlace& place = places[i % places.size()];
+    Track& track = tracks.emplace_back(surface, probe);
+    track.begin_above(place);
+    press(track, std::vector<TouchPlace>(times, place));
   }
 }
 
@@ -124,25 +137,27 @@ ProbeSize probe_size(const BodySurface& surface) {
   return {radius, 0.75 * radius};
 }
 
-std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe,
-                                      double seconds) {
+std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe, double seconds,
+                                      std::size_t probes) {
   const std::vector<TouchPlace> places = touch_places(surface, probe.radius, 3);
-  const bool wants_grasp = script == Script::grasp || script == Script::all;
+  const bool wants_grasp = probes > 1 && (script == Script::grasp || script == Script::all);
   const auto pair = wants_grasp ? opposing_places(surface, probe.radius) : std::nullopt;
   if (script == Script::grasp && !pair) {
-    throw std::runtime_error("--script grasp: the model has no two places that two probes could hold; use press");
+    throw std::runtime_error(
+        "--script grasp: there are no two probes, or no two places that they could hold; use press");
   }
-  Track first(surface, probe);
-  first.begin_above(places.front());
-  if (script == Script::press || script == Script::all) press(first, places);
+  std::vector<Track> tracks(1, Track(surface, probe));
+  tracks[0].begin_above(places.front());
+  if (script == Script::press || script == Script::all) press(tracks[0], places);
   if (script == Script::slide || script == Script::all) {
-    slide(first, sliding_row(surface, probe.radius, 0.15 * surface.diagonal, places));
+    slide(tracks[0], sliding_row(surface, probe.radius, 0.15 * surface.diagonal, places));
   }
-  if (!pair) return finish({std::move(first)}, seconds);
-  Track second(surface, probe);
-  second.begin_above((*pair)[1]);
-  grasp(first, second, *pair);
-  return finish({std::move(first), std::move(second)}, seconds);
+  if (pair) {
+    tracks.emplace_back(surface, probe).begin_above((*pair)[1]);
+    grasp(tracks[0], tracks[1], *pair);
+  }
+  press_beside(tracks, surface, probe, probes);
+  return finish(std::move(tracks), seconds);
 }
 
 }  // namespace greenloop

@@ -22,11 +22,12 @@ struct ProbeSize {
 /// 6 % of the body's diagonal, but never so small that it slips between the nodes; half as deep as wide.
 [[nodiscard]] ProbeSize probe_size(const BodySurface& surface);
 
-/// A scripted motion of one or two probes around and into the body; one round takes `seconds`.
+/// Scripted motions of at most `probes` (at least 1) probes around and into the body; one round takes `seconds`.
 /// press: into up to three places, one after the other. slide: press, and to and fro along the surface.
-/// grasp: two probes from opposite sides. all: press, slide, grasp; without grasp where no two places exist.
+/// grasp: two probes from opposite sides. all: press, slide, grasp; without grasp where no two places exist, or probes.
+/// Each probe beyond the second presses a place of its own, as far from those of the others as there is one.
 /// Throws std::runtime_error if the body offers no place, or `grasp` alone is asked for and there are no two.
 [[nodiscard]] std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe,
-                                                    double seconds);
+                                                    double seconds, std::size_t probes = 2);
 
 }  // namespace greenloop

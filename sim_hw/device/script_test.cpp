@@ -22,9 +22,9 @@ BodySurface sphere(double touchable_above) {
 }
 
 /// How deep a sphere reaches beyond the nearest node, m; negative outside.
-double penetration(const BodySurface& surface, const ProbeSize& probe, const Vec3& centre) {
+double penetration(const BodySurface& surface, const ProbeSize& probe, const Double3& centre) {
   double nearest = norm(surface.position[0] - centre);
-  for (const Vec3& position : surface.position) nearest = std::min(nearest, norm(position - centre));
+  for (const Double3& position : surface.position) nearest = std::min(nearest, norm(position - centre));
   return probe.radius - nearest;
 }
 
@@ -76,6 +76,29 @@ TEST_CASE("grasping comes from opposite sides") {
   const auto motions = make_script(Script::grasp, surface, probe, seconds);
   REQUIRE(motions.size() == 2);
   CHECK(dot(motions[0].target(5).axis, motions[1].target(5).axis) == doctest::Approx(-1));
+}
+
+TEST_CASE("a probe alone leaves the grasp out; each beyond the second presses a place of its own") {
+  const BodySurface surface = sphere(-0.2);
+  const ProbeSize probe = probe_size(surface);
+  CHECK(make_script(Script::all, surface, probe, seconds, 1).size() == 1);
+  CHECK_THROWS_AS((void)make_script(Script::grasp, surface, probe, seconds, 1), std::runtime_error);
+  CHECK(make_script(Script::press, surface, probe, seconds, 3).size() == 2);
+  const auto two = make_script(Script::all, surface, probe, seconds);
+  const auto six = make_script(Script::all, surface, probe, seconds, 6);
+  REQUIRE(six.size() == 6);
+  for (double time = 0; time < seconds; time += 0.1) {
+    for (std::size_t i = 0; i < two.size(); ++i) CHECK(six[i].target(time).centre == two[i].target(time).centre);
+  }
+  for (std::size_t i = 2; i < six.size(); ++i) {
+    double deepest = -1;
+    for (double time = 0; time < seconds; time += 0.002) {
+      deepest = std::max(deepest, penetration(surface, probe, six[i].target(time).centre));
+    }
+    CHECK(deepest <= 1.01 * probe.depth);
+    CHECK(deepest > 0.3 * probe.depth);
+    for (std::size_t j = 2; j < i; ++j) CHECK(norm(six[i].target(0).centre - six[j].target(0).centre) > probe.radius);
+  }
 }
 
 TEST_CASE("a small patch can be pressed; where two probes have no place, all leaves the grasp out") {

@@ -8,8 +8,8 @@
 namespace greenloop {
 namespace {
 
-Vec3 touchable_centre(const BodySurface& surface) {
-  Vec3 sum;
+Double3 touchable_centre(const BodySurface& surface) {
+  Double3 sum;
   double count = 0;
   for (std::size_t i = 0; i < surface.position.size(); ++i) {
     if (!surface.touchable[i]) continue;
@@ -20,8 +20,8 @@ Vec3 touchable_centre(const BodySurface& surface) {
 }
 
 /// The 13 axes of a cube through its faces, edges and corners.
-std::vector<Vec3> axes() {
-  std::vector<Vec3> all;
+std::vector<Double3> axes() {
+  std::vector<Double3> all;
   for (int x = 1; x >= -1; --x) {
     for (int y = 1; y >= -1; --y) {
       for (int z = 1; z >= -1; --z) {
@@ -35,11 +35,11 @@ std::vector<Vec3> axes() {
 
 std::vector<TouchPlace> candidates(const BodySurface& surface, double radius) {
   std::vector<TouchPlace> found;
-  const auto add = [&](const Vec3& point, const Vec3& outward) {
+  const auto add = [&](const Double3& point, const Double3& outward) {
     if (const auto place = lower_sphere(surface, radius, point, outward)) found.push_back(*place);
   };
-  const Vec3 centre = touchable_centre(surface);
-  for (const Vec3& axis : axes()) {
+  const Double3 centre = touchable_centre(surface);
+  for (const Double3& axis : axes()) {
     add(centre, axis);
     add(centre, -axis);
   }
@@ -57,7 +57,7 @@ double distance_to_nearest(const TouchPlace& place, const std::vector<TouchPlace
 }
 
 /// Places from `start` onwards in steps of `step`, as long as they neither jump nor end.
-std::vector<TouchPlace> walk(const BodySurface& surface, double radius, const TouchPlace& start, const Vec3& step,
+std::vector<TouchPlace> walk(const BodySurface& surface, double radius, const TouchPlace& start, const Double3& step,
                              int steps) {
   std::vector<TouchPlace> row;
   double height = dot(start.centre, start.outward);
@@ -72,12 +72,12 @@ std::vector<TouchPlace> walk(const BodySurface& surface, double radius, const To
 
 }  // namespace
 
-std::optional<TouchPlace> lower_sphere(const BodySurface& surface, double radius, const Vec3& point,
-                                       const Vec3& outward, double least_facing) {
+std::optional<TouchPlace> lower_sphere(const BodySurface& surface, double radius, const Double3& point,
+                                       const Double3& outward, double least_facing) {
   std::optional<TouchPlace> first;
   double highest = 0;
   for (std::size_t i = 0; i < surface.position.size(); ++i) {
-    const Vec3 offset = surface.position[i] - point;
+    const Double3 offset = surface.position[i] - point;
     const double along = dot(offset, outward);
     const double beside = dot(offset, offset) - along * along;
     if (beside >= radius * radius) continue;
@@ -109,8 +109,8 @@ std::vector<TouchPlace> touch_places(const BodySurface& surface, double radius, 
 std::optional<std::array<TouchPlace, 2>> opposing_places(const BodySurface& surface, double radius) {
   std::optional<std::array<TouchPlace, 2>> best;
   double best_facing = 0;
-  const Vec3 centre = touchable_centre(surface);
-  for (const Vec3& axis : axes()) {
+  const Double3 centre = touchable_centre(surface);
+  for (const Double3& axis : axes()) {
     const auto one = lower_sphere(surface, radius, centre, axis), other = lower_sphere(surface, radius, centre, -axis);
     if (!one || !other || std::min(one->facing, other->facing) <= best_facing) continue;
     best_facing = std::min(one->facing, other->facing);
@@ -135,9 +135,9 @@ std::vector<TouchPlace> sliding_row(const BodySurface& surface, double radius, d
   constexpr int steps = 8;
   std::vector<TouchPlace> longest;
   for (const TouchPlace& start : starts) {
-    const Vec3 first = perpendicular(start.outward);
-    for (const Vec3& tangent : {first, cross(start.outward, first)}) {
-      const Vec3 step = (length / steps) * tangent;
+    const Double3 first = perpendicular(start.outward);
+    for (const Double3& tangent : {first, cross(start.outward, first)}) {
+      const Double3 step = (length / steps) * tangent;
       std::vector<TouchPlace> row = walk(surface, radius, start, -step, steps);
       std::reverse(row.begin(), row.end());
       row.push_back(start);

@@ -5,23 +5,23 @@
 #include <optional>
 #include <vector>
 
+#include "runtime/algebra/double3.hpp"
 #include "sim_hw/body/body_surface.hpp"
-#include "sim_hw/body/vec3.hpp"
 
 namespace greenloop {
 
 /// A place of the body that a sphere reaches first when it comes straight from outside.
 struct TouchPlace {
-  Vec3 centre;             ///< m, of the sphere when it just touches
-  Vec3 outward;            ///< unit vector, back to where the sphere came from
+  Double3 centre;          ///< m, of the sphere when it just touches
+  Double3 outward;         ///< unit vector, back to where the sphere came from
   std::uint32_t node = 0;  ///< the node it touches
   double facing = 0;       ///< cosine between the node's normal and `outward`
 };
 
 /// Lowers a sphere of `radius` m against `outward` along the line through `point` until it touches a node. None if it
 /// passes the body, or meets a node that cannot be touched or faces away (facing < `least_facing`).
-[[nodiscard]] std::optional<TouchPlace> lower_sphere(const BodySurface& surface, double radius, const Vec3& point,
-                                                     const Vec3& outward, double least_facing = 0.3);
+[[nodiscard]] std::optional<TouchPlace> lower_sphere(const BodySurface& surface, double radius, const Double3& point,
+                                                     const Double3& outward, double least_facing = 0.3);
 
 /// Up to `most` places far from each other, in a fixed order. Throws std::runtime_error if there is none.
 [[nodiscard]] std::vector<TouchPlace> touch_places(const BodySurface& surface, double radius, std::size_t most);

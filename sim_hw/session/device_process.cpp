@@ -22,8 +22,8 @@ void close_end(int& end) {
 
 void run_device(HapticDevice& device) {
   Channel channel(Channel::multicast);
-  DeviceEnd end(device, [&](const messages::device_state& state) { channel.send(state); });
-  channel.on_command([&](const messages::loop_command& command) { end.receive(command); });
+  DeviceEnd end(device, [&](const DeviceState& state) { channel.send(state); });
+  channel.on_command([&](const LoopCommand& command) { end.receive(command); });
   end.start();
   while (!device.finished()) {
     if (!channel.receive(DeviceEnd::patience_ms)) end.silence();

@@ -52,6 +52,9 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
          "--script", [&options](const std::string& name) { options.script = read_script(name); },
          "What the hands do (default: all)")
       ->check(CLI::IsMember({"press", "slide", "grasp", "all"}));
+  app.add_option("--tools", options.tools, "Hands at most; each beyond the second presses a place of its own")
+      ->capture_default_str()
+      ->check(CLI::Range(1U, greenloop::max_tools));
   app.add_option("--budget", options.budget, "Work units per cycle (default: the model's)")->check(CLI::PositiveNumber);
   app.add_option("--starve", options.starve, "Multiplies the budget")
       ->capture_default_str()
@@ -88,7 +91,10 @@ void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs
 int run(const greenloop::SessionOptions& options, const Outputs& outputs) {
   const greenloop::SessionResult result = greenloop::run_session(options);
   const greenloop::Verdict verdict = greenloop::judge(result);
-  if (!outputs.trace.empty()) result.log.write_trace(outputs.trace, 1 / options.rate, result.budget);
+  if (!outputs.trace.empty()) {
+    const std::uint32_t columns = std::max(result.tools, 2U);  // a second probe that is not there reads zero
+    result.log.write_trace(outputs.trace, columns, 1 / options.rate, result.budget);
+  }
   if (!outputs.snapshot.empty()) result.log.write_snapshot(outputs.snapshot);
   if (outputs.json) {
     std::cout << greenloop::to_json(options, result, verdict).dump(2) << '\n';

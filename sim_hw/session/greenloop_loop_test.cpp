@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -200,6 +201,34 @@ TEST_CASE("the trace has a line per cycle, the snapshot one per node") {
   }
   CHECK(count == 1026);
   CHECK(deepest < 0);
+}
+
+TEST_CASE("more tools push more, with columns of their own in the trace") {
+  const std::string trace = workspace().file("trace4.csv");
+  const auto two = run_json({"--transport", "memq"});
+  const auto four = run_json({"--tools", "4", "--trace", trace});
+  CHECK(four["misses"] == 0);
+  CHECK(four["contact_cycles"] > two["contact_cycles"]);
+  CHECK(four["digest"] != two["digest"]);
+  CHECK(run_json({"--transport", "memq", "--tools", "4"})["digest"] == four["digest"]);
+  CHECK(run_json({"--transport", "memq", "--tools", "2"})["digest"] == two["digest"]);
+  CHECK(run_json({"--transport", "memq", "--tools", "1"})["digest"] != two["digest"]);
+  std::ifstream lines(trace);
+  std::string line;
+  std::getline(lines, line);
+  CHECK(contains(line, ",x3,y3,z3,force_x0,"));
+  CHECK(contains(line, ",force_x3,force_y3,force_z3,force,"));
+  double largest = 0;
+  while (std::getline(lines, line)) {
+    std::istringstream columns(line);
+    std::vector<std::string> column;
+    for (std::string text; std::getline(columns, text, ',');) column.push_back(text);
+    REQUIRE(column.size() == 32);
+    for (std::size_t i = 22; i < 25; ++i) largest = std::max(largest, std::abs(std::stod(column[i])));  // force_x3...
+  }
+  CHECK(largest > 0);
+  CHECK(run_text({"--tools", "0"}).exit_status == 2);
+  CHECK(run_text({"--tools", "9"}).exit_status == 2);
 }
 
 TEST_CASE("a field now and then costs less and changes the digest") {

@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "formats/write/aligned_bytes.hpp"
-#include "runtime/elastostatic.hpp"
 #include "runtime/model.hpp"
 
 namespace greenloop {
@@ -16,14 +15,5 @@ struct LoadedModel {
 
 /// Throws std::runtime_error naming the file and the field that is wrong.
 [[nodiscard]] LoadedModel load_model(const std::filesystem::path& file);
-
-/// A body and the arena it lives in.
-struct LoadedBody {
-  AlignedBytes arena;
-  Elastostatic body;
-};
-
-/// Throws std::runtime_error if the limits are refused.
-[[nodiscard]] LoadedBody create_body(const Model& model, const Elastostatic::Limits& limits);
 
 }  // namespace greenloop

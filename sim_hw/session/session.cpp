@@ -6,8 +6,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "runtime/elastostatic.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"
 #include "sim_hw/session/device_process.hpp"
+#include "sim_hw/session/hosted_loop_body.hpp"
 #include "sim_hw/session/loaded_model.hpp"
 #include "sim_hw/transport/channel.hpp"
 #include "sim_hw/transport/lock_step.hpp"
@@ -17,7 +19,7 @@ namespace greenloop {
 namespace {
 
 Elastostatic::Limits limits_of(const Model& model) {
-  constexpr std::uint32_t most = messages::loop_command::max_contacts;
+  constexpr std::uint32_t most = LoopCommand::max_contacts;
   Elastostatic::Limits limits = Elastostatic::intended(model).limits;
   limits.max_contacts = std::min(limits.max_contacts, most);
   return limits;
@@ -40,7 +42,7 @@ DeviceSetup device_setup(const SessionOptions& options, const BodySurface& surfa
   const double rounds = std::max(1.0, std::floor(options.seconds / round_seconds + 0.5));
   const ProbeSize probe = probe_size(surface);
   DeviceSetup setup;
-  setup.motion = make_script(options.script, surface, probe, options.seconds / rounds);
+  setup.motion = make_script(options.script, surface, probe, options.seconds / rounds, options.tools);
   setup.coupling = coupling(info, surface, probe, setup.hand);
   setup.origin = surface.centre;
   setup.period = 1 / options.rate;
@@ -68,18 +70,23 @@ void choose_transport(const SessionOptions& options, SessionResult& result) {
   }
 }
 
+/// Answers through `channel` what `loop` says, and notes the digest of what was said last.
+LoopEnd loop_end(Channel& channel, LoopThread& loop, SessionResult& result) {
+  const auto answer = [&loop](const DeviceState& state) -> const LoopCommand& { return loop.answer(state); };
+  const auto send = [&channel, &result](const LoopCommand& command) {
+    result.loop_digest = command.digest;
+    channel.send(command);
+  };
+  return {answer, send};
+}
+
 /// Both ends in one process, each driven by the messages of the other.
 void run_in_memory(HapticDevice& device, LoopThread& loop, SessionResult& result) {
   Channel channel(Channel::memory);
-  DeviceEnd device_end(device, [&](const messages::device_state& state) { channel.send(state); });
-  LoopEnd loop_end(
-      [&](const messages::device_state& state) -> const auto& { return loop.answer(state); },
-      [&](const messages::loop_command& command) {
-        result.loop_digest = command.digest;
-        channel.send(command);
-      });
-  channel.on_state([&](const messages::device_state& state) { loop_end.receive(state); });
-  channel.on_command([&](const messages::loop_command& command) { device_end.receive(command); });
+  DeviceEnd device_end(device, [&](const DeviceState& state) { channel.send(state); });
+  LoopEnd end = loop_end(channel, loop, result);
+  channel.on_state([&](const DeviceState& state) { end.receive(state); });
+  channel.on_command([&](const LoopCommand& command) { device_end.receive(command); });
   device_end.start();
   while (!device.finished()) {
     if (!channel.receive(DeviceEnd::patience_ms)) device_end.silence();
@@ -89,13 +96,8 @@ void run_in_memory(HapticDevice& device, LoopThread& loop, SessionResult& result
 /// The loop's end here, the device in a process of its own.
 void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& result) {
   Channel channel(Channel::multicast);
-  LoopEnd loop_end(
-      [&](const messages::device_state& state) -> const auto& { return loop.answer(state); },
-      [&](const messages::loop_command& command) {
-        result.loop_digest = command.digest;
-        channel.send(command);
-      });
-  channel.on_state([&](const messages::device_state& state) { loop_end.receive(state); });
+  LoopEnd end = loop_end(channel, loop, result);
+  channel.on_state([&](const DeviceState& state) { end.receive(state); });
   device.start();
   while (!device.ended()) {
     while (channel.receive(20)) {
@@ -116,11 +118,12 @@ SessionResult run_session(const SessionOptions& options) {
   result.budget = budget_of(options, model, need);
   const BodySurface surface = body_surface(model.view());
   HapticDevice device(device_setup(options, surface, *model.view().info));
+  result.tools = device.state().num_tools;
   result.cycles_asked = std::llround(options.seconds * options.rate);
   result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count());
 
-  const LoadedBody body = create_body(model, limits);
-  ControlLoop loop(body.body, surface,
+  HostedLoopBody<Elastostatic> body(model, limits);
+  ControlLoop loop(body, surface,
                    {.probe_radius = probe_size(surface).radius,
                     .max_contacts = limits.max_contacts,
                     .budget = result.budget,

@@ -17,6 +17,7 @@ struct SessionOptions {
   double seconds = 10;  ///< s of virtual time, > 0
   double rate = 1000;   ///< Hz, 100 or more: the hand's integration needs it
   Script script = Script::all;
+  std::uint32_t tools = 2;   ///< 1..max_tools, at most so many hands
   std::uint64_t budget = 0;  ///< units per cycle; 0: the model's own, or else the worst case of its finest level
   double starve = 1;         ///< (0, 1], of the budget
   Transport transport = Transport::automatic;
@@ -33,6 +34,7 @@ struct SessionResult {
   std::string transport;         ///< "udpm" or "memq"
   std::string transport_reason;  ///< why not two processes; empty for udpm
   int processes = 0;
+  std::uint32_t tools = 0;  ///< hands that the script moves
   DeviceSummary device;
   std::int64_t loop_digest = 0;  ///< of the last command sent
   std::uint64_t allocations = 0;

@@ -1,9 +1,11 @@
 #include "sim_hw/transport/channel.hpp"
 
-#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include "sim_hw/transport/packets.hpp"
 
 namespace greenloop {
 namespace {
@@ -11,21 +13,31 @@ namespace {
 constexpr const char* state_name = "DEVICE_STATE";
 constexpr const char* command_name = "LOOP_COMMAND";
 
-template <typename Message>
-void publish(lcm_t* lcm, const char* name, const Message& message) {
-  std::array<std::uint8_t, sizeof(Message) + 64> bytes;
-  const int length = message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+template <typename Packet>
+void publish(lcm_t* lcm, const char* name, const Packet& packet) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(packet.getEncodedSize()));
+  const int length = packet.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
   if (length < 0 || lcm_publish(lcm, name, bytes.data(), static_cast<unsigned>(length)) != 0) {
     throw std::runtime_error(std::string("lcm: ") + name + " cannot be sent");
   }
 }
 
-/// `receiver` is the std::function that takes the message. What cannot be decoded is not ours and is ignored.
-template <typename Message>
+/// The packet in the bytes, if it is one. LCM's decoder throws where an array's length is absurd.
+template <typename Packet>
+bool decode(const lcm_recv_buf_t& buffer, Packet& packet) {
+  try {
+    return packet.decode(buffer.data, 0, static_cast<int>(buffer.data_size)) >= 0;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// `receiver` is the std::function that takes the value. What cannot be decoded is not ours and is ignored.
+template <typename Packet, typename Value>
 void deliver(const lcm_recv_buf_t* buffer, const char*, void* receiver) {
-  Message message;
-  if (message.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return;
-  (*static_cast<std::function<void(const Message&)>*>(receiver))(message);
+  Packet packet;
+  if (!decode(*buffer, packet)) return;
+  if (const auto value = from_packet(packet)) (*static_cast<std::function<void(const Value&)>*>(receiver))(*value);
 }
 
 }  // namespace
@@ -34,18 +46,18 @@ Channel::Channel(const char* url) : lcm_(lcm_create(url)) {
   if (!lcm_) throw std::runtime_error(std::string("lcm: ") + url + " cannot be opened; is there a multicast route?");
 }
 
-void Channel::on_state(std::function<void(const messages::device_state&)> receive) {
+void Channel::on_state(std::function<void(const DeviceState&)> receive) {
   receive_state_ = std::move(receive);
-  lcm_subscribe(lcm_.get(), state_name, deliver<messages::device_state>, &receive_state_);
+  lcm_subscribe(lcm_.get(), state_name, deliver<messages::device_state, DeviceState>, &receive_state_);
 }
 
-void Channel::on_command(std::function<void(const messages::loop_command&)> receive) {
+void Channel::on_command(std::function<void(const LoopCommand&)> receive) {
   receive_command_ = std::move(receive);
-  lcm_subscribe(lcm_.get(), command_name, deliver<messages::loop_command>, &receive_command_);
+  lcm_subscribe(lcm_.get(), command_name, deliver<messages::loop_command, LoopCommand>, &receive_command_);
 }
 
-void Channel::send(const messages::device_state& state) { publish(lcm_.get(), state_name, state); }
-void Channel::send(const messages::loop_command& command) { publish(lcm_.get(), command_name, command); }
+void Channel::send(const DeviceState& state) { publish(lcm_.get(), state_name, to_packet(state)); }
+void Channel::send(const LoopCommand& command) { publish(lcm_.get(), command_name, to_packet(command)); }
 
 bool Channel::receive(int milliseconds) {
   const int handled = lcm_handle_timeout(lcm_.get(), milliseconds);

@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "greenloop/messages/device_state.hpp"
-#include "greenloop/messages/loop_command.hpp"
+#include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/loop_command.hpp"
 
 namespace greenloop {
 
@@ -23,10 +23,10 @@ class Channel {
   /// Throws std::runtime_error if LCM refuses `url`.
   explicit Channel(const char* url);
 
-  void on_state(std::function<void(const messages::device_state&)> receive);
-  void on_command(std::function<void(const messages::loop_command&)> receive);
-  void send(const messages::device_state& state);
-  void send(const messages::loop_command& command);
+  void on_state(std::function<void(const DeviceState&)> receive);
+  void on_command(std::function<void(const LoopCommand&)> receive);
+  void send(const DeviceState& state);
+  void send(const LoopCommand& command);
 
   /// Waits for one message at most `milliseconds` and passes it on. False if none came.
   bool receive(int milliseconds);
@@ -36,8 +36,8 @@ class Channel {
     void operator()(lcm_t* lcm) const { lcm_destroy(lcm); }
   };
   // filled before the subscription that uses them
-  std::function<void(const messages::device_state&)> receive_state_;
-  std::function<void(const messages::loop_command&)> receive_command_;
+  std::function<void(const DeviceState&)> receive_state_;
+  std::function<void(const LoopCommand&)> receive_command_;
   std::unique_ptr<lcm_t, Destroy> lcm_;
 };
 

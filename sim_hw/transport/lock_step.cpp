@@ -6,12 +6,12 @@
 
 namespace greenloop {
 
-DeviceEnd::DeviceEnd(HapticDevice& device, std::function<void(const messages::device_state&)> send)
+DeviceEnd::DeviceEnd(HapticDevice& device, std::function<void(const DeviceState&)> send)
     : device_(&device), send_(std::move(send)) {}
 
 void DeviceEnd::start() { send_(device_->state()); }
 
-void DeviceEnd::receive(const messages::loop_command& command) {
+void DeviceEnd::receive(const LoopCommand& command) {
   if (device_->finished() || command.cycle != device_->state().cycle) return;
   silences_ = 0;
   device_->apply(command);
@@ -27,11 +27,11 @@ void DeviceEnd::silence() {
   send_(device_->state());
 }
 
-LoopEnd::LoopEnd(std::function<const messages::loop_command&(const messages::device_state&)> answer,
-                 std::function<void(const messages::loop_command&)> send)
+LoopEnd::LoopEnd(std::function<const LoopCommand&(const DeviceState&)> answer,
+                 std::function<void(const LoopCommand&)> send)
     : answer_(std::move(answer)), send_(std::move(send)) {}
 
-void LoopEnd::receive(const messages::device_state& state) {
+void LoopEnd::receive(const DeviceState& state) {
   if (state.cycle == next_) {
     last_ = answer_(state);
     ++next_;

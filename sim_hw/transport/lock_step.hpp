@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <functional>
 
-#include "greenloop/messages/device_state.hpp"
-#include "greenloop/messages/loop_command.hpp"
 #include "sim_hw/device/haptic_device.hpp"
+#include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/loop_command.hpp"
 
 namespace greenloop {
 
@@ -16,35 +16,34 @@ class DeviceEnd {
   static constexpr int patience_ms = 50;     ///< silence after which a state is sent again
   static constexpr int most_silences = 200;  ///< 10 s without the answer: the loop is gone
 
-  DeviceEnd(HapticDevice& device, std::function<void(const messages::device_state&)> send);
+  DeviceEnd(HapticDevice& device, std::function<void(const DeviceState&)> send);
 
   void start();
 
   /// Commands of other cycles, answers to retransmissions, are ignored.
-  void receive(const messages::loop_command& command);
+  void receive(const LoopCommand& command);
 
   /// To be called after `patience_ms` without a message. Throws std::runtime_error after `most_silences` in a row.
   void silence();
 
  private:
   HapticDevice* device_;
-  std::function<void(const messages::device_state&)> send_;
+  std::function<void(const DeviceState&)> send_;
   int silences_ = 0;
 };
 
 /// The loop's half: every state is computed once, in order; one that comes again gets the same answer again.
 class LoopEnd {
  public:
-  LoopEnd(std::function<const messages::loop_command&(const messages::device_state&)> answer,
-          std::function<void(const messages::loop_command&)> send);
+  LoopEnd(std::function<const LoopCommand&(const DeviceState&)> answer, std::function<void(const LoopCommand&)> send);
 
-  void receive(const messages::device_state& state);
+  void receive(const DeviceState& state);
 
  private:
-  std::function<const messages::loop_command&(const messages::device_state&)> answer_;
-  std::function<void(const messages::loop_command&)> send_;
+  std::function<const LoopCommand&(const DeviceState&)> answer_;
+  std::function<void(const LoopCommand&)> send_;
   std::int64_t next_ = 0;
-  messages::loop_command last_{};
+  LoopCommand last_{};
 };
 
 }  // namespace greenloop

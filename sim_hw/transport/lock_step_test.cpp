@@ -13,13 +13,13 @@ namespace {
 
 DeviceSetup still_device(std::int64_t cycles) {
   DeviceSetup setup;
-  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Vec3{0, 0, 0.01}}, Vec3{0, 0, -1}}}, 1.0);
+  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Double3{0, 0, 0.01}}, Double3{0, 0, -1}}}, 1.0);
   setup.cycles = cycles;
   return setup;
 }
 
-messages::loop_command command_for(std::int64_t cycle) {
-  messages::loop_command command{};
+LoopCommand command_for(std::int64_t cycle) {
+  LoopCommand command{};
   command.cycle = cycle;
   command.budget = 100;
   command.digest = 1000 + cycle;
@@ -31,16 +31,16 @@ struct Bench {
   explicit Bench(std::int64_t cycles) : device(still_device(cycles)) {}
 
   HapticDevice device;
-  std::deque<messages::device_state> states;
-  std::deque<messages::loop_command> commands;
+  std::deque<DeviceState> states;
+  std::deque<LoopCommand> commands;
   std::vector<std::int64_t> computed;
-  messages::loop_command answer{};
-  DeviceEnd device_end{device, [this](const messages::device_state& s) { states.push_back(s); }};
-  LoopEnd loop_end{[this](const messages::device_state& s) -> const messages::loop_command& {
+  LoopCommand answer{};
+  DeviceEnd device_end{device, [this](const DeviceState& s) { states.push_back(s); }};
+  LoopEnd loop_end{[this](const DeviceState& s) -> const LoopCommand& {
                      computed.push_back(s.cycle);
                      return answer = command_for(s.cycle);
                    },
-                   [this](const messages::loop_command& c) { commands.push_back(c); }};
+                   [this](const LoopCommand& c) { commands.push_back(c); }};
 
   /// Delivers until both queues are empty; `lost()` says whether the next packet is.
   template <typename Lost>

@@ -12,7 +12,9 @@
 #include "recorded_equilibrated.h"
 #include "recorded_lifted_butterfly.h"
 #include "recorded_model.h"
-#include "rt_tests/determinism/recorded_script.hpp"
+#include "rt_tests/harness/elastostatic_driver.hpp"
+#include "rt_tests/harness/recorded_run.hpp"
+#include "rt_tests/harness/recorded_script.hpp"
 
 namespace {
 
@@ -64,26 +66,30 @@ const Recorded recorded[] = {
 };
 
 void print(const Recorded& of, const greenloop::RecordedRun& run) {
-  std::printf("%s, %s wavelets: %" PRIu32 " cycles, %" PRIu64 " units of work, %" PRIu32
+  std::printf("%s, %s wavelets: %" PRIu32 " cycles, %" PRIu64 " units of work, %" PRIu64
               " cached factors, arena %zu bytes; answers by status:",
-              this_build, of.wavelets, greenloop::RecordedScript::cycles, run.outcome.work, run.outcome.cached,
+              this_build, of.wavelets, greenloop::RecordedScript::cycles, run.counts.work, run.counts.cached,
               run.arena_bytes);
-  for (const std::uint32_t count : run.outcome.by_status) {
-    std::printf(" %" PRIu32, count);
+  for (const std::uint64_t count : run.counts.by_status) {
+    std::printf(" %" PRIu64, count);
   }
-  std::printf("; levels 0x%" PRIx32 "\ndigest %016" PRIx64 ", expected %016" PRIx64 "\n", run.outcome.levels,
-              run.outcome.digest, of.digest);
+  std::uint32_t levels = 0;
+  for (std::size_t level = 0; level < run.counts.by_level.size(); ++level) {
+    levels |= run.counts.by_level[level] > 0 ? 1U << level : 0;
+  }
+  std::printf("; levels 0x%" PRIx32 "\ndigest %016" PRIx64 ", expected %016" PRIx64 "\n", levels, run.digest,
+              of.digest);
 }
 
 // 0, or what the program exits with
 int compare(const Recorded& of, bool flip) {
-  const auto run = greenloop::run_recorded_script(of.model, arena, field, flip);
+  const auto run = greenloop::run_recorded_script<greenloop::ElastostaticDriver>(of.model, arena, field, flip);
   print(of, run);
   if (run.error != nullptr) {
     std::printf("%s\n", run.error);
     return 1;
   }
-  return run.outcome.digest == of.digest ? 0 : 4;
+  return run.digest == of.digest ? 0 : 4;
 }
 
 }  // namespace

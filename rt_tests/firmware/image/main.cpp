@@ -7,11 +7,13 @@
 #include "body_model.h"
 #include "recorded_equilibrated.h"
 #include "recorded_model.h"
-#include "rt_tests/determinism/recorded_script.hpp"
+#include "rt_tests/firmware/image/image_driver.hpp"
 #include "rt_tests/firmware/image/instruction_clock.hpp"
 #include "rt_tests/firmware/image/semihosting.hpp"
 #include "rt_tests/firmware/image/stack.hpp"
 #include "rt_tests/firmware/image/timed_loop.hpp"
+#include "rt_tests/harness/recorded_run.hpp"
+#include "runtime/testing/touchable_nodes.hpp"
 
 extern "C" const std::byte flash_used[], ram_used[];  // their addresses are the numbers of bytes
 
@@ -29,7 +31,7 @@ constexpr std::uint32_t most_steps_to_the_finest = 40;
 constexpr std::size_t most_nodes = 300;
 alignas(64) std::byte arena[128 * 1024];
 alignas(16) float field[4 * most_nodes];
-Elastostatic::Requirement requirement;
+Solver::Requirement requirement;
 RecordedRun recorded;
 
 struct Neighbour {
@@ -64,17 +66,17 @@ void print_sizes() {
 }
 
 int run_script(std::span<const std::byte> model, std::uint64_t digest, bool flip) {
-  recorded = run_recorded_script(model, arena, field, flip);
+  recorded = run_recorded_script<ImageDriver>(model, arena, field, flip);
   print_line("arena bytes", recorded.arena_bytes);
   if (recorded.error != nullptr) {
     print(recorded.error);
     return does_not_run;
   }
-  print_line("work units", recorded.outcome.work);
+  print_line("work units", recorded.counts.work);
   print("digest ");
-  print_hexadecimal(recorded.outcome.digest);
+  print_hexadecimal(recorded.digest);
   print("\n");
-  return recorded.outcome.digest == digest ? passed : digest_differs;
+  return recorded.digest == digest ? passed : digest_differs;
 }
 
 // a bit is flipped on the last model
@@ -88,21 +90,17 @@ int run_scripts(bool flip) {
 std::span<const std::uint32_t> list_nodes(const ModelView& view) {
   std::uint32_t count = 0;
   const float* centre = nullptr;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
-      const layout::NodeRecord& record = level.nodes[i];
-      if ((record.flags & layout::node_touchable) == 0 || count == most_nodes) {
-        continue;
-      }
-      centre = centre == nullptr ? record.position : centre;
-      float sum = 0;
-      for (int r = 0; r < 3; ++r) {
-        sum += (record.position[r] - centre[r]) * (record.position[r] - centre[r]);
-      }
-      neighbour[count++] = {sum, level.node_begin + i};
+  visit_touchable(view, [&](std::uint32_t node, const layout::NodeRecord& record) {
+    if (count == most_nodes) {
+      return;
     }
-  }
+    centre = centre == nullptr ? record.position : centre;
+    float sum = 0;
+    for (int r = 0; r < 3; ++r) {
+      sum += (record.position[r] - centre[r]) * (record.position[r] - centre[r]);
+    }
+    neighbour[count++] = {sum, node};
+  });
   std::sort(neighbour, neighbour + count,
             [](const Neighbour& a, const Neighbour& b) { return a.square_distance < b.square_distance; });
   std::transform(neighbour, neighbour + count, nodes, [](const Neighbour& at) { return at.node; });
@@ -137,18 +135,18 @@ int run_loop(bool slow) {
                                 {"a node in 16 ms", 16, false},
                                 {"a node in every step", 1, false},
                                 {"pressed at the finest level", 0, true}};
-  constexpr Elastostatic::Limits limits{
+  constexpr Solver::Limits limits{
       .max_contacts = contacts_per_step, .cached_factors = 4, .refining_work = refining_work};
   const auto opened = Model::open(std::as_bytes(std::span(body_model)));
   if (!opened || opened.model.node_count() > most_nodes) {
     return does_not_run;
   }
-  requirement = Elastostatic::required(opened.model, limits);
+  requirement = Solver::required(opened.model, limits);
   print_line("nodes", opened.model.node_count());
   print_line("arena bytes", requirement.bytes);
   print_line("least work", requirement.least_work);
   print_line("budget", budget.work);
-  auto created = Elastostatic::create(opened.model, limits, arena);
+  auto created = Solver::create(opened.model, limits, arena);
   if (!created) {
     return does_not_run;
   }

@@ -10,13 +10,14 @@ namespace {
 constexpr std::uint32_t period = 400'000;  // instructions: 1 ms at 400 MHz, one instruction a cycle
 
 struct Loop {
-  Elastostatic* body = nullptr;
+  Solver* body = nullptr;
   Budget budget;
   std::span<const std::uint32_t> nodes;
   std::span<float> field;
   Motion motion{};
   std::uint32_t steps_per_cycle = 1;
   Timing timing;
+  AnswerCounts counts;
   std::array<Constraint, contacts_per_step> contact{};
   std::array<float, 3 * contacts_per_step> force{};
   std::array<std::uint32_t, timed_cycles> instructions{};
@@ -33,20 +34,18 @@ void move_contacts() {
   }
 }
 
-void note(const Elastostatic::StepReport& report, std::uint32_t instructions) {
+void note(const Solver::StepReport& report, std::uint32_t instructions) {
+  ImageDriver::count(report, report, loop.counts);
   Timing& timing = loop.timing;
   if (report.status == Status::ok && timing.finest++ == 0) {
     timing.refined = cycle;
   }
-  timing.mixed += report.details.finer_level > report.constraint_level ? 1 : 0;
-  timing.held += !answered(report.status) ? 1 : 0;
-  timing.worst_work = std::max(timing.worst_work, report.work);
   loop.instructions[cycle] = instructions;
 }
 
 void run_cycle() {
   move_contacts();
-  Elastostatic::StepReport report;
+  Solver::StepReport report;
   const std::uint64_t begin = instructions();
   for (std::uint32_t k = 0; k < loop.steps_per_cycle; ++k) {
     report = loop.body->step(loop.contact, loop.budget, {loop.force, loop.field});
@@ -64,7 +63,7 @@ extern "C" void timer_interrupt() {
   }
 }
 
-Timing run_timed_loop(Elastostatic& body, Budget budget, std::span<const std::uint32_t> nodes, std::span<float> field,
+Timing run_timed_loop(Solver& body, Budget budget, std::span<const std::uint32_t> nodes, std::span<float> field,
                       const Motion& motion, bool slow) {
   loop = {};
   loop.body = &body;
@@ -86,6 +85,9 @@ Timing run_timed_loop(Elastostatic& body, Budget budget, std::span<const std::ui
   stop_periodic_interrupt();
   std::sort(loop.instructions.begin(), loop.instructions.end());
   loop.timing.cycles = timed_cycles;
+  loop.timing.mixed = static_cast<std::uint32_t>(loop.counts.mixed);
+  loop.timing.held = static_cast<std::uint32_t>(loop.counts.refusals());
+  loop.timing.worst_work = loop.counts.worst_work;
   loop.timing.median = loop.instructions[timed_cycles / 2];
   loop.timing.worst = loop.instructions.back();
   return loop.timing;

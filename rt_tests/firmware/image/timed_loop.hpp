@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime/elastostatic.hpp"
+#include "rt_tests/firmware/image/image_driver.hpp"
 
 namespace greenloop::firmware {
 
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t timed_cycles = 1000;
 
 /// Runs `timed_cycles` steps in the periodic interrupt. nodes: touchable nodes, neighbours beside each other. With
 /// `slow` a step is repeated until the bar is missed, a negative control.
-[[nodiscard]] Timing run_timed_loop(Elastostatic& body, Budget budget, std::span<const std::uint32_t> nodes,
+[[nodiscard]] Timing run_timed_loop(Solver& body, Budget budget, std::span<const std::uint32_t> nodes,
                                     std::span<float> field, const Motion& motion, bool slow);
 
 }  // namespace greenloop::firmware

@@ -4,7 +4,10 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime/elastostatic.hpp"
+#include "rt_tests/harness/script_bounds.hpp"
+#include "runtime/constraint.hpp"
+#include "runtime/loop.hpp"
+#include "runtime/model.hpp"
 
 namespace greenloop {
 
@@ -17,7 +20,7 @@ class RecordedScript {
   static constexpr std::uint32_t cycles = 10'000;
   static constexpr std::uint32_t most_contacts = 8;
   static constexpr std::uint32_t most_touchable = 192;
-  static constexpr Elastostatic::Limits limits{.max_contacts = most_contacts, .cached_factors = 4};
+  static constexpr std::uint32_t sets = 4;  ///< that the body is to remember
 
   struct Cycle {
     std::span<const Constraint> contacts;  ///< valid until the next cycle; at most most_contacts + 1
@@ -26,7 +29,7 @@ class RecordedScript {
   };
 
   /// `model` must outlive the script and have 1..most_touchable touchable nodes (`usable`).
-  RecordedScript(const Model& model, const Elastostatic::Requirement& requirement) noexcept;
+  RecordedScript(const Model& model, const ScriptBounds& bounds) noexcept;
 
   [[nodiscard]] bool usable() const noexcept { return touchable_ > 0 && touchable_ <= most_touchable; }
 
@@ -53,7 +56,7 @@ class RecordedScript {
   [[nodiscard]] float uniform() noexcept;  ///< -1..1
 
   const Model* model_;
-  Elastostatic::Requirement requirement_;
+  ScriptBounds bounds_;
   std::uint64_t state_ = 20;
   std::uint32_t touchable_ = 0;
   std::uint32_t not_touchable_ = 0;                    ///< a node that is not, if there is one
@@ -64,36 +67,5 @@ class RecordedScript {
   std::uint32_t remaining_ = 0;
   std::uint32_t age_ = 0;
 };
-
-/// What came of a whole script.
-struct ScriptOutcome {
-  std::uint64_t digest = 0;  ///< of every report, force and field
-  std::array<std::uint32_t, 10> by_status{};
-  std::uint32_t cached = 0;   ///< answers from a cached factor
-  std::uint32_t levels = 0;   ///< bit c: some contacts were resolved at level c
-  std::uint32_t refined = 0;  ///< answers at a finer level than the last, whose factor was made in slices
-  std::uint64_t work = 0;     ///< units in all
-
-  /// Whether the script met all it is meant to meet on a model of that many levels.
-  [[nodiscard]] bool complete(std::uint32_t model_levels) const noexcept;
-};
-
-/// The digests of the script on write_recorded_model's models: what every target has to find.
-inline constexpr std::uint64_t recorded_digest = 0xedd51eb3146ab249;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xa398c99615c64c55;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0xa0339b07d556c417;
-inline constexpr std::uint64_t recorded_equilibrated_digest = 0x6ff40a022aafac57;
-
-/// A body that ran the whole script, or why it did not.
-struct RecordedRun {
-  const char* error = nullptr;  ///< null: it ran
-  std::size_t arena_bytes = 0;
-  ScriptOutcome outcome;
-};
-
-/// Runs the script on the model file in `bytes`. field: 16-byte aligned, at least 4 floats per node. With `flip` one
-/// bit of one answer is changed, a negative control.
-[[nodiscard]] RecordedRun run_recorded_script(std::span<const std::byte> bytes, std::span<std::byte> arena,
-                                              std::span<float> field, bool flip) noexcept;
 
 }  // namespace greenloop

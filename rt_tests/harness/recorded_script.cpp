@@ -1,7 +1,6 @@
-#include "rt_tests/determinism/recorded_script.hpp"
+#include "rt_tests/harness/recorded_script.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cfloat>
 #include <limits>
 
@@ -12,64 +11,10 @@ namespace {
 
 const float* position(const ModelView& view, std::uint32_t node) { return node_record(view, node).position; }
 
-class Digest {
- public:
-  void add(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001b3; }
-  void add(std::span<const float> values) {
-    for (const float value : values) {
-      add(std::bit_cast<std::uint32_t>(value));
-    }
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325;
-};
-
-void note(const Elastostatic::StepReport& report, const Elastostatic::StepReport& last, ScriptOutcome& outcome) {
-  ++outcome.by_status[static_cast<std::size_t>(report.status)];
-  outcome.work += report.work;
-  if (answered(report.status)) {
-    outcome.cached += report.details.cached_factor ? 1 : 0;
-    outcome.levels |= 1U << report.constraint_level;
-    const bool finer = report.constraint_level > last.constraint_level;
-    outcome.refined += finer && last.details.pending_work > 0 && report.details.cached_factor ? 1 : 0;
-  }
-}
-
-ScriptOutcome run_script(RecordedScript& script, Elastostatic& body, std::span<float> field, bool flip) {
-  ScriptOutcome outcome;
-  Digest digest;
-  Elastostatic::StepReport last;
-  std::array<float, 3 * (RecordedScript::most_contacts + 1)> force_memory{};
-  for (std::uint32_t i = 0; i < RecordedScript::cycles; ++i) {
-    const RecordedScript::Cycle cycle = script.next();
-    const std::span<float> force(force_memory.data(), 3 * cycle.contacts.size());
-    const Elastostatic::StepReport report =
-        body.step(cycle.contacts, cycle.budget, {force, cycle.with_field ? field : std::span<float>()});
-    if (flip && i == RecordedScript::cycles / 2) {
-      field[0] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(field[0]) ^ 1U);
-    }
-    note(report, last, outcome);
-    last = report;
-    digest.add(static_cast<std::uint64_t>(report.status) << 32 | report.constraint_level << 8 | report.field_level);
-    digest.add(std::uint64_t{report.details.finer_level} << 32 | report.details.finer_contacts);
-    digest.add(report.work << 1 | (report.details.cached_factor ? 1 : 0));
-    digest.add(std::bit_cast<std::uint32_t>(report.details.glide));
-    digest.add(std::bit_cast<std::uint32_t>(report.details.level_difference));
-    digest.add(std::bit_cast<std::uint64_t>(report.details.switch_work));
-    digest.add(report.details.pending_work);
-    digest.add(force);
-    digest.add(field);
-  }
-  outcome.digest = digest.value();
-  return outcome;
-}
-
 }  // namespace
 
-RecordedScript::RecordedScript(const Model& model, const Elastostatic::Requirement& requirement) noexcept
-    : model_(&model), requirement_(requirement) {
+RecordedScript::RecordedScript(const Model& model, const ScriptBounds& bounds) noexcept
+    : model_(&model), bounds_(bounds) {
   visit_nodes(model.view(), [this](std::uint32_t node, const layout::NodeRecord& record) {
     if ((record.flags & layout::node_touchable) == 0) {
       not_touchable_ = node;
@@ -190,8 +135,7 @@ void RecordedScript::spoil() noexcept {
 }
 
 Budget RecordedScript::draw_budget() noexcept {
-  const std::uint64_t least = requirement_.least_work;
-  const std::uint64_t worst = *std::max_element(std::begin(requirement_.worst_work), std::end(requirement_.worst_work));
+  const std::uint64_t least = bounds_.least_work, worst = bounds_.worst_work;
   switch (below(8)) {
     case 0:
       return {least};
@@ -222,38 +166,5 @@ std::uint32_t RecordedScript::below(std::uint32_t bound) noexcept {
 }
 
 float RecordedScript::uniform() noexcept { return static_cast<float>(random() >> 40) * 0x1p-23F - 1; }
-
-bool ScriptOutcome::complete(std::uint32_t model_levels) const noexcept {
-  const auto count = [this](Status status) { return by_status[static_cast<std::size_t>(status)]; };
-  const std::uint32_t every_level = (1U << model_levels) - 1;
-  return count(Status::ok) > 1000 && count(Status::coarser) > 1000 && count(Status::held_not_finite) > 0 &&
-         count(Status::held_out_of_range) > 0 && count(Status::held_not_touchable) > 0 &&
-         count(Status::held_duplicate) > 0 && count(Status::held_over_budget) > 0 && count(Status::held_overflow) > 0 &&
-         cached > 1000 && refined > 10 && levels == every_level;
-}
-
-RecordedRun run_recorded_script(std::span<const std::byte> bytes, std::span<std::byte> arena, std::span<float> field,
-                                bool flip) noexcept {
-  RecordedRun run;
-  const auto opened = Model::open(bytes);
-  if (!opened) {
-    run.error = opened.result.field;
-    return run;
-  }
-  const Elastostatic::Requirement need = Elastostatic::required(opened.model, RecordedScript::limits);
-  run.arena_bytes = need.bytes;
-  auto created = Elastostatic::create(opened.model, RecordedScript::limits, arena);
-  RecordedScript script(opened.model, need);
-  const std::size_t floats = std::size_t{4} * opened.model.node_count();
-  if (!created || !script.usable() || field.size() < floats) {
-    run.error = "too large a model for the memory given";
-    return run;
-  }
-  run.outcome = run_script(script, created.body, field.first(floats), flip);
-  if (!run.outcome.complete(opened.model.level_count())) {
-    run.error = "the script did not meet all it is meant to meet";
-  }
-  return run;
-}
 
 }  // namespace greenloop

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/elastostatic.hpp"
+#include "formats/view.hpp"
+#include "rt_tests/harness/script_bounds.hpp"
+#include "runtime/constraint.hpp"
 
 namespace greenloop {
 
@@ -26,11 +28,11 @@ enum class ScriptKind : std::uint8_t {
   garbage,       ///< NaN, infinite, out of range, not touchable, twice, too many
   mixed          ///< bursts of all the others in random order
 };
-inline constexpr std::array<const char*, 13> script_names = {
+inline constexpr std::array<const char*, 13> contact_script_names = {
     "single",       "press",       "slide",    "every-node", "neighbours", "coincident", "random",
     "defeat-cache", "flap-levels", "extremes", "release",    "garbage",    "mixed"};
 
-constexpr const char* name(ScriptKind kind) { return script_names[static_cast<std::size_t>(kind)]; }
+constexpr const char* name(ScriptKind kind) { return contact_script_names[static_cast<std::size_t>(kind)]; }
 
 /// One cycle of a script.
 struct ScriptedStep {
@@ -44,8 +46,8 @@ struct ScriptedStep {
 /// unlimited in the others. The same kind and seed give the same script.
 class ContactScript {
  public:
-  ContactScript(const ModelView& view, const Elastostatic::Limits& limits, const Elastostatic::Requirement& requirement,
-                ScriptKind kind, std::uint64_t seed);
+  /// `view` must outlive it. Throws std::runtime_error if no node is touchable.
+  ContactScript(const ModelView& view, const ScriptBounds& bounds, ScriptKind kind, std::uint64_t seed);
 
   /// The next cycle; valid until the one after. Not for an armed section: it allocates.
   const ScriptedStep& next();
@@ -69,10 +71,8 @@ class ContactScript {
   float uniform() { return static_cast<float>(random_() >> 40) * 0x1p-23F - 1; }
 
   const ModelView* view_;
-  Elastostatic::Limits limits_;
-  Elastostatic::Requirement requirement_;
+  ScriptBounds bounds_;
   ScriptKind script_;
-  std::uint64_t worst_work_ = 0;
   std::vector<std::uint32_t> touchable_;        ///< increasing
   std::vector<std::uint32_t> shuffled_;         ///< the same in changing order
   std::uint32_t not_touchable_ = layout::none;  ///< a node that is not, if there is one

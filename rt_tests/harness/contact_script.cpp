@@ -1,4 +1,4 @@
-#include "rt_tests/stress/contact_script.hpp"
+#include "rt_tests/harness/contact_script.hpp"
 
 #include <algorithm>
 #include <cfloat>
@@ -31,10 +31,8 @@ std::mt19937_64 generator(ScriptKind kind, std::uint64_t seed) {
 
 }  // namespace
 
-ContactScript::ContactScript(const ModelView& view, const Elastostatic::Limits& limits,
-                             const Elastostatic::Requirement& requirement, ScriptKind kind, std::uint64_t seed)
-    : view_(&view), limits_(limits), requirement_(requirement), script_(kind), random_(generator(kind, seed)) {
-  worst_work_ = *std::max_element(std::begin(requirement.worst_work), std::end(requirement.worst_work));
+ContactScript::ContactScript(const ModelView& view, const ScriptBounds& bounds, ScriptKind kind, std::uint64_t seed)
+    : view_(&view), bounds_(bounds), script_(kind), random_(generator(kind, seed)) {
   list_touchable();
   if (touchable_.empty()) {
     throw std::runtime_error(
@@ -43,7 +41,7 @@ ContactScript::ContactScript(const ModelView& view, const Elastostatic::Limits& 
   }
   shuffled_ = touchable_;
   list_short_edges();
-  most_ = std::min<std::size_t>(limits.max_contacts, touchable_.size());
+  most_ = std::min<std::size_t>(bounds.contacts, touchable_.size());
 }
 
 void ContactScript::list_touchable() {
@@ -131,7 +129,7 @@ void ContactScript::place_patch() {
 void ContactScript::draw_sets() {
   const bool strangers = below(2) == 0;
   const std::size_t apart = 1 + below(4);
-  sets_.assign(limits_.cached_factors + std::size_t{1}, {});
+  sets_.assign(bounds_.sets + std::size_t{1}, {});
   for (std::size_t i = 0; i < sets_.size(); ++i) {
     if (strangers) {
       scatter(size_);
@@ -260,14 +258,14 @@ void ContactScript::spoil() {
       step_.contacts.push_back(victim);
       break;
     default:
-      step_.contacts.resize(limits_.max_contacts + 1 + below(4), victim);
+      step_.contacts.resize(bounds_.contacts + 1 + below(4), victim);
       break;
   }
 }
 
 void ContactScript::draw_budget() {
-  const std::uint64_t least = requirement_.least_work;
-  const std::uint64_t span = worst_work_ > least ? worst_work_ - least : 1;
+  const std::uint64_t least = bounds_.least_work;
+  const std::uint64_t span = bounds_.worst_work > least ? bounds_.worst_work - least : 1;
   if (kind_ == ScriptKind::flap_levels) {
     step_.budget = age_ % 2 == 0 ? least : ~std::uint64_t{0};
     return;
@@ -284,7 +282,7 @@ void ContactScript::draw_budget() {
       step_.budget = below(16) == 0 ? random_() % least : least + 1;
       break;
     case 2:
-      step_.budget = worst_work_;
+      step_.budget = bounds_.worst_work;
       break;
     case 3:
       step_.budget = least + random_() % span;

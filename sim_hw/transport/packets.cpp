@@ -1,0 +1,81 @@
+#include "sim_hw/transport/packets.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+namespace greenloop {
+namespace {
+
+bool fits(std::int32_t count, std::uint32_t most) { return count >= 0 && static_cast<std::uint32_t>(count) <= most; }
+
+}  // namespace
+
+messages::device_state to_packet(const DeviceState& state) {
+  messages::device_state packet{};
+  packet.cycle = state.cycle;
+  packet.resolution = state.resolution;
+  std::copy(std::begin(state.origin), std::end(state.origin), packet.origin);
+  packet.num_tools = static_cast<std::int32_t>(state.num_tools);
+  packet.tools.resize(state.num_tools);
+  for (std::uint32_t t = 0; t < state.num_tools; ++t) {
+    std::copy_n(state.tools[t].position, 3, packet.tools[t].position);
+    std::copy_n(state.tools[t].axis, 3, packet.tools[t].axis);
+  }
+  return packet;
+}
+
+messages::loop_command to_packet(const LoopCommand& command) {
+  messages::loop_command packet{};
+  packet.cycle = command.cycle;
+  packet.work = command.work;
+  packet.budget = command.budget;
+  packet.level = command.level;
+  packet.field_level = command.field_level;
+  packet.status = command.status;
+  packet.digest = command.digest;
+  packet.num_tools = static_cast<std::int32_t>(command.num_tools);
+  packet.tools.resize(command.num_tools);
+  for (std::uint32_t t = 0; t < command.num_tools; ++t) {
+    std::copy_n(command.tool_force[t], 3, packet.tools[t].force);
+  }
+  packet.num_contacts = static_cast<std::int32_t>(command.num_contacts);
+  packet.contacts.resize(command.num_contacts);
+  for (std::uint32_t i = 0; i < command.num_contacts; ++i) {
+    packet.contacts[i].node = static_cast<std::int32_t>(command.contacts[i].node);
+    std::copy_n(command.contacts[i].force, 3, packet.contacts[i].force);
+  }
+  return packet;
+}
+
+std::optional<DeviceState> from_packet(const messages::device_state& packet) {
+  if (!fits(packet.num_tools, max_tools)) return std::nullopt;
+  DeviceState state{.cycle = packet.cycle, .resolution = packet.resolution};
+  std::copy(std::begin(packet.origin), std::end(packet.origin), state.origin);
+  state.num_tools = static_cast<std::uint32_t>(packet.num_tools);
+  for (std::uint32_t t = 0; t < state.num_tools; ++t) {
+    std::copy_n(packet.tools[t].position, 3, state.tools[t].position);
+    std::copy_n(packet.tools[t].axis, 3, state.tools[t].axis);
+  }
+  return state;
+}
+
+std::optional<LoopCommand> from_packet(const messages::loop_command& packet) {
+  if (!fits(packet.num_tools, max_tools) || !fits(packet.num_contacts, LoopCommand::max_contacts)) return std::nullopt;
+  LoopCommand command{.cycle = packet.cycle,
+                      .work = packet.work,
+                      .budget = packet.budget,
+                      .level = packet.level,
+                      .field_level = packet.field_level,
+                      .status = packet.status,
+                      .digest = packet.digest};
+  command.num_tools = static_cast<std::uint32_t>(packet.num_tools);
+  for (std::uint32_t t = 0; t < command.num_tools; ++t) std::copy_n(packet.tools[t].force, 3, command.tool_force[t]);
+  command.num_contacts = static_cast<std::uint32_t>(packet.num_contacts);
+  for (std::uint32_t i = 0; i < command.num_contacts; ++i) {
+    command.contacts[i].node = static_cast<std::uint32_t>(packet.contacts[i].node);
+    std::copy_n(packet.contacts[i].force, 3, command.contacts[i].force);
+  }
+  return command;
+}
+
+}  // namespace greenloop

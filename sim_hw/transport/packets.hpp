@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+
+#include "greenloop/messages/device_state.hpp"
+#include "greenloop/messages/loop_command.hpp"
+#include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/loop_command.hpp"
+
+namespace greenloop {
+
+// Between the messages that travel, whose arrays are as long as they need to be, and the values that threads hand over.
+// Never for the loop itself: they allocate.
+
+[[nodiscard]] messages::device_state to_packet(const DeviceState& state);
+[[nodiscard]] messages::loop_command to_packet(const LoopCommand& command);
+
+/// None if it has more tools than max_tools, or fewer than none.
+[[nodiscard]] std::optional<DeviceState> from_packet(const messages::device_state& packet);
+
+/// The same, also with more contacts than LoopCommand::max_contacts.
+[[nodiscard]] std::optional<LoopCommand> from_packet(const messages::loop_command& packet);
+
+}  // namespace greenloop
