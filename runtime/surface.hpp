@@ -21,7 +21,8 @@ class Surface {
   enum class Error : std::uint8_t {
     none,
     bad_level,          ///< the model has no such level
-    unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has too many triangles: 2^30
+    unsupported_model,  ///< its refinement is not that of a subdivided triangulation, or it has too many triangles:
+                        ///< 2^30
     memory_too_small,
     memory_misaligned,
   };
