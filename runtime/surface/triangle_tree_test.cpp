@@ -4,23 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "formats/mesh/surface_io.hpp"
+#include "formats/mesh/test_files.hpp"
 #include "formats/write/aligned_bytes.hpp"
 
 namespace greenloop {
 namespace {
-
-std::filesystem::path fetched(const std::string& name) {
-  const char* folder = std::getenv("GREENLOOP_DATA");
-  REQUIRE_MESSAGE(folder != nullptr, "GREENLOOP_DATA is not set; run the tests through ctest");
-  return std::filesystem::path(folder) / name;
-}
 
 // a tree over triangles of its own
 class Built {
