@@ -20,6 +20,7 @@
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/pipeline/body_problem.hpp"
 #include "offline/pipeline/store_room.hpp"
+#include "offline/pipeline/vertex_map.hpp"
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/solve/green_functions.hpp"
@@ -275,6 +276,7 @@ json build_model_file(const BuildRequest& asked, ProgressBar& progress) {
   provenance["frontier_contacts"] = built.model.info.max_contacts;
   provenance["patches"] = built.report.patches;
   built.model.provenance = provenance.dump();
+  if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
   settle_step_work(scene, built.model);
   const auto bytes = encode(built.model);
   write_file(request.model, bytes);

@@ -385,6 +385,22 @@ TEST_CASE("refused: base vertices of a volume") {
                 {"remesh.base_vertices: does not go with [volume]"});
 }
 
+TEST_CASE("a vertex map is kept if the scene says so, and only then part of the canonical text") {
+  CHECK(!parse_scene(smallest, "s.toml").mesh.keep_vertex_map);
+  const Scene asks = parse_scene(with("unit =", "keep_vertex_map = true\nunit ="), "s.toml");
+  CHECK(asks.mesh.keep_vertex_map);
+  CHECK(parse_scene(canonical_text(asks), "s.toml").mesh.keep_vertex_map);
+  const Scene declines = parse_scene(with("unit =", "keep_vertex_map = false\nunit ="), "s.toml");
+  CHECK(canonical_text(declines) == canonical_text(parse_scene(smallest, "s.toml")));
+}
+
+TEST_CASE("refused: a vertex map that is no flag, and one of a volume") {
+  check_refused(with("unit =", "keep_vertex_map = 1\nunit ="),
+                {":3:19: surface.keep_vertex_map: is a whole number; expected true or false"});
+  check_refused(with("[surface]", "[volume]\nkeep_vertex_map = true"),
+                {"volume.keep_vertex_map: does not go with [volume]"});
+}
+
 TEST_CASE("refused: levels out of range") {
   check_refused(smallest + "[remesh]\nlevels = 8\n", {"remesh.levels: 8 is out of range; it has to be from 0 to 7"});
   check_refused(smallest + "[remesh]\nlevels = -1\n", {"remesh.levels: -1 is out of range"});

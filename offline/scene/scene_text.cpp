@@ -65,7 +65,8 @@ std::string regions_text(const std::string& role, const std::vector<Region>& reg
 
 std::string mesh_text(const MeshSource& mesh) {
   return std::string(mesh.tetrahedra ? "[volume]" : "[surface]") + "\nfile = " + string(mesh.name) + "\n" +
-         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n";
+         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n" +
+         (mesh.keep_vertex_map ? "keep_vertex_map = true\n" : "");
 }
 
 std::string remesh_text(const Scene& scene) {
