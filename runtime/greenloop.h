@@ -262,6 +262,18 @@ greenloop_nearest_node greenloop_surface_nearest_node(const greenloop_surface* s
                                                       uint32_t flags);
 greenloop_nearest_point greenloop_surface_nearest_point(const greenloop_surface* surface, const float* position);
 
+/* Where a vertex of the author's surface lies on the model's: nodes of the model and the share of each. The
+ * displacement of the vertex is that of the nodes, weighted. */
+typedef struct greenloop_vertex {
+  uint32_t node[3];
+  float weight[3]; /* 0..1, sum 1 */
+} greenloop_vertex;
+
+/* Vertices of the author's surface, in the order of its file; 0 if the scene did not ask to keep them. */
+size_t greenloop_vertex_count(const greenloop_model* model);
+/* Writes where one lies; 0 if there is no such vertex. */
+int greenloop_vertex_on_surface(const greenloop_model* model, size_t vertex, greenloop_vertex* where);
+
 /* One sentence; static storage. */
 const char* greenloop_surface_error_text(greenloop_surface_error error);
 

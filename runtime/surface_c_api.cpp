@@ -1,5 +1,6 @@
 #include <bit>
 #include <cstddef>
+#include <cstring>
 #include <new>
 #include <type_traits>
 
@@ -22,7 +23,8 @@ static_assert(same(GREENLOOP_SURFACE_OK, Surface::Error::none) &&
               same(GREENLOOP_SURFACE_UNSUPPORTED_MODEL, Surface::Error::unsupported_model) &&
               same(GREENLOOP_SURFACE_MEMORY_TOO_SMALL, Surface::Error::memory_too_small) &&
               same(GREENLOOP_SURFACE_MEMORY_MISALIGNED, Surface::Error::memory_misaligned));
-static_assert(sizeof(Surface::Triangle) == sizeof(greenloop_triangle));
+static_assert(sizeof(Surface::Triangle) == sizeof(greenloop_triangle) &&
+              sizeof(layout::VertexRecord) == sizeof(greenloop_vertex));
 static_assert(sizeof(Surface) == sizeof(void*) && std::is_trivially_copyable_v<Surface>);
 
 const Model& model_in(const greenloop_model* model) {
@@ -104,6 +106,15 @@ greenloop_nearest_node greenloop_surface_nearest_node(const greenloop_surface* s
 greenloop_nearest_point greenloop_surface_nearest_point(const greenloop_surface* surface, const float* position) {
   const auto [triangle, weight, squared_distance] = surface_of(surface).nearest_point(vec3(position));
   return {triangle, {weight[0], weight[1], weight[2]}, squared_distance};
+}
+
+size_t greenloop_vertex_count(const greenloop_model* model) { return model_in(model).view().vertices.size(); }
+
+int greenloop_vertex_on_surface(const greenloop_model* model, size_t vertex, greenloop_vertex* where) {
+  const std::span<const layout::VertexRecord> vertices = model_in(model).view().vertices;
+  if (vertex >= vertices.size()) return 0;
+  std::memcpy(where, &vertices[vertex], sizeof *where);
+  return 1;
 }
 
 const char* greenloop_surface_error_text(greenloop_surface_error error) {

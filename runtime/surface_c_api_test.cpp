@@ -104,6 +104,22 @@ TEST_CASE("surface: what does not fit is refused in C too") {
   CHECK(small.surface == nullptr);
 }
 
+TEST_CASE("a vertex map is told in C too") {
+  const AlignedBytes bytes(encode(synthetic_model({.levels = 2, .vertices = 9})));
+  greenloop_model model;
+  REQUIRE(greenloop_open(bytes.data(), bytes.size(), &model).rule == GREENLOOP_RULE_OK);
+  const auto opened = Model::open(bytes.span());
+  REQUIRE(greenloop_vertex_count(&model) == 9);
+  greenloop_vertex where{};
+  for (std::size_t i = 0; i < 9; ++i) {
+    REQUIRE(greenloop_vertex_on_surface(&model, i, &where) == 1);
+    CHECK(std::memcmp(&where, &opened.model.view().vertices[i], sizeof where) == 0);
+  }
+  CHECK(greenloop_vertex_on_surface(&model, 9, &where) == 0);
+  const Both without;
+  CHECK(greenloop_vertex_count(&without.model) == 0);
+}
+
 TEST_CASE("surface: every error has a text of its own") {
   std::set<std::string> texts;
   for (int error = GREENLOOP_SURFACE_OK; error <= GREENLOOP_SURFACE_MEMORY_MISALIGNED; ++error) {
