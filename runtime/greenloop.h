@@ -231,6 +231,99 @@ const char* greenloop_rule_text(greenloop_rule rule);
 const char* greenloop_create_error_text(greenloop_create_error error);
 const char* greenloop_status_text(greenloop_status status);
 
+/* ---- The surface: what runtime/surface.hpp gives. ----
+ *
+ * A greenloop_surface lives in the caller's memory, GREENLOOP_ALIGNMENT-aligned, and needs the model no more once it is
+ * created. It does not change: any number of threads may ask at once. All but _required and _create are for the loop.
+ */
+
+#define GREENLOOP_NONE 0xffffffffU /* no node, no triangle */
+
+/* What a node may be: flags to be added up. */
+enum {
+  GREENLOOP_NODE_DOMAIN = 1,    /* its displacement is stored */
+  GREENLOOP_NODE_TOUCHABLE = 2, /* may be a contact */
+  GREENLOOP_NODE_FIXED = 4,     /* held in place */
+  GREENLOOP_NODE_READ = 8       /* the scene asked for its displacement */
+};
+
+typedef struct greenloop_surface greenloop_surface;
+
+typedef enum greenloop_surface_error {
+  GREENLOOP_SURFACE_OK,
+  GREENLOOP_SURFACE_BAD_LEVEL,
+  GREENLOOP_SURFACE_UNSUPPORTED_MODEL,
+  GREENLOOP_SURFACE_MEMORY_TOO_SMALL,
+  GREENLOOP_SURFACE_MEMORY_MISALIGNED
+} greenloop_surface_error;
+
+typedef struct greenloop_surface_created {
+  greenloop_surface_error error;
+  size_t requested, available, missing; /* bytes */
+  greenloop_surface* surface;           /* null on an error */
+} greenloop_surface_created;
+
+/* Nodes of the model, counter-clockwise seen from outside. */
+typedef struct greenloop_triangle {
+  uint32_t node[3];
+} greenloop_triangle;
+
+/* The nearest node; GREENLOOP_NONE if there is none, or the position is not finite. */
+typedef struct greenloop_nearest_node {
+  uint32_t node;
+  double squared_distance; /* m^2 */
+} greenloop_nearest_node;
+
+/* The nearest point: a triangle of the surface's own level, the share of each corner. GREENLOOP_NONE if the position is
+ * not finite. */
+typedef struct greenloop_nearest_point {
+  uint32_t triangle;
+  float weight[3];         /* 0..1, sum 1 */
+  double squared_distance; /* m^2 */
+} greenloop_nearest_point;
+
+/* Bytes for mesh levels 0..level; 0: greenloop_surface_create would refuse. Start-up. */
+size_t greenloop_surface_required(const greenloop_model* model, uint32_t level);
+
+/* Start-up; n log n in the triangles. */
+greenloop_surface_created greenloop_surface_create(const greenloop_model* model, uint32_t level, void* memory,
+                                                   size_t bytes);
+
+/* Triangles, nodes of levels 0..level; 0 for a level that the surface does not have. */
+uint32_t greenloop_surface_triangle_count(const greenloop_surface* surface, uint32_t level);
+uint32_t greenloop_surface_node_count(const greenloop_surface* surface, uint32_t level);
+
+/* Each of these writes `count` elements, which must be all there are at `level`; else it returns 0 and writes nothing.
+ * displacement: null, at rest; or 4 * count floats [m], 16-byte aligned. normal: 4 * count floats, x y z 0, 16-byte
+ * aligned, unit vectors outwards. area: count floats [m^2]. Work: linear in the triangles of the level. */
+int greenloop_surface_triangles(const greenloop_surface* surface, uint32_t level, greenloop_triangle* triangle,
+                                uint32_t count);
+int greenloop_surface_normals(const greenloop_surface* surface, uint32_t level, const float* displacement,
+                              float* normal, uint32_t count);
+int greenloop_surface_areas(const greenloop_surface* surface, uint32_t level, const float* displacement, float* area,
+                            uint32_t count);
+
+/* What is nearest to a position, 3 floats [m], at rest; of equally near ones the first. flags: all of them must be set
+ * of the node. Work: some tens of triangles as a rule, at most all. */
+greenloop_nearest_node greenloop_surface_nearest_node(const greenloop_surface* surface, const float* position,
+                                                      uint32_t flags);
+greenloop_nearest_point greenloop_surface_nearest_point(const greenloop_surface* surface, const float* position);
+
+/* Where a vertex of the author's surface lies on the model's: nodes of the model and the share of each. The
+ * displacement of the vertex is that of the nodes, weighted. */
+typedef struct greenloop_vertex {
+  uint32_t node[3];
+  float weight[3]; /* 0..1, sum 1 */
+} greenloop_vertex;
+
+/* Vertices of the author's surface, in the order of its file; 0 if the scene did not ask to keep them. */
+size_t greenloop_vertex_count(const greenloop_model* model);
+/* Writes where one lies; 0 if there is no such vertex. */
+int greenloop_vertex_on_surface(const greenloop_model* model, size_t vertex, greenloop_vertex* where);
+
+/* One sentence; static storage. */
+const char* greenloop_surface_error_text(greenloop_surface_error error);
+
 #ifdef __cplusplus
 }
 #endif

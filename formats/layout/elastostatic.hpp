@@ -14,6 +14,10 @@
 //   Couplings(q, layer) for each layer               CouplingsHeader and its arrays
 //   Patterns(q) if q >= first                        PatternRecord[], by kind, then contacts; none: not measured
 //
+// and after the last level of a complete model, if the scene asked for it
+//
+//   VertexMap                                        VertexRecord[]: where the author's vertices lie
+//
 // `first` is Info::coarsest_constraint_level; levels below it have no Representatives and no Patterns. A touchable node
 // is represented on constraint level c by a domain node of K(c), by itself if it is one; any other node by `none`.
 // A node is named by its place in the file: coarse to fine, and within a level the *domain* (nodes whose displacement
@@ -120,6 +124,13 @@ struct NodeRecord {
   std::uint32_t flags;
 };
 static_assert(sizeof(NodeRecord) == 20);
+
+/// Where a vertex of the author's surface lies on the model's: the nearest point of its finest level.
+struct VertexRecord {
+  std::uint32_t node[3];  ///< corners of a triangle
+  float weight[3];        ///< of each, 0..1 with sum 1
+};
+static_assert(sizeof(VertexRecord) == 24);
 
 struct RefinementRecord {
   std::uint32_t parent[2];  ///< ends of the edge it halves, nodes of coarser levels

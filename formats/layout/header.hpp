@@ -10,6 +10,7 @@
 //     Info, Provenance               facts of the problem's own; text (JSON) of where the model comes from
 //     for q = 0 .. levels-1:
 //       Level(q) and what is of it   in the form and order of the problem: elastostatic.hpp
+//     what is of no level            in the order of the problem
 //
 // So the first sections of a file, cut after any level, are again a valid and coarser model once the header says so.
 
@@ -21,7 +22,7 @@ namespace greenloop::layout {
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
 inline constexpr std::uint16_t version_major = 4;
-inline constexpr std::uint16_t version_minor = 1;
+inline constexpr std::uint16_t version_minor = 2;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
 inline constexpr std::uint32_t none = 0xffffffff;  ///< no node

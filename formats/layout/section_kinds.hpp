@@ -32,7 +32,8 @@
   ROW(couplings, 11, "Couplings", 2, std::byte, couplings)                      \
   ROW(stencils, 12, "Stencils", 1, StencilRecord, words)                        \
   ROW(patterns, 13, "Patterns", 1, PatternRecord, words)                        \
-  ROW(predictions, 14, "Predictions", 1, std::byte, predictions)
+  ROW(predictions, 14, "Predictions", 1, std::byte, predictions)                \
+  ROW(vertex_map, 15, "VertexMap", 0, VertexRecord, bytes)
 
 #define GREENLOOP_SECTION_KINDS(ROW) \
   GREENLOOP_COMMON_SECTIONS(ROW)     \
@@ -74,6 +75,9 @@ constexpr std::uint32_t element_bytes(SectionKind kind) {
 
 /// Whether a number is a kind. Work: constant.
 constexpr bool is_section_kind(std::uint32_t number) { return element_bytes(static_cast<SectionKind>(number)) != 0; }
+
+/// The minor version that brought the kind; those before 4.1 are not told apart.
+constexpr std::uint16_t first_minor(SectionKind kind) { return kind == SectionKind::vertex_map ? 2 : 0; }
 
 /// The largest number of a kind.
 constexpr std::uint32_t last_section_kind() {

@@ -264,6 +264,17 @@ Matrix3d synthetic_compliance(const Eigen::Vector3d& x, const Eigen::Vector3d& y
   return softness * std::exp(-(x - y).norm() / range) * frame_at(x) * core * frame_at(y).transpose();
 }
 
+// vertices on the finest triangles, in turn, at places that differ
+std::vector<layout::VertexRecord> vertex_map(const Sphere& sphere, std::uint32_t vertices) {
+  std::vector<layout::VertexRecord> map;
+  for (std::uint32_t i = 0; i < vertices; ++i) {
+    const auto& [a, b, c] = sphere.finest[i % sphere.finest.size()];
+    const float share = static_cast<float>(i % 8) / 8;
+    map.push_back({{a, b, c}, {share, (1 - share) / 2, (1 - share) / 2}});
+  }
+  return map;
+}
+
 ModelData synthetic_model(const SyntheticOptions& options) {
   Sphere sphere = make_sphere(options.levels, options.touchable_above);
   for (std::uint32_t i = 0; i < sphere.count(); ++i) {
@@ -288,6 +299,7 @@ ModelData synthetic_model(const SyntheticOptions& options) {
     model.levels.push_back(make_level(sphere, q, options.wavelet));
     if (q >= options.coarsest_constraint_level) model.levels.back().representatives = representatives(sphere, q);
   }
+  model.vertices = vertex_map(sphere, options.vertices);
   Compression compression(model, options);
   compression.run(exact_compliance(sphere));
   return model;

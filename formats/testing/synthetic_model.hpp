@@ -16,6 +16,7 @@ struct SyntheticOptions {
   double quantum = 0.002;      ///< of the 8-bit layer; that of 4 bits differs
   double touchable_above = 0;  ///< nodes with z >= this times the radius may be contacts; at most 1
   double read_above = -1;      ///< domain nodes with z >= this times the radius are read
+  std::uint32_t vertices = 0;  ///< of a vertex map; 0: there is none
 };
 
 /// The exact compliance of that body between points x and y (m): 1e-3 m/N exp(-|x - y| / 0.05 m) Q(x) C Q(y)^T with a

@@ -65,6 +65,11 @@ TEST_CASE("transport: the smallest model and synthetic ones come back, and all t
   }
 }
 
+TEST_CASE("transport: a vertex map comes back") {
+  check_round_trip(encode(synthetic_model({.levels = 1, .vertices = 1})));
+  check_round_trip(encode(synthetic_model({.levels = 3, .vertices = 500})));
+}
+
 TEST_CASE("transport: patterns come back, some levels measured and others not") {
   ModelData model = synthetic_model({.levels = 3, .coarsest_constraint_level = 1});
   model.levels[1].patterns = synthetic_patterns();

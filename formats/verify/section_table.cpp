@@ -80,7 +80,8 @@ bool SectionTable::check_entry(std::uint32_t i, std::uint64_t end_of_previous, V
     return refuse_entry(result, rule, entry, field, i, static_cast<double>(value), static_cast<double>(limit));
   };
   if (reserved_is_zero()) {
-    if (!layout::is_section_kind(entry.kind)) {
+    if (!layout::is_section_kind(entry.kind) ||
+        layout::first_minor(static_cast<SectionKind>(entry.kind)) > header().minor) {
       return refuse(VerifyRule::bad_enum, "section.kind", entry.kind, layout::last_section_kind());
     }
     if (entry.reserved != 0) return refuse(VerifyRule::reserved_not_zero, "section.reserved", entry.reserved, 0);
@@ -127,6 +128,11 @@ bool SectionTable::check_entries(VerifyResult& result) const {
 
 void SectionTable::skip_unknown() {
   while (next_ < count() && !layout::is_section_kind(entries()[next_].kind)) ++next_;
+}
+
+bool SectionTable::is_next(SectionKind kind) {
+  skip_unknown();
+  return next_ < count() && entries()[next_].kind == static_cast<std::uint32_t>(kind);
 }
 
 bool SectionTable::take(SectionKind kind, std::uint32_t a, std::uint32_t b, Section& section, VerifyResult& result) {

@@ -23,6 +23,9 @@ class SectionTable {
   /// The next section of a known kind, which must be this one. Work: constant (linear in the table on refusal).
   bool take(layout::SectionKind kind, std::uint32_t a, std::uint32_t b, Section& section, VerifyResult& result);
 
+  /// Whether the next section of a known kind is of this one: it need not be there. Work: constant.
+  [[nodiscard]] bool is_next(layout::SectionKind kind);
+
   /// After the last section: nothing but unknown kinds may be left.
   bool finish(VerifyResult& result);
 

@@ -50,6 +50,7 @@ struct ElastostaticView {
   LevelView level[layout::max_levels];
   /// [constraint level][mesh level]
   const std::uint32_t* representatives[layout::max_levels][layout::max_levels] = {};
+  std::span<const layout::VertexRecord> vertices;  ///< of the author's surface, in its order; empty: not kept
 };
 
 }  // namespace greenloop

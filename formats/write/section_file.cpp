@@ -1,10 +1,23 @@
 #include "formats/write/section_file.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "formats/verify/crc32c.hpp"
 
 namespace greenloop {
+namespace {
+
+// of the readers that know all of it, the oldest one's; files without newer kinds are of 4.1
+std::uint16_t least_minor(const std::vector<SectionBytes>& sections) {
+  std::uint16_t minor = 1;
+  for (const SectionBytes& section : sections) {
+    minor = std::max(minor, layout::first_minor(static_cast<layout::SectionKind>(section.entry.kind)));
+  }
+  return minor;
+}
+
+}  // namespace
 
 void pad_to_alignment(std::vector<std::byte>& bytes) { bytes.resize(layout::aligned(bytes.size())); }
 
@@ -20,7 +33,7 @@ void seal(std::span<std::byte> file, layout::Header header) {
 std::vector<std::byte> file_of(std::vector<SectionBytes> sections, std::uint32_t levels) {
   layout::Header header{};
   header.major = layout::version_major;
-  header.minor = layout::version_minor;
+  header.minor = least_minor(sections);
   header.section_count = static_cast<std::uint32_t>(sections.size());
   header.levels = levels;
 

@@ -118,6 +118,7 @@ class SectionList {
     add(SectionKind::info, 0, 0, bytes_of_one(completed_info()));
     add(SectionKind::provenance, 0, 0, bytes_of(std::vector<char>(model.provenance.begin(), model.provenance.end())));
     for (std::uint32_t q = 0; q < levels(); ++q) add_level(q);
+    if (!model.vertices.empty()) add(SectionKind::vertex_map, 0, 0, vertex_map_bytes(0, 0));
   }
 
   [[nodiscard]] std::vector<SectionBytes> take() && { return std::move(sections_); }
@@ -182,6 +183,7 @@ class SectionList {
   Bytes refinement_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].refinement); }
   Bytes stencils_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].stencils); }
   Bytes patterns_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].patterns); }
+  Bytes vertex_map_bytes(std::uint32_t, std::uint32_t) { return bytes_of(model_.vertices); }
   Bytes representatives_bytes(std::uint32_t c, std::uint32_t q) {
     return bytes_of(model_.levels[c].representatives[q]);
   }

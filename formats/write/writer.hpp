@@ -46,6 +46,7 @@ struct ModelData {
   std::string provenance;
   std::vector<std::uint32_t> base_triangles;
   std::vector<LevelData> levels;
+  std::vector<layout::VertexRecord> vertices;  ///< of the author's surface; empty: no VertexMap
 };
 
 /// The bytes of a model file: deterministic, complete, checksummed. Throws std::invalid_argument naming the field that

@@ -127,6 +127,7 @@ Json inspection_of(const ModelFile& model) {
         {"step_work", "multiply-adds"}}},
       {"constraint_levels", levels_of(view)},
       {"patterns", patterns_of(view)},
+      {"vertices", view.vertices.size()},
       {"provenance", provenance_of(view)},
       {"sections", sections_of(model)},
   };
@@ -165,6 +166,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                          : "none");
   row("material",
       fmt::format("Young's modulus {} Pa, Poisson's ratio {}", material["young"].dump(), material["poisson"].dump()));
+  row("vertex map", found["vertices"] == 0 ? "none" : fmt::format("{} vertices", found["vertices"].dump()));
   row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),
                            scene["max_contacts"].dump(), scene["step_work"].dump()));
   fmt::print(out, "\n  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", "level", "columns", "kept blocks", "dense",

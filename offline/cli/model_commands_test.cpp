@@ -50,6 +50,16 @@ Json inspect_json(const std::filesystem::path& file) {
   return Json::parse(out.str());
 }
 
+TEST_CASE("inspect: says how many vertices the model's vertex map has") {
+  const Folder with("inspect_vertices", {.levels = 2, .vertices = 7}), without("inspect_no_vertices", {.levels = 2});
+  CHECK(inspect_json(with / "sphere.gloop")["vertices"] == 7);
+  CHECK(inspect_json(with / "sphere.gloop")["version"] == "4.2");
+  CHECK(inspect_json(without / "sphere.gloop")["vertices"] == 0);
+  std::ostringstream out;
+  CHECK(run_inspect({with / "sphere.gloop", false}, out) == 0);
+  CHECK(out.str().find("vertex map          7 vertices\n") != std::string::npos);
+}
+
 std::string convert_refusal(const ConvertArguments& arguments) {
   std::ostringstream out;
   try {

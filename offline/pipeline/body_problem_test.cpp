@@ -31,6 +31,9 @@ TEST_CASE("what the columns do not depend on does not change their fingerprint")
     CAPTURE(more);
     CHECK(column_fingerprint(parse_scene(smallest + more, "s.toml"), "mesh") == of_smallest);
   }
+  Scene with_map = parse_scene(smallest, "s.toml");
+  with_map.mesh.keep_vertex_map = true;
+  CHECK(column_fingerprint(with_map, "mesh") == of_smallest);
   CHECK(column_fingerprint(parse_scene(smallest + "[remesh]\nlevels = 2\n", "s.toml"), "mesh") != of_smallest);
   CHECK(column_fingerprint(parse_scene(smallest, "s.toml"), "another mesh") != of_smallest);
 }

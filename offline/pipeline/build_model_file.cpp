@@ -21,6 +21,7 @@
 #include "offline/pipeline/body_problem.hpp"
 #include "offline/pipeline/stage_records.hpp"
 #include "offline/pipeline/store_room.hpp"
+#include "offline/pipeline/vertex_map.hpp"
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/sources/fem/green_functions.hpp"
@@ -195,6 +196,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   provenance["patches"] = built.report.patches;
   built.model.provenance = provenance.dump();
   if (!scene.budget.work) built.model.info.step_work = built.report.trials.back().step_work;
+  if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
   const auto bytes = encode(built.model);
   require_least_work(scene, bytes);
   write_file(request.model, bytes);

@@ -30,11 +30,12 @@ class SceneError : public std::runtime_error {
 
 /// The mesh and the size of its unit: exactly one of `unit` and `size` is set.
 struct MeshSource {
-  bool tetrahedra = false;     ///< [volume] instead of [surface]
-  std::string name;            ///< as the scene says
-  std::filesystem::path path;  ///< seen from the working directory
-  std::optional<double> unit;  ///< length of one mesh unit [m]
-  std::optional<double> size;  ///< longest side of the bounding box after scaling [m]
+  bool tetrahedra = false;       ///< [volume] instead of [surface]
+  std::string name;              ///< as the scene says
+  std::filesystem::path path;    ///< seen from the working directory
+  std::optional<double> unit;    ///< length of one mesh unit [m]
+  std::optional<double> size;    ///< longest side of the bounding box after scaling [m]
+  bool keep_vertex_map = false;  ///< tell in the model where the surface's vertices lie on it
 
   /// Metres per unit of a mesh with this bounding box. Throws SceneError if the box has no extent to scale.
   [[nodiscard]] double scale(const Eigen::AlignedBox3d& mesh_box) const;

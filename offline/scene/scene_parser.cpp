@@ -23,7 +23,7 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
                              : "missing; write for example [surface] file = \"bear.off\", unit = \"cm\"");
   }
   for (const std::string_view name : {"surface", "volume"}) {
-    const auto table = section(scene, name, {"file", "unit", "size"});
+    const auto table = section(scene, name, {"file", "unit", "size", "keep_vertex_map"});
     if (!table) {
       continue;
     }
@@ -33,6 +33,10 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
     mesh.path = beside(file, mesh.name);
     mesh.unit = table->quantity("unit", Dimension::length);
     mesh.size = table->quantity("size", Dimension::length);
+    set_if(mesh.keep_vertex_map, table->boolean("keep_vertex_map"));
+    if (mesh.tetrahedra && table->has("keep_vertex_map")) {
+      table->refuse("keep_vertex_map", "does not go with [volume], whose surface is not the author's; remove it");
+    }
     if (!table->has("unit") && !table->has("size")) {
       table->refuse("unit",
                     "missing; say how long one unit of the mesh is, for example unit = \"cm\", or how long the "

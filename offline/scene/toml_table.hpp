@@ -160,6 +160,18 @@ class Table {
     return value;
   }
 
+  [[nodiscard]] std::optional<bool> boolean(std::string_view key) const {
+    const auto* node = find(key);
+    if (node == nullptr) {
+      return std::nullopt;
+    }
+    const auto value = node->is_boolean() ? node->value<bool>() : std::nullopt;
+    if (!value) {
+      refuse(key, "is " + std::string(kind_of(*node)) + "; expected true or false");
+    }
+    return value;
+  }
+
   [[nodiscard]] std::optional<double> number(std::string_view key, const Interval& valid) const {
     const auto* node = find(key);
     if (node == nullptr) {

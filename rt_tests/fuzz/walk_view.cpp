@@ -30,7 +30,7 @@ class Walk {
         if (!representatives(c, q)) return false;
       }
     }
-    return true;
+    return vertices();
   }
 
  private:
@@ -96,6 +96,15 @@ class Walk {
              std::isfinite(record.field_error[2] + record.field_peak[0] + record.total_force_error[1]);
     };
     return array(patterns.data(), patterns.size()) && all(patterns.data(), patterns.size(), right);
+  }
+
+  bool vertices() const {
+    const auto right = [&](const layout::VertexRecord& record) {
+      return std::all_of(record.node, record.node + 3, [&](std::uint32_t node) { return node < view_.node_count; }) &&
+             std::isfinite(record.weight[0] + record.weight[1] + record.weight[2]);
+    };
+    return array(view_.vertices.data(), view_.vertices.size()) &&
+           all(view_.vertices.data(), view_.vertices.size(), right);
   }
 
   bool scales(std::uint32_t q) const {

@@ -36,7 +36,8 @@ downwards() {  # downwards FOLDER ROOM...
   done
 }
 downwards formats layout layout.hpp view view.hpp stored_blocks.hpp verify.hpp verify write transport mesh store
-downwards runtime loop.hpp constraint.hpp model.hpp memory algebra contact wavelet compliance factor elastostatic.hpp elastostatic
-downwards offline surface remesh scene solve compress pipeline report figures cli
+downwards runtime loop.hpp constraint.hpp vec.hpp model.hpp memory algebra wavelet compliance factor elastostatic.hpp \
+  elastostatic surface.hpp surface contact recorder.hpp recorder
+downwards offline progress.hpp surface remesh volume sources scene compress pipeline report figures cli
 downwards sim_hw guard body messages device transport control_loop session
 exit $status

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "rt_tests/harness/minor_faults.hpp"
+#include "runtime/surface.hpp"
 #include "runtime/testing/test_body.hpp"
 #include "sim_hw/guard/guarded.hpp"
 
@@ -128,6 +129,29 @@ TEST_CASE("no allocation and no lock in the loop") {
   CHECK(seen.locks == 0);
   CHECK(refused > 0);
   CHECK(refused < cycles / 2);
+}
+
+TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is made") {
+  const TestModel model({.levels = 4});
+  AlignedBytes memory(Surface::required(model.model(), 3).bytes);
+  std::vector<Vec4> normal(model.model().node_count());
+  std::vector<float> area(normal.size());
+  const std::uint64_t allocations = allocation_guard::count();
+  const std::uint64_t locks = mutex_guard::count();
+  allocation_guard::arm();
+  mutex_guard::arm();
+  const auto created = Surface::create(model.model(), 3, {memory.data(), memory.size()});
+  bool right = bool{created} && created.surface.normals(3, {}, normal) && created.surface.areas(3, normal, area);
+  for (int i = 0; i < cycles; ++i) {
+    const Vec3 position{static_cast<float>(i) * 1e-4F - 0.1F, 0.01F, 0.02F};
+    right = right && created.surface.nearest_node(position).node != layout::none &&
+            created.surface.nearest_point(position).triangle != layout::none;
+  }
+  mutex_guard::disarm();
+  allocation_guard::disarm();
+  CHECK(right);
+  CHECK(allocation_guard::count() == allocations);
+  CHECK(mutex_guard::count() == locks);
 }
 
 TEST_CASE("no minor page fault in the loop once it is warm; a fresh page is seen") {

@@ -6,9 +6,14 @@ source_dir=$1 build=$2 via=$3 version=$4 model=$5
 work=$build/packaging/$via-$version
 rm -rf "$work" && mkdir -p "$work"
 
-# the examples of README.md are what the consumers compile
+# the examples of README.md and docs/surface.md are what the consumers compile
+example() {  # example LANGUAGE DOCUMENT: its code in that language
+  awk "/^\`\`\`$1\$/ {inside = 1; next} /^\`\`\`\$/ {inside = 0} inside" "$source_dir/$2"
+}
 for language in cpp c; do
-  awk "/^\`\`\`$language\$/ {inside = 1; next} /^\`\`\`\$/ {inside = 0} inside" "$source_dir/README.md" >"$work/readme_example.$language"
+  example $language docs/surface.md >"$work/surface_example.$language"
+  test -s "$work/surface_example.$language" || { echo "docs/surface.md has no $language block"; exit 1; }
+  example $language README.md >"$work/readme_example.$language"
   test -s "$work/readme_example.$language" || { echo "README.md has no $language block"; exit 1; }
   # the same with room for the fields of small models alone
   sed 's/field\[4 \* 4096\]/field[4 * 16]/' "$work/readme_example.$language" >"$work/readme_example_small.$language"
@@ -19,7 +24,8 @@ cmake --install "$build" --prefix "$work/prefix" --component runtime >/dev/null
 configure() {
   PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name greenloop.pc)") cmake -S "$source_dir/rt_tests/packaging/consumer" \
     -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" -DCONSUMER_VIA="$via" \
-    -DWANTED_VERSION="$version" -DGREENLOOP_SOURCE="$source_dir" -DREADME_EXAMPLE="$work/readme_example"
+    -DWANTED_VERSION="$version" -DGREENLOOP_SOURCE="$source_dir" -DREADME_EXAMPLE="$work/readme_example" \
+    -DSURFACE_EXAMPLE="$work/surface_example"
 }
 if [ "$model" = refuse ]; then
   if configure >"$work/configure.log" 2>&1; then
@@ -35,6 +41,10 @@ cmake --build "$work/build"
 "$work/build/c_consumer" "$model" >"$work/forces.c.txt"
 test "$(wc -l <"$work/forces.c.txt")" -eq 100
 cmp "$work/forces.cpp.txt" "$work/forces.c.txt"
+"$work/build/surface_consumer" "$model" >"$work/touched.cpp.txt"
+"$work/build/c_surface_consumer" "$model" >"$work/touched.c.txt"
+test "$(wc -l <"$work/touched.c.txt")" -gt 10
+cmp "$work/touched.cpp.txt" "$work/touched.c.txt"
 for program in consumer_small c_consumer_small; do
   if "$work/build/$program" "$model" 2>"$work/$program.txt" >/dev/null; then exit 1; fi
   grep -q '^status 3 after 0 cycles' "$work/$program.txt"

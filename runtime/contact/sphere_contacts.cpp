@@ -29,7 +29,7 @@ void SphereContacts::carve(Arena& arena, const GridShape& shape) noexcept {
   pushed_ = arena.take<std::uint32_t>(limits_.max_contacts);
 }
 
-std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Limits& limits) noexcept {
+std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Elastostatic::Limits& limits) noexcept {
   if (!good(nodes, limits)) return 0;
   SphereContacts counted;
   counted.nodes_ = nodes;
@@ -39,7 +39,7 @@ std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Limits& li
   return static_cast<std::size_t>(arena.bytes());
 }
 
-SphereContacts::Created SphereContacts::create(const SurfaceNodes& nodes, const Limits& limits,
+SphereContacts::Created SphereContacts::create(const SurfaceNodes& nodes, const Elastostatic::Limits& limits,
                                                std::span<std::byte> memory) noexcept {
   Created created;
   created.requested = required(nodes, limits);

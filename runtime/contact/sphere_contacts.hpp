@@ -45,11 +45,11 @@ class SphereContacts {
   SphereContacts() = default;
 
   /// Bytes. Start-up; linear in the touchable nodes. Zero if `create` would refuse for another reason than memory.
-  [[nodiscard]] static std::size_t required(const SurfaceNodes& nodes, const Limits& limits) noexcept;
+  [[nodiscard]] static std::size_t required(const SurfaceNodes& nodes, const Elastostatic::Limits& limits) noexcept;
 
   /// Carves `memory`, 64-byte aligned, with the routine that `required` counts with. What the spans of `nodes` name,
   /// and `memory`, must outlive it; a copy works in the same memory. Start-up; linear in nodes and cells of the grid.
-  [[nodiscard]] static Created create(const SurfaceNodes& nodes, const Limits& limits,
+  [[nodiscard]] static Created create(const SurfaceNodes& nodes, const Elastostatic::Limits& limits,
                                       std::span<std::byte> memory) noexcept;
 
   /// The contacts of this cycle by increasing node, valid until the next; none for a tool that is not finite. `tools`:
@@ -77,7 +77,7 @@ class SphereContacts {
   void keep_deepest() noexcept;
 
   SurfaceNodes nodes_;
-  Limits limits_;
+  Elastostatic::Limits limits_;
   NodeGrid grid_;
   Node* node_ = nullptr;             ///< [nodes]
   std::uint32_t* held_ = nullptr;    ///< [touchable] nodes that some tool holds; no more than max_contacts once found

@@ -23,11 +23,11 @@ template <class Solver>
 class Hosted {
  public:
   using Limits = typename Solver::Limits;
-  using Requirement = typename Solver::Requirement;
-  using StepReport = typename Solver::StepReport;
+  using Elastostatic::Requirement = typename Solver::Requirement;
+  using Elastostatic::StepReport = typename Solver::StepReport;
 
   /// `model` must outlive it. Throws std::runtime_error if it is refused, or the limits are.
-  Hosted(const Model& model, const Limits& limits)
+  Hosted(const Model& model, const Elastostatic::Limits& limits)
       : model_(&model),
         limits_(limits),
         requirement_(Solver::required(model, limits)),
@@ -52,14 +52,15 @@ class Hosted {
 
   /// One step within `work` units, with the field of all nodes if it is wanted. Uses the heap only for more than 16
   /// constraints beyond the limits.
-  StepReport step(std::span<const Constraint> constraints, std::uint64_t work = any_budget, bool with_field = true) {
+  Elastostatic::StepReport step(std::span<const Constraint> constraints, std::uint64_t work = any_budget,
+                                bool with_field = true) {
     forces_ = 3 * constraints.size();
     if (forces_ > force_.size()) force_.resize(forces_);
     return body_.step(constraints, {work}, {{force_.data(), forces_}, with_field ? field() : std::span<float>()});
   }
 
-  [[nodiscard]] const Limits& limits() const { return limits_; }
-  [[nodiscard]] const Requirement& requirement() const { return requirement_; }
+  [[nodiscard]] const Elastostatic::Limits& limits() const { return limits_; }
+  [[nodiscard]] const Elastostatic::Requirement& requirement() const { return requirement_; }
   [[nodiscard]] Solver& body() { return body_; }
 
   /// [3 * constraints of the last step] N, as of the last one that was answered.
@@ -76,8 +77,8 @@ class Hosted {
   static constexpr std::size_t more_than_allowed = 16;
 
   const Model* model_;
-  Limits limits_;
-  Requirement requirement_;
+  Elastostatic::Limits limits_;
+  Elastostatic::Requirement requirement_;
   AlignedBytes arena_, field_;
   std::vector<float> force_;
   std::size_t forces_ = 0;

@@ -305,7 +305,7 @@ TEST_CASE("verify refuses: a wavelet of a newer minor version by its name, not b
   mutant.records<layout::Info>(SectionKind::info)->wavelet = 6;
   mutant.rebuild([](std::vector<SectionCopy>& sections) {
     SectionCopy unknown = sections.front();
-    unknown.entry.kind = 15;
+    unknown.entry.kind = 77;
     sections.insert(sections.begin() + 7, unknown);
   });
   check_refused(mutant, VerifyRule::bad_enum, SectionKind::info, 0, 0, "wavelet", 0);

@@ -35,7 +35,7 @@ bool verify_sections(const Section& info, SectionTable& table, ModelView& view, 
   for (std::uint32_t q = 0; q < context.levels; ++q) {
     if (!layout::visit_elastostatic_level(*context.view.info, q, next) || !verify_counts(q, context)) return false;
   }
-  return true;
+  return !table.is_next(SectionKind::vertex_map) || next(SectionKind::vertex_map, 0, 0);
 }
 
 }  // namespace greenloop::elastostatic
