@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
@@ -187,7 +188,24 @@ void report_levels(const Body& body, const Plan& plan, Elastostatic::StepReport&
   }
   report.details.finer_contacts = static_cast<std::uint16_t>(finer);
   report.field_level = plan.field_levels.details;
-  report.error = body.view->level[report.constraint_level].counts->field_error;
+}
+
+float larger(float a, float b) { return a > b ? a : b; }
+
+// an error that was measured; nothing is known where it was not
+float measured(float error) { return error > 0 ? error : std::numeric_limits<float>::infinity(); }
+
+// what an answer was measured to be off by: forces, the field with the details that it has, and while forces go over
+// from an answer to another the worse of both
+float answer_error(const Body& body, const Plan& plan, bool with_field, const Elastostatic::StepReport& report) {
+  const layout::Level& counts = *body.view->level[report.constraint_level].counts;
+  float error = measured(counts.force_error);
+  if (with_field) {
+    const bool whole = plan.field_levels.details == plan.field_levels.nodes;
+    const layout::Level& details = *body.view->level[plan.field_levels.details].counts;
+    error = larger(error, measured(whole ? counts.field_error : details.cut_error));
+  }
+  return report.details.glide < 1 ? larger(error, body.last.error()) : error;
 }
 
 Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t work,
@@ -211,6 +229,8 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   report.work = work;
   report_levels(body, plan, report);
   glide_forces(body, contacts, budget, response.force.data(), report);
+  report.error = answer_error(body, plan, !response.displacement.empty(), report);
+  body.last.set_error(report.error);
   body.cache.use(*factor);
   prepare_finer_level(body, contacts, plan, budget, report);
   report.details.cached_factor = plan.cached != nullptr;
@@ -225,6 +245,9 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
 }  // namespace
 
 Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
+  if (model.problem() != layout::Problem::elastostatic) {
+    return {};
+  }
   const layout::Info& info = *model.view().info;
   return {.limits = {.max_contacts = info.max_contacts}, .budget = {info.step_work}, .rate = info.rate};
 }

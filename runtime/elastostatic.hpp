@@ -62,7 +62,8 @@ class Elastostatic {
   struct StepReport : greenloop::StepReport {
     std::uint32_t constraint_level = 0;  ///< level at which they were resolved, of a mixed set the coarser one
     std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
-    float error = 0;                     ///< Level::field_error of that constraint level, as measured offline
+    float error = 0;  ///< largest relative error, of forces and field, that answers like this one were measured to have
+                      ///< offline (docs/loop.md, "Errors"); infinity: not measured
     StepDetails details;
   };
 

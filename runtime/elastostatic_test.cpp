@@ -178,6 +178,8 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
   ModelData data = synthetic_model({.levels = 4});
   for (std::size_t q = 0; q < 4; ++q) {
     data.levels[q].counts.field_error = 0.25F / static_cast<float>(q + 1);
+    data.levels[q].counts.cut_error = 2.0F / static_cast<float>(q + 1);
+    data.levels[q].counts.force_error = q == 3 ? 0.125F : 0.25F;
   }
   const TestModel model(encode(data));
   for (const bool with_field : {true, false}) {
@@ -196,7 +198,10 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
       CHECK(report.work <= budget);
       CHECK(report.work <= need.worst_work[report.constraint_level]);
       CHECK((report.status == Status::ok) == (report.constraint_level == 3 && report.field_level == 3));
-      CHECK(report.error == model.view().level[report.constraint_level].counts->field_error);
+      const layout::Level& at = *model.view().level[report.constraint_level].counts;
+      const layout::Level& cut = *model.view().level[report.field_level].counts;
+      const float field = report.field_level == 3 ? at.field_error : cut.cut_error;
+      CHECK(report.error == std::max(at.force_error, with_field ? field : 0));
       const std::uint32_t now = 4 * report.constraint_level + report.field_level;
       CHECK(now >= rank);
       rank = now;
@@ -248,6 +253,34 @@ TEST_CASE("a factor is reused bit for bit, in any order of the contacts") {
   // an unrelated set comes between
   body.step(random_contacts(random, model.touchable(), 3), any_budget);
   CHECK(body.step(contacts, any_budget).details.cached_factor);
+}
+
+TEST_CASE("in a glide the worse of both answers is reported, and infinity where nothing was measured") {
+  ModelData data = synthetic_model({.levels = 4});
+  for (std::uint32_t q = 0; q < 4; ++q) {
+    auto& counts = data.levels[q].counts;
+    counts.field_error = counts.force_error = counts.cut_error = 1.0F / static_cast<float>(1U << q);
+  }
+  const TestModel model(encode(data));
+  TestBody body(model, {.max_contacts = 12, .cached_factors = 4, .glide_cycles = 4});
+  std::mt19937_64 random(8);
+  const auto contacts = random_contacts(random, model.touchable(), 12);
+  CHECK(body.step(contacts, body.requirement().least_work).error > 0.125F);
+  const float before = body.step(contacts, body.requirement().least_work, false).error;
+  CHECK(before > 0.125F);
+  for (int cycle = 1; cycle < 4; ++cycle) {
+    const auto report = body.step(contacts, any_budget);
+    REQUIRE(report.details.glide < 1);
+    CHECK(report.error == before);
+  }
+  CHECK(body.step(contacts, any_budget).error == 0.125F);
+  for (LevelData& level : data.levels) {
+    level.counts.field_error = level.counts.force_error = level.counts.cut_error = 0;
+  }
+  const TestModel unmeasured(encode(data));
+  TestBody other(unmeasured, {.max_contacts = 12, .cached_factors = 4});
+  CHECK(other.step(contacts, any_budget).error == std::numeric_limits<float>::infinity());
+  CHECK(other.step({}, any_budget).error == 0);
 }
 
 TEST_CASE("released: no contact, no field") {

@@ -1,7 +1,7 @@
 /* Greenloop for C99 and every language that calls C: the same loops as the C++ headers beside it, the same bits.
  *
- * Memory: the caller owns all of it. A model is read in place: its bytes, the greenloop_model and the arena stay where
- * they are, unchanged by others, while a body uses them. Nothing here allocates, locks or enters the kernel.
+ * Memory: the caller owns all of it. A model is read in place: its bytes and the arena stay where they are, unchanged by
+ * others, while a body uses them; a body needs the greenloop_model no more once it is made. Nothing here allocates, locks or enters the kernel.
  *
  * Threads: a greenloop_model does not change once it is open, so any number of threads may use one at once, each with a
  * body and an arena of its own. A body is for one thread at a time; so are the buffers of a step.
@@ -173,7 +173,7 @@ typedef struct greenloop_elastostatic_report {
   uint64_t work;             /* units spent, never more than the budget */
   uint32_t constraint_level; /* level at which they were resolved, of a mixed set the coarser one */
   uint32_t field_level;      /* finest level whose details are in the field */
-  float error;               /* worst field error of that constraint level, measured offline */
+  float error;               /* largest relative error that such answers were measured to have; infinity: unknown */
   greenloop_elastostatic_details details;
 } greenloop_elastostatic_report;
 

@@ -79,6 +79,9 @@ constexpr bool is_section_kind(std::uint32_t number) { return element_bytes(stat
 /// The minor version that brought the kind; those before 4.1 are not told apart.
 constexpr std::uint16_t first_minor(SectionKind kind) { return kind == SectionKind::vertex_map ? 2 : 0; }
 
+/// The minor version that brought Level::cut_error.
+inline constexpr std::uint16_t first_minor_of_cuts = 2;
+
 /// The largest number of a kind.
 constexpr std::uint32_t last_section_kind() {
   std::uint32_t last = 0;

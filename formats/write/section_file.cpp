@@ -30,10 +30,10 @@ void seal(std::span<std::byte> file, layout::Header header) {
   std::memcpy(file.data(), &header, sizeof(header));
 }
 
-std::vector<std::byte> file_of(std::vector<SectionBytes> sections, std::uint32_t levels) {
+std::vector<std::byte> file_of(std::vector<SectionBytes> sections, std::uint32_t levels, std::uint16_t minor) {
   layout::Header header{};
   header.major = layout::version_major;
-  header.minor = least_minor(sections);
+  header.minor = std::max(minor, least_minor(sections));
   header.section_count = static_cast<std::uint32_t>(sections.size());
   header.levels = levels;
 

@@ -297,7 +297,10 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
 std::vector<std::byte> encode(const ModelData& model) {
   require(!model.levels.empty() && model.levels.size() <= layout::max_levels,
           fmt::format("{} levels, expected 1 to {}", model.levels.size(), layout::max_levels));
-  auto file = file_of(SectionList(model).take(), static_cast<std::uint32_t>(model.levels.size()));
+  const bool cuts = std::any_of(model.levels.begin(), model.levels.end(),
+                                [](const LevelData& level) { return level.counts.cut_error != 0; });
+  auto file = file_of(SectionList(model).take(), static_cast<std::uint32_t>(model.levels.size()),
+                      cuts ? layout::first_minor_of_cuts : std::uint16_t{0});
   require_valid(AlignedBytes(file));
   return file;
 }

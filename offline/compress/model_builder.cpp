@@ -128,7 +128,21 @@ void reserve_patterns(const ExactContacts& contacts, ModelData& model) {
   }
 }
 
+// whether something is promised of a pattern
+bool is_accurate(const PatternErrors& pattern) {
+  return pattern.contacts <= most_accurate_contacts && !layout::is_rough(pattern.kind);
+}
+
+double worst_field_error(const std::vector<PatternErrors>& patterns) {
+  double worst = 0;
+  for (const PatternErrors& pattern : patterns) {
+    worst = is_accurate(pattern) ? std::max(worst, pattern.field.worst) : worst;
+  }
+  return worst;
+}
+
 void store_errors(const CompressionReport& report, ModelData& model) {
+  for (std::size_t q = 0; q < model.levels.size(); ++q) model.levels[q].counts.cut_error = stored(report.cut_errors[q]);
   for (const auto& level : report.levels) {
     model.levels[level.level].patterns = pattern_records(level.patterns);
     auto& counts = model.levels[level.level].counts;
@@ -138,7 +152,7 @@ void store_errors(const CompressionReport& report, ModelData& model) {
     counts.field_rms_error = stored(level.field_rms_error);
     counts.field_column_error = stored(level.field_column_error);
     for (const PatternErrors& pattern : level.patterns) {
-      if (pattern.contacts > most_accurate_contacts || layout::is_rough(pattern.kind)) continue;
+      if (!is_accurate(pattern)) continue;
       counts.field_error = std::max(counts.field_error, stored(pattern.field.worst));
       counts.field_peak = std::max(counts.field_peak, stored(pattern.peak.worst));
       counts.force_error = std::max(counts.force_error, stored(pattern.force.worst));
@@ -346,6 +360,11 @@ class Build {
                               .field_column_error = finest.field.worst_column(),
                               .field = field_size(encoded.view),
                               .patterns = finest.patterns});
+    for (std::size_t details = 0; details < wavelet_.finest(); ++details) {
+      const auto errors = answered.all_errors(model_.info.coarsest_constraint_level, details);
+      report_.cut_errors.push_back(worst_field_error(summarise(errors)));
+    }
+    report_.cut_errors.push_back(worst_field_error(report_.levels.front().patterns));
     for (auto& level : report_.levels) {
       level.kept_blocks = encoded.view.level[level.level].counts->kept_blocks;
       level.dense_blocks = encoded.view.level[level.level].counts->dense_blocks;

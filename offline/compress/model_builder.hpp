@@ -53,6 +53,7 @@ struct CompressionReport {
   double lambda_min = 0;                      ///< m/N, certified
   std::size_t patches = 0;                    ///< patches that patch_force_error was measured on
   std::vector<ConstraintLevelReport> levels;  ///< coarse to fine
+  std::vector<double> cut_errors;             ///< layout::Level::cut_error of every mesh level
   std::vector<Trial> trials;                  ///< every encoding that was tried, the chosen one last
   std::vector<Trial> frontier;                ///< by decreasing threshold, one each, on every level
   std::vector<WaveletTrial> wavelets;         ///< compared to choose one; empty if it was given

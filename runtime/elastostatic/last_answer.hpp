@@ -39,6 +39,10 @@ class LastAnswer {
   /// Takes the answer of a step. force: [3 * contacts]. For the loop; work: 8 units a contact.
   void remember(std::span<const Constraint> contacts, const ContactSet& set, const float* force) noexcept;
 
+  /// What was reported of it as StepReport::error.
+  [[nodiscard]] float error() const noexcept { return error_; }
+  void set_error(float error) noexcept { error_ = error; }
+
   /// Nothing is held.
   void release() noexcept { contacts_ = 0; }
 
@@ -46,6 +50,7 @@ class LastAnswer {
   [[nodiscard]] std::size_t common(std::span<const Constraint> contacts) const noexcept;
 
   std::uint32_t contacts_ = 0;
+  float error_ = 0;
   std::uint32_t* node_ = nullptr;   ///< [contacts]
   std::uint32_t* place_ = nullptr;  ///< [nodes] in node_, of those that are there
   std::uint8_t* level_ = nullptr;   ///< [contacts]

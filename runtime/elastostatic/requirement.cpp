@@ -121,7 +121,7 @@ bool in_range(const Elastostatic::Limits& limits) noexcept {
 
 void measure_body(const ModelView& view, const Elastostatic::Limits& limits, BodySizes& sizes,
                   Elastostatic::Requirement& requirement) noexcept {
-  if (!in_range(limits) || view.node_count > most_nodes) {
+  if (!in_range(limits) || view.problem != layout::Problem::elastostatic || view.node_count > most_nodes) {
     return;
   }
   const CouplingCounts couplings = count_couplings(view);

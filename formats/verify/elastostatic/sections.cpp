@@ -89,7 +89,8 @@ bool verify_level_counts(SectionCheck& check, const layout::Level& counts, const
 }
 
 bool verify_level_errors(SectionCheck& check, const layout::Level& counts) {
-  return check.require_at_least("rms_error", 0, counts.rms_error, 0) &&
+  return check.require_at_least("cut_error", 0, counts.cut_error, 0) &&
+         check.require_at_least("rms_error", 0, counts.rms_error, 0) &&
          check.require_at_least("worst_column_error", 0, counts.worst_column_error, 0) &&
          check.require_at_least("patch_force_error", 0, counts.patch_force_error, 0) &&
          check.require_at_least("field_rms_error", 0, counts.field_rms_error, 0) &&
@@ -114,11 +115,7 @@ bool verify_level(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   if (!check.require_count(sizeof(layout::Level))) return false;
   const auto& counts = *section.as<layout::Level>();
-  const bool unused = counts.reserved == 0;
-  if (!verify_level_counts(check, counts, section, context.view) || !verify_level_errors(check, counts) ||
-      !check.require(!context.reserved_is_zero || unused, VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
-    return false;
-  }
+  if (!verify_level_counts(check, counts, section, context.view) || !verify_level_errors(check, counts)) return false;
   LevelView& level = context.view.level[section.a];
   level.counts = &counts;
   level.node_begin = context.view.node_count;

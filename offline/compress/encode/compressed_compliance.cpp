@@ -127,8 +127,10 @@ void CompressedCompliance::apply_to_coefficients(std::size_t level, std::size_t 
   couple(level, level, columns, f, y);
 }
 
-void CompressedCompliance::displace(std::size_t level, std::size_t columns, const double* f, double* x) const {
-  couple(level, finest(), columns, f, x);
+void CompressedCompliance::displace(std::size_t level, std::size_t details, std::size_t columns, const double* f,
+                                    double* x) const {
+  std::fill_n(x, rows(finest()) * columns * 3, 0.0);
+  couple(level, details, columns, f, x);
   for (std::size_t l = 1; l <= finest(); ++l) wavelet_.merge(l, 3 * columns, x);
 }
 

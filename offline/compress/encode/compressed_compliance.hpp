@@ -30,11 +30,10 @@ class CompressedCompliance {
   /// The same in wavelet coefficients: (W U^ W^T)_level T^-T f, which T_1^-1 .. T_level^-1 turn into displacements.
   void apply_to_coefficients(std::size_t level, std::size_t columns, const double* f, double* y) const;
 
-  /// What forces on the averages of `level` move on the whole surface, with the details of all levels: x has
-  /// rows(finest())
-  /// * columns * 3 numbers, f as above. Its averages of `level` are U^_level f. Work: as apply, and an inverse
-  /// transform.
-  void displace(std::size_t level, std::size_t columns, const double* f, double* x) const;
+  /// What forces on the averages of `level` move on the whole surface, with the details of levels 0 .. `details`: x has
+  /// rows(finest()) * columns * 3 numbers, f as above. With all details its averages of `level` are U^_level f. Work: as
+  /// apply, and an inverse transform.
+  void displace(std::size_t level, std::size_t details, std::size_t columns, const double* f, double* x) const;
 
   /// U^_level between some of its nodes: 3 nodes.size() squared, m/N. Work: 9 per coupling of the coefficients that
   /// they feel, and per node that feels one of them.

@@ -115,7 +115,8 @@ std::vector<std::size_t> AnsweredContacts::representatives(const std::vector<std
   return result;
 }
 
-std::vector<AnswerError> AnsweredContacts::site_errors(std::size_t number, std::size_t level) const {
+std::vector<AnswerError> AnsweredContacts::site_errors(std::size_t number, std::size_t level,
+                                                       std::size_t details) const {
   const ContactSite& site = exact_.sites()[number];
   const std::size_t samples = site.kinds.size();
   std::vector<AnswerError> errors;
@@ -140,7 +141,7 @@ std::vector<AnswerError> AnsweredContacts::site_errors(std::size_t number, std::
     Eigen::Map<Eigen::Matrix3Xd>(f.data() + 3 * samples * set.columns[c], 3, static_cast<Eigen::Index>(samples)) =
         force.middleRows<3>(static_cast<Eigen::Index>(3 * c));
   }
-  compressed_.displace(level, samples, f.data(), x.data());
+  compressed_.displace(level, details, samples, f.data(), x.data());
   compare_fields(number, level, x, errors);
   return errors;
 }
@@ -171,9 +172,13 @@ void AnsweredContacts::compare_fields(std::size_t number, std::size_t level, con
 }
 
 std::vector<AnswerError> AnsweredContacts::all_errors(std::size_t level) const {
+  return all_errors(level, compressed_.finest());
+}
+
+std::vector<AnswerError> AnsweredContacts::all_errors(std::size_t level, std::size_t details) const {
   std::vector<AnswerError> all;
   for (std::size_t site = 0; site < exact_.sites().size(); ++site) {
-    const auto errors = site_errors(site, level);
+    const auto errors = site_errors(site, level, details);
     all.insert(all.end(), errors.begin(), errors.end());
   }
   return all;

@@ -47,12 +47,13 @@ class AnsweredContacts {
   /// The referenced objects must outlive this. `exact` has been solved for the domain rows of the same body.
   AnsweredContacts(const ModelView& view, const CompressedCompliance& compressed, const ExactContacts& exact);
 
-  /// The errors of the answers at constraint level `level` to one site's samples, in their order. Work: `between` of
-  /// its contacts and a field each.
-  [[nodiscard]] std::vector<AnswerError> site_errors(std::size_t site, std::size_t level) const;
+  /// The errors of the answers at constraint level `level`, with the details of levels 0 .. `details` in the field, to
+  /// one site's samples, in their order. Work: `between` of its contacts and a field each.
+  [[nodiscard]] std::vector<AnswerError> site_errors(std::size_t site, std::size_t level, std::size_t details) const;
 
-  /// Those of all sites, one after the other.
+  /// Those of all sites, one after the other; with all details, or those of some levels.
   [[nodiscard]] std::vector<AnswerError> all_errors(std::size_t level) const;
+  [[nodiscard]] std::vector<AnswerError> all_errors(std::size_t level, std::size_t details) const;
 
  private:
   [[nodiscard]] std::vector<std::size_t> representatives(const std::vector<std::size_t>& rows, std::size_t level) const;

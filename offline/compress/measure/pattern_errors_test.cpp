@@ -227,7 +227,7 @@ TEST_CASE("errors of every level are those of a dense computation with represent
       CAPTURE(level);
       const DenseAnswer dense(model, level);
       for (std::size_t s = 0; s < exact().sites().size(); s += 3) {
-        const auto found = model.answered.site_errors(s, level);
+        const auto found = model.answered.site_errors(s, level, model.compressed.finest());
         for (std::size_t k = 0; k < found.size(); ++k) {
           const AnswerError wanted = dense.error(exact().sites()[s], s, static_cast<Eigen::Index>(k));
           CHECK(found[k].field == doctest::Approx(wanted.field).epsilon(1e-4));

@@ -42,7 +42,7 @@ std::vector<AnswerError> errors_of(const EncodedModel& model, const ExactContact
   const AnsweredContacts answered(model.view, compressed, contacts);
   std::vector<AnswerError> all;
   for (const std::size_t site : sites) {
-    const auto errors = answered.site_errors(site, compressed.finest());
+    const auto errors = answered.site_errors(site, compressed.finest(), compressed.finest());
     all.insert(all.end(), errors.begin(), errors.end());
   }
   return all;
