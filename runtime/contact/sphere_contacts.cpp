@@ -27,7 +27,7 @@ void SphereContacts::carve(Arena& arena) noexcept {
   contact_ = arena.take_zeroed<Constraint>(limits_.max_contacts);
 }
 
-std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Elastostatic::Limits& limits) noexcept {
+std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Limits& limits) noexcept {
   if (!good(nodes, limits)) return 0;
   SphereContacts counted;
   counted.nodes_ = nodes;
@@ -37,7 +37,7 @@ std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Elastostat
   return static_cast<std::size_t>(arena.bytes());
 }
 
-SphereContacts::Created SphereContacts::create(const SurfaceNodes& nodes, const Elastostatic::Limits& limits,
+SphereContacts::Created SphereContacts::create(const SurfaceNodes& nodes, const Limits& limits,
                                                std::span<std::byte> memory) noexcept {
   Created created;
   created.requested = required(nodes, limits);

@@ -45,11 +45,11 @@ class SphereContacts {
   SphereContacts() = default;
 
   /// Bytes. Start-up; linear in the touchable nodes. Zero if `create` would refuse for another reason than memory.
-  [[nodiscard]] static std::size_t required(const SurfaceNodes& nodes, const Elastostatic::Limits& limits) noexcept;
+  [[nodiscard]] static std::size_t required(const SurfaceNodes& nodes, const Limits& limits) noexcept;
 
   /// Carves `memory`, 64-byte aligned, with the routine that `required` counts with. What the spans of `nodes` name,
   /// and `memory`, must outlive it; a copy works in the same memory. Start-up; linear in nodes and cells of the grid.
-  [[nodiscard]] static Created create(const SurfaceNodes& nodes, const Elastostatic::Limits& limits,
+  [[nodiscard]] static Created create(const SurfaceNodes& nodes, const Limits& limits,
                                       std::span<std::byte> memory) noexcept;
 
   /// The contacts of this cycle by increasing node, valid until the next; none for a tool that is not finite. `tools`:
@@ -78,7 +78,7 @@ class SphereContacts {
   [[nodiscard]] std::uint64_t push_of(std::uint8_t held_by) const noexcept { return settled_ << 8 | held_by; }
 
   SurfaceNodes nodes_;
-  Elastostatic::Limits limits_;
+  Limits limits_;
   NodeGrid grid_;
   Node* node_ = nullptr;            ///< [nodes]
   std::uint32_t* held_ = nullptr;   ///< [touchable] nodes that some tool holds; no more than max_contacts once found
