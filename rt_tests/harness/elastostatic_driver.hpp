@@ -14,7 +14,7 @@ namespace greenloop {
 /// The tools on Elastostatic: see Driver.
 struct ElastostaticDriver {
   using Solver = Elastostatic;
-  using Elastostatic::StepReport = Elastostatic::StepReport;
+  using StepReport = Elastostatic::StepReport;
 
   static constexpr Elastostatic::Limits limits(std::uint32_t contacts, std::uint32_t sets) {
     return {.max_contacts = contacts, .cached_factors = sets};
@@ -27,12 +27,11 @@ struct ElastostaticDriver {
             .worst_work = *std::max_element(std::begin(need.worst_work), std::end(need.worst_work))};
   }
 
-  static std::uint64_t declared_work(const Elastostatic::Requirement& need, const Elastostatic::StepReport& report) {
+  static std::uint64_t declared_work(const Elastostatic::Requirement& need, const StepReport& report) {
     return need.worst_work[report.constraint_level];
   }
 
-  static void count(const Elastostatic::StepReport& report, const Elastostatic::StepReport& last,
-                    AnswerCounts& counts) {
+  static void count(const StepReport& report, const StepReport& last, AnswerCounts& counts) {
     ++counts.by_status[static_cast<std::size_t>(report.status)];
     counts.work += report.work;
     counts.worst_work = std::max(counts.worst_work, report.work);
@@ -48,7 +47,7 @@ struct ElastostaticDriver {
     counts.refined += finer && last.details.pending_work > 0 && details.cached_factor ? 1 : 0;
   }
 
-  static std::array<std::uint64_t, 6> facts(const Elastostatic::StepReport& report) {
+  static std::array<std::uint64_t, 6> facts(const StepReport& report) {
     return {static_cast<std::uint64_t>(report.status),
             report.constraint_level,
             report.details.finer_level,
@@ -57,7 +56,7 @@ struct ElastostaticDriver {
             report.work};
   }
 
-  static std::array<std::uint64_t, 7> all_facts(const Elastostatic::StepReport& report) {
+  static std::array<std::uint64_t, 7> all_facts(const StepReport& report) {
     const Elastostatic::StepDetails& details = report.details;
     return {static_cast<std::uint64_t>(report.status) << 32 | report.constraint_level << 8 | report.field_level,
             std::uint64_t{details.finer_level} << 32 | details.finer_contacts,

@@ -65,11 +65,11 @@ class StressRun {
   }
 
  private:
-  using Elastostatic::StepReport = typename D::Solver::StepReport;
+  using StepReport = typename D::Solver::StepReport;
 
   ContactScript script(ScriptKind kind) const { return {*view_, bounds_, kind, options_.seed}; }
 
-  Elastostatic::StepReport step(const ScriptedStep& scripted) {
+  StepReport step(const ScriptedStep& scripted) {
     return host_.step(scripted.contacts, scripted.budget, scripted.with_field);
   }
 
@@ -115,7 +115,7 @@ class StressRun {
   void cycle(const ScriptedStep& scripted) {
     const std::uint64_t violations = result_.violations.sum();
     const double begin = thread_microseconds();
-    const Elastostatic::StepReport report = guarded_step(scripted);
+    const StepReport report = guarded_step(scripted);
     const double us = thread_microseconds() - begin;
     result_.times.add(us);
     script_.worst_us = std::max(script_.worst_us, us);
@@ -135,12 +135,12 @@ class StressRun {
     }
   }
 
-  Elastostatic::StepReport guarded_step(const ScriptedStep& scripted) {
+  StepReport guarded_step(const ScriptedStep& scripted) {
     const bool faulty = script_.cycles % 100 == 99;
     if (faulty && options_.fault == InjectedFault::page_fault) {
       madvise(page_.get(), page_bytes_, MADV_DONTNEED);
     }
-    Elastostatic::StepReport report;
+    StepReport report;
     const std::uint64_t faults = minor_faults();
     const GuardCounts seen = guarded([&] {
       report = step(scripted);
@@ -156,7 +156,7 @@ class StressRun {
     return report;
   }
 
-  void commit_fault(Elastostatic::StepReport& report) {
+  void commit_fault(StepReport& report) {
     switch (options_.fault) {
       case InjectedFault::none:
         break;
@@ -179,7 +179,7 @@ class StressRun {
     }
   }
 
-  void check(const ScriptedStep& scripted, const Elastostatic::StepReport& report) {
+  void check(const ScriptedStep& scripted, const StepReport& report) {
     const bool answered = greenloop::answered(report.status);
     const std::uint64_t declared = answered ? D::declared_work(host_.requirement(), report) : bounds_.worst_work;
     result_.violations.work_overruns += report.work > scripted.budget || report.work > declared ? 1 : 0;
@@ -195,7 +195,7 @@ class StressRun {
     return scripted.with_field ? host_.field() : std::span<const float>();
   }
 
-  void note_digest(const ScriptedStep& scripted, const Elastostatic::StepReport& report) {
+  void note_digest(const ScriptedStep& scripted, const StepReport& report) {
     const auto facts = D::facts(report);
     script_digest_.add(std::span<const std::uint64_t>(facts));
     script_digest_.add(host_.force());
@@ -207,7 +207,7 @@ class StressRun {
   Hosted<typename D::Solver> host_;
   ScriptBounds bounds_;
   std::vector<float> held_field_, held_force_;
-  Elastostatic::StepReport last_;
+  StepReport last_;
   ScriptResult script_;
   StressResult result_;
   FastDigest script_digest_, digest_;

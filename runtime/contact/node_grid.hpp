@@ -8,31 +8,17 @@
 
 namespace greenloop {
 
-/// Where the cells of a grid lie: its lowest corner, the width of its cubes and how many there are along each axis.
-struct GridShape {
-  static constexpr std::int32_t most_in_a_row = 64;
-
-  Double3 low;              ///< m
-  double inverse_cell = 1;  ///< 1/m
-  std::int32_t count[3] = {1, 1, 1};
-
-  [[nodiscard]] std::uint32_t cells() const noexcept {
-    return static_cast<std::uint32_t>(count[0] * count[1] * count[2]);
-  }
-};
-
-/// Cells of `cell` m (> 0) around the positions that `nodes` name, wider if there would be more than 64 in a row.
-/// Start-up; linear in the nodes.
-[[nodiscard]] GridShape grid_shape(std::span<const Double3> position, std::span<const std::uint32_t> nodes,
-                                   double cell) noexcept;
-
 /// Nodes sorted into cubic cells, to find those near a place.
 class NodeGrid {
  public:
-  /// Room for so many nodes.
-  void carve(Arena& arena, const GridShape& shape, std::size_t nodes) noexcept;
+  static constexpr std::int32_t most_in_a_row = 64;
 
-  /// Sorts `nodes` in, which name the positions that the shape was made of. Start-up; linear in nodes and cells.
+  /// Room for `nodes`, which name the positions (m) to sort in: cells of `cell` m (> 0) around them, wider if there
+  /// would be more than 64 in a row. Start-up; linear in the nodes.
+  void carve(Arena& arena, std::span<const Double3> position, std::span<const std::uint32_t> nodes,
+             double cell) noexcept;
+
+  /// Sorts in what there is room for. Start-up; linear in nodes and cells.
   void fill(std::span<const Double3> position, std::span<const std::uint32_t> nodes) noexcept;
 
   /// Calls visit(node) once for every node in the cells that the box `centre` +- `radius` meets, always in the same
@@ -50,17 +36,24 @@ class NodeGrid {
     }
   }
 
- private:
+  /// Along each axis.
   struct Cell {
     std::int32_t x, y, z;
   };
+  [[nodiscard]] const Cell& cells() const noexcept { return count_; }
 
+ private:
   [[nodiscard]] Cell cell_of(const Double3& point) const noexcept;
   [[nodiscard]] std::uint32_t number_of(const Cell& cell) const noexcept {
-    return static_cast<std::uint32_t>((cell.z * shape_.count[1] + cell.y) * shape_.count[0] + cell.x);
+    return static_cast<std::uint32_t>((cell.z * count_.y + cell.y) * count_.x + cell.x);
+  }
+  [[nodiscard]] std::uint32_t cell_count() const noexcept {
+    return static_cast<std::uint32_t>(count_.x * count_.y * count_.z);
   }
 
-  GridShape shape_;
+  Double3 low_;  ///< m, the lowest corner
+  double inverse_cell_ = 1;
+  Cell count_{1, 1, 1};
   std::uint32_t* begin_ = nullptr;  ///< [cells + 1]
   std::uint32_t* node_ = nullptr;   ///< in the order of `fill` within a cell
 };

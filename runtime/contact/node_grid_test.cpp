@@ -15,12 +15,12 @@ namespace {
 
 /// A grid in memory of its own.
 struct HeldGrid {
-  HeldGrid(const GridShape& shape, const std::vector<Double3>& position, const std::vector<std::uint32_t>& nodes) {
+  HeldGrid(const std::vector<Double3>& position, const std::vector<std::uint32_t>& nodes, double cell) {
     Arena counting;
-    grid.carve(counting, shape, nodes.size());
+    grid.carve(counting, position, nodes, cell);
     memory = AlignedBytes(static_cast<std::size_t>(counting.bytes()));
     Arena arena(memory.data());
-    grid.carve(arena, shape, nodes.size());
+    grid.carve(arena, position, nodes, cell);
     grid.fill(position, nodes);
   }
   AlignedBytes memory;
@@ -40,10 +40,9 @@ TEST_CASE("the grid finds what a search through all nodes finds") {
     position[i] = {uniform(0, 1), uniform(0, 0.3), uniform(0, 0.01)};
     if (i % 3 != 0) nodes.push_back(i);
   }
-  const GridShape shape = grid_shape(position, nodes, 0.07);
-  CHECK(shape.count[0] > shape.count[1]);
-  CHECK(shape.count[2] == 1);
-  const HeldGrid held(shape, position, nodes);
+  const HeldGrid held(position, nodes, 0.07);
+  CHECK(held.grid.cells().x > held.grid.cells().y);
+  CHECK(held.grid.cells().z == 1);
   for (int trial = 0; trial < 500; ++trial) {
     const Double3 centre{uniform(-0.3, 1.3), uniform(-0.3, 0.6), uniform(-0.1, 0.1)};
     std::multiset<std::uint32_t> found;
@@ -61,20 +60,19 @@ TEST_CASE("the grid finds what a search through all nodes finds") {
 TEST_CASE("a grid has as many cells as fit, at least one and at most 64 in a row") {
   const std::vector<Double3> position{{0, 0, 0}, {1, 0.25, 0}};
   const std::vector<std::uint32_t> nodes{0, 1};
-  const GridShape coarse = grid_shape(position, nodes, 10), fine = grid_shape(position, nodes, 1e-9),
-                  whole = grid_shape(position, nodes, 0.125);
-  CHECK(coarse.cells() == 1);
-  CHECK(fine.count[0] == 64);
-  CHECK(fine.count[1] == 16);
-  CHECK(fine.count[2] == 1);
-  CHECK(whole.count[0] == 8);
-  CHECK(whole.count[1] == 2);
+  const HeldGrid coarse(position, nodes, 10), fine(position, nodes, 1e-9), whole(position, nodes, 0.125);
+  CHECK(coarse.grid.cells().x == 1);
+  CHECK(fine.grid.cells().x == 64);
+  CHECK(fine.grid.cells().y == 16);
+  CHECK(fine.grid.cells().z == 1);
+  CHECK(whole.grid.cells().x == 8);
+  CHECK(whole.grid.cells().y == 2);
 }
 
 TEST_CASE("a place that is no number, or beyond all nodes, is looked for in the cells at the border") {
   const std::vector<Double3> position{{0, 0, 0}, {1, 1, 1}};
   const std::vector<std::uint32_t> nodes{0, 1};
-  const HeldGrid held(grid_shape(position, nodes, 0.1), position, nodes);
+  const HeldGrid held(position, nodes, 0.1);
   const auto near = [&](const Double3& centre) {
     std::vector<std::uint32_t> found;
     held.grid.near(centre, 0.05, [&](std::uint32_t node) { found.push_back(node); });

@@ -19,27 +19,25 @@ bool good(const SurfaceNodes& nodes, const SphereContacts::Limits& limits) {
 
 }  // namespace
 
-void SphereContacts::carve(Arena& arena, const GridShape& shape) noexcept {
-  grid_.carve(arena, shape, nodes_.touchable.size());
+void SphereContacts::carve(Arena& arena) noexcept {
+  grid_.carve(arena, nodes_.position, nodes_.touchable, limits_.radius);
   node_ = arena.take_zeroed<Node>(nodes_.position.size());
   held_ = arena.take<std::uint32_t>(nodes_.touchable.size());
   spare_ = arena.take<std::uint32_t>(nodes_.touchable.size());
   contact_ = arena.take_zeroed<Constraint>(limits_.max_contacts);
-  holder_ = arena.take<std::uint8_t>(limits_.max_contacts);
-  pushed_ = arena.take<std::uint32_t>(limits_.max_contacts);
 }
 
-std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Elastostatic::Limits& limits) noexcept {
+std::size_t SphereContacts::required(const SurfaceNodes& nodes, const Limits& limits) noexcept {
   if (!good(nodes, limits)) return 0;
   SphereContacts counted;
   counted.nodes_ = nodes;
   counted.limits_ = limits;
   Arena arena;
-  counted.carve(arena, grid_shape(nodes.position, nodes.touchable, limits.radius));
+  counted.carve(arena);
   return static_cast<std::size_t>(arena.bytes());
 }
 
-SphereContacts::Created SphereContacts::create(const SurfaceNodes& nodes, const Elastostatic::Limits& limits,
+SphereContacts::Created SphereContacts::create(const SurfaceNodes& nodes, const Limits& limits,
                                                std::span<std::byte> memory) noexcept {
   Created created;
   created.requested = required(nodes, limits);
@@ -57,7 +55,7 @@ SphereContacts::Created SphereContacts::create(const SurfaceNodes& nodes, const 
   made.nodes_ = nodes;
   made.limits_ = limits;
   Arena arena(memory.data());
-  made.carve(arena, grid_shape(nodes.position, nodes.touchable, limits.radius));
+  made.carve(arena);
   made.grid_.fill(nodes.position, nodes.touchable);
   return created;
 }
@@ -69,22 +67,20 @@ std::span<const Constraint> SphereContacts::find(std::span<const SphereTool> too
   for (std::size_t t = 0; t < heeded; ++t) gather(tools[t], static_cast<std::uint8_t>(t + 1), field);
   keep_deepest();
   for (std::uint32_t i = 0; i < count_; ++i) {
-    const Node& node = node_[held_[i]];
-    holder_[i] = static_cast<std::uint8_t>(node.held_by - 1);
-    const Double3 moved = node.depth * tools[holder_[i]].axis;
+    const Double3 moved = node_[held_[i]].depth * tools[holder(i)].axis;
     contact_[i] = {held_[i], {static_cast<float>(moved.x), static_cast<float>(moved.y), static_cast<float>(moved.z)}};
   }
   return {contact_, count_};
 }
 
-void SphereContacts::gather(const SphereTool& tool, std::uint8_t number, std::span<const float> field) noexcept {
+void SphereContacts::gather(const SphereTool& tool, std::uint8_t held_by, std::span<const float> field) noexcept {
   const double radius = limits_.radius, touching = radius * (1 - margin);
   grid_.near(tool.centre, radius, [&](std::uint32_t at) {
     Node& node = node_[at];
     const Double3 offset = nodes_.position[at] - tool.centre;
     const double outside = dot(offset, offset) - radius * radius;
     if (!(outside < 0) || !(-dot(nodes_.normal[at], tool.axis) >= least_facing)) return;
-    if (node.pushed_by != number) {
+    if (node.pushed != push_of(held_by)) {
       const float* moved = &field[std::size_t{4} * at];
       const Double3 now = offset + Double3{moved[0], moved[1], moved[2]};
       if (!(dot(now, now) < touching * touching)) return;
@@ -92,7 +88,7 @@ void SphereContacts::gather(const SphereTool& tool, std::uint8_t number, std::sp
     const double along = dot(offset, tool.axis), depth = std::sqrt(along * along - outside) - along;
     if (!(depth <= DBL_MAX) || (node.held_by != 0 && depth <= node.depth)) return;
     if (node.held_by == 0) held_[count_++] = at;
-    node.held_by = number;
+    node.held_by = held_by;
     node.depth = depth;
   });
 }
@@ -110,12 +106,11 @@ void SphereContacts::keep_deepest() noexcept {
 }
 
 void SphereContacts::settle(std::span<const SphereTool> tools, std::span<const float> force) noexcept {
-  while (pushed_count_ > 0) node_[pushed_[--pushed_count_]].pushed_by = 0;
+  ++settled_;
   for (std::uint32_t i = 0; i < count_; ++i) {
     const float* f = &force[std::size_t{3} * i];
-    if (!(dot(Double3{f[0], f[1], f[2]}, tools[holder_[i]].axis) >= 0)) continue;
-    pushed_[pushed_count_++] = held_[i];
-    node_[held_[i]].pushed_by = static_cast<std::uint8_t>(holder_[i] + 1);
+    Node& node = node_[held_[i]];
+    if (dot(Double3{f[0], f[1], f[2]}, tools[holder(i)].axis) >= 0) node.pushed = push_of(node.held_by);
   }
 }
 

@@ -45,11 +45,11 @@ class SphereContacts {
   SphereContacts() = default;
 
   /// Bytes. Start-up; linear in the touchable nodes. Zero if `create` would refuse for another reason than memory.
-  [[nodiscard]] static std::size_t required(const SurfaceNodes& nodes, const Elastostatic::Limits& limits) noexcept;
+  [[nodiscard]] static std::size_t required(const SurfaceNodes& nodes, const Limits& limits) noexcept;
 
   /// Carves `memory`, 64-byte aligned, with the routine that `required` counts with. What the spans of `nodes` name,
   /// and `memory`, must outlive it; a copy works in the same memory. Start-up; linear in nodes and cells of the grid.
-  [[nodiscard]] static Created create(const SurfaceNodes& nodes, const Elastostatic::Limits& limits,
+  [[nodiscard]] static Created create(const SurfaceNodes& nodes, const Limits& limits,
                                       std::span<std::byte> memory) noexcept;
 
   /// The contacts of this cycle by increasing node, valid until the next; none for a tool that is not finite. `tools`:
@@ -62,31 +62,30 @@ class SphereContacts {
   /// in the contacts.
   void settle(std::span<const SphereTool> tools, std::span<const float> force) noexcept;
 
-  /// Number of the tool that holds each of the last contacts.
-  [[nodiscard]] std::span<const std::uint8_t> holder() const noexcept { return {holder_, count_}; }
+  /// Number of the tool that holds the last contact `i`. For the loop.
+  [[nodiscard]] std::uint32_t holder(std::size_t i) const noexcept { return node_[held_[i]].held_by - 1U; }
 
  private:
   struct Node {
-    double depth = 0;            ///< m, along the axis of the tool that holds it to the sphere's surface
-    std::uint8_t held_by = 0;    ///< in this cycle: 1 + the number of the tool; 0: by none
-    std::uint8_t pushed_by = 0;  ///< in the last cycle, likewise
+    double depth = 0;          ///< m, along the axis of the tool that holds it to the sphere's surface
+    std::uint64_t pushed = 0;  ///< the number of the last `settle` that it was pushed in, and by which tool: push_of
+    std::uint8_t held_by = 0;  ///< 1 + the number of the tool; 0: by none
   };
 
-  void carve(Arena& arena, const GridShape& shape) noexcept;
-  void gather(const SphereTool& tool, std::uint8_t number, std::span<const float> field) noexcept;
+  void carve(Arena& arena) noexcept;
+  void gather(const SphereTool& tool, std::uint8_t held_by, std::span<const float> field) noexcept;
   void keep_deepest() noexcept;
+  [[nodiscard]] std::uint64_t push_of(std::uint8_t held_by) const noexcept { return settled_ << 8 | held_by; }
 
   SurfaceNodes nodes_;
-  Elastostatic::Limits limits_;
+  Limits limits_;
   NodeGrid grid_;
-  Node* node_ = nullptr;             ///< [nodes]
-  std::uint32_t* held_ = nullptr;    ///< [touchable] nodes that some tool holds; no more than max_contacts once found
-  std::uint32_t* spare_ = nullptr;   ///< [touchable]
-  std::uint32_t count_ = 0;          ///< of those held
-  Constraint* contact_ = nullptr;    ///< [max_contacts]
-  std::uint8_t* holder_ = nullptr;   ///< [max_contacts]
-  std::uint32_t* pushed_ = nullptr;  ///< [max_contacts] nodes that were pushed in the last cycle
-  std::uint32_t pushed_count_ = 0;
+  Node* node_ = nullptr;            ///< [nodes]
+  std::uint32_t* held_ = nullptr;   ///< [touchable] nodes that some tool holds; no more than max_contacts once found
+  std::uint32_t* spare_ = nullptr;  ///< [touchable]
+  std::uint32_t count_ = 0;         ///< of those held
+  Constraint* contact_ = nullptr;   ///< [max_contacts]
+  std::uint64_t settled_ = 0;       ///< how often
 };
 
 struct SphereContacts::Created : Creation {

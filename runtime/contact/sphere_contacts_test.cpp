@@ -109,8 +109,8 @@ TEST_CASE("a node inside two spheres is held once, by the one that pushes it dee
   for (std::size_t i = 0; i < found.size(); ++i) {
     CHECK(nodes.insert(found[i].node).second);
     const Double3& place = bench.table.position[found[i].node];
-    if (std::abs(place.x) < 1e-12) CHECK(bench.contacts.holder()[i] == 1);
-    if (place.x < -0.035) CHECK(bench.contacts.holder()[i] == 0);
+    if (std::abs(place.x) < 1e-12) CHECK(bench.contacts.holder(i) == 1);
+    if (place.x < -0.035) CHECK(bench.contacts.holder(i) == 0);
   }
 }
 
@@ -147,7 +147,6 @@ TEST_CASE("what one cycle found is forgotten in the next, also where there were 
   Bench bench(6), fresh(6);
   CHECK(bench.find({pressed(0.03, 0.05)}).size() == 6);
   CHECK(bench.find({pressed(-1e-6)}).empty());
-  CHECK(bench.contacts.holder().empty());
   const auto found = bench.find({pressed(0.01)}), expected = fresh.find({pressed(0.01)});
   REQUIRE(found.size() == expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -163,8 +162,9 @@ TEST_CASE("a tool that is not finite holds nothing, and the others what they hol
     Bench bench;
     CHECK(bench.find({SphereTool{{bad, 0, 0.04}, {0, 0, -1}}}).empty());
     CHECK(bench.find({SphereTool{{0, 0, bad}, {0, 0, -1}}}).empty());
-    CHECK(bench.find({SphereTool{{0, 0, 0.04}, {bad, 0, -1}}, pressed(0.01)}).size() >= 25);
-    for (const std::uint8_t holder : bench.contacts.holder()) CHECK(holder == 1);
+    const std::size_t count = bench.find({SphereTool{{0, 0, 0.04}, {bad, 0, -1}}, pressed(0.01)}).size();
+    CHECK(count == 25);
+    for (std::size_t i = 0; i < count; ++i) CHECK(bench.contacts.holder(i) == 1);
   }
 }
 

@@ -23,11 +23,11 @@ template <class Solver>
 class Hosted {
  public:
   using Limits = typename Solver::Limits;
-  using Elastostatic::Requirement = typename Solver::Requirement;
-  using Elastostatic::StepReport = typename Solver::StepReport;
+  using Requirement = typename Solver::Requirement;
+  using StepReport = typename Solver::StepReport;
 
   /// `model` must outlive it. Throws std::runtime_error if it is refused, or the limits are.
-  Hosted(const Model& model, const Elastostatic::Limits& limits)
+  Hosted(const Model& model, const Limits& limits)
       : model_(&model),
         limits_(limits),
         requirement_(Solver::required(model, limits)),
@@ -52,15 +52,14 @@ class Hosted {
 
   /// One step within `work` units, with the field of all nodes if it is wanted. Uses the heap only for more than 16
   /// constraints beyond the limits.
-  Elastostatic::StepReport step(std::span<const Constraint> constraints, std::uint64_t work = any_budget,
-                                bool with_field = true) {
+  StepReport step(std::span<const Constraint> constraints, std::uint64_t work = any_budget, bool with_field = true) {
     forces_ = 3 * constraints.size();
     if (forces_ > force_.size()) force_.resize(forces_);
     return body_.step(constraints, {work}, {{force_.data(), forces_}, with_field ? field() : std::span<float>()});
   }
 
-  [[nodiscard]] const Elastostatic::Limits& limits() const { return limits_; }
-  [[nodiscard]] const Elastostatic::Requirement& requirement() const { return requirement_; }
+  [[nodiscard]] const Limits& limits() const { return limits_; }
+  [[nodiscard]] const Requirement& requirement() const { return requirement_; }
   [[nodiscard]] Solver& body() { return body_; }
 
   /// [3 * constraints of the last step] N, as of the last one that was answered.
@@ -77,8 +76,8 @@ class Hosted {
   static constexpr std::size_t more_than_allowed = 16;
 
   const Model* model_;
-  Elastostatic::Limits limits_;
-  Elastostatic::Requirement requirement_;
+  Limits limits_;
+  Requirement requirement_;
   AlignedBytes arena_, field_;
   std::vector<float> force_;
   std::size_t forces_ = 0;

@@ -72,10 +72,9 @@ void ControlLoop::overrun() noexcept {
 
 void ControlLoop::sum_hand_force() noexcept {
   hand_force_ = {};
-  const auto holder = sphere_contacts_.holder();
   const auto force = body_->force();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    hand_force_[holder[i]] += -Double3{force[3 * i], force[3 * i + 1], force[3 * i + 2]};
+    hand_force_[sphere_contacts_.holder(i)] += -Double3{force[3 * i], force[3 * i + 1], force[3 * i + 2]};
   }
 }
 
