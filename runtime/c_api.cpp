@@ -208,9 +208,9 @@ greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic
                                                           uint64_t work, float* force, float* displacement,
                                                           uint32_t nodes) {
   auto* const in_arena = reinterpret_cast<Body*>(body);
-  const std::size_t floats = displacement == nullptr ? 0 : std::size_t{4} * nodes;
+  const std::span<Vec4> field(reinterpret_cast<Vec4*>(displacement), displacement == nullptr ? 0 : nodes);
   const Elastostatic::StepReport report = std::bit_cast<Elastostatic>(in_arena).step(
-      {reinterpret_cast<const Constraint*>(contacts), count}, {work}, {{force, 3 * count}, {displacement, floats}});
+      {reinterpret_cast<const Constraint*>(contacts), count}, {work}, {{reinterpret_cast<Vec3*>(force), count}, field});
   const Elastostatic::StepDetails& details = report.details;
   return {static_cast<greenloop_status>(report.status),
           report.refused,

@@ -18,7 +18,7 @@ namespace {
 // the finest level of the nodes that the response has room for; none if that is no level
 std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& response) {
   for (std::uint32_t q = body.counts.levels; q-- > 0 && !body.counts.forces_only;) {
-    if (response.displacement.size() == 4 * body.counts.nodes[q]) {
+    if (response.displacement.size() == body.counts.nodes[q]) {
       return q;
     }
   }
@@ -35,7 +35,7 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
   const bool field_fits = response.displacement.empty() ||
                           (finest_displaced(body, response) != layout::none &&
                            reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
-  return response.force.size() == 3 * contacts && field_fits ? Status::ok : Status::held_response_size;
+  return response.force.size() == contacts && field_fits ? Status::ok : Status::held_response_size;
 }
 
 // the factor of the planned set; null if its capacitance matrix is not positive definite
@@ -85,7 +85,7 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 
 // displacements by the forces of the planned set
 void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
-                 const FieldLevels& levels, std::span<float> displacement) {
+                 const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   compute_field(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
@@ -104,7 +104,7 @@ void release(Body& body, const Elastostatic::Response& response, Elastostatic::S
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
-    report.work += response.displacement.size() / 4;
+    report.work += response.displacement.size();
   }
   report.constraint_level = finest;
   report.details.finer_level = static_cast<std::uint8_t>(finest);
@@ -220,7 +220,8 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   if (!solve_forces(body, contacts, set, *factor, body.column_force)) {
     return held(Status::held_overflow, work);
   }
-  share_forces(body.column_force, contacts.size(), set, response.force.data());
+  float* const force = as_floats(response.force).data();
+  share_forces(body.column_force, contacts.size(), set, force);
   if (!response.displacement.empty()) {
     work += plan.field;
     reconstruct(body, contacts, {set.columns, set.column, body.column_force}, plan.field_levels, response.displacement);
@@ -228,7 +229,7 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   Elastostatic::StepReport report;
   report.work = work;
   report_levels(body, plan, report);
-  glide_forces(body, contacts, budget, response.force.data(), report);
+  glide_forces(body, contacts, budget, force, report);
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
   body.last.set_error(report.error);
   body.cache.use(*factor);

@@ -6,6 +6,7 @@
 #include "runtime/constraint.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/model.hpp"
+#include "runtime/vec.hpp"
 
 namespace greenloop {
 
@@ -39,11 +40,11 @@ class Elastostatic {
   };
 
   /// The answer of a step; the caller owns the memory. The size of `displacement` says which nodes are displaced: all,
-  /// or those of the coarser levels, which come first in the file (Model::node_count).
+  /// or those of the coarser levels, which come first in the file (Model::node_count). Floats of the caller's are seen
+  /// as vectors by as_vec3 and as_vec4.
   struct Response {
-    std::span<float> force;  ///< [3 * constraints] N, the force that holds each, in their order
-    std::span<float>
-        displacement;  ///< [4 * nodes of levels 0..q] m, x y z 0 per node, 16-byte aligned; empty: none is wanted
+    std::span<Vec3> force;         ///< [constraints] N, the force that holds each, in their order
+    std::span<Vec4> displacement;  ///< [nodes of levels 0..q] m; empty: none is wanted
   };
 
   /// How a step was answered.

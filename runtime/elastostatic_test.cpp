@@ -368,7 +368,7 @@ TEST_CASE("the nodes of coarser levels, asked for alone, stand where the whole f
       AlignedBytes memory(std::size_t{16} * model.model().node_count(level));
       const std::span<float> few(reinterpret_cast<float*>(memory.data()), memory.size() / sizeof(float));
       const Elastostatic::StepReport all = whole.step(contacts, any_budget);
-      const Elastostatic::StepReport report = part.body().step(contacts, {any_budget}, {force, few});
+      const Elastostatic::StepReport report = part.body().step(contacts, {any_budget}, {as_vec3(force), as_vec4(few)});
       CHECK(report.status == Status::ok);
       CHECK(report.field_level == level);
       CHECK((level + 1 == model.view().levels ? report.work == all.work : report.work < all.work));
@@ -398,16 +398,18 @@ TEST_CASE("response buffers of the wrong size or alignment are refused") {
   const TestModel model({.levels = 2});
   TestBody body(model, {.max_contacts = 2, .cached_factors = 1});
   const std::vector<Constraint> contacts = {{model.touchable()[0], {1e-3F, 0, 0}}};
-  std::vector<float> force(3, 42.0F);
-  const auto field = body.field();
-  const auto status = [&](std::span<float> forces, std::span<float> displacement) {
+  std::vector<Vec3> more(2);
+  const auto force = std::span(more).first(1);
+  const auto field = as_vec4(body.field());
+  const auto status = [&](std::span<Vec3> forces, std::span<Vec4> displacement) {
     return body.body().step(contacts, {any_budget}, {forces, displacement}).status;
   };
-  CHECK(status(std::span(force).first(2), field) == Status::held_response_size);
+  CHECK(status(force, field) == Status::ok);
+  CHECK(status(more, field) == Status::held_response_size);
   CHECK(status({}, field) == Status::held_response_size);
   CHECK(status(force, field.first(field.size() - 1)) == Status::held_response_size);
   AlignedBytes crooked(field.size_bytes() + 64);
-  CHECK(status(force, {reinterpret_cast<float*>(crooked.data() + 4), field.size()}) == Status::held_response_size);
+  CHECK(status(force, {reinterpret_cast<Vec4*>(crooked.data() + 4), field.size()}) == Status::held_response_size);
   CHECK(std::all_of(force.begin(), force.end(), [](float f) { return f == 42.0F; }));
   CHECK(status(force, {}) == Status::ok);
   CHECK(status(force, field) == Status::ok);

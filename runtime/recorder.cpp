@@ -71,8 +71,8 @@ RecordedStep* begin_step(Record& record, std::span<const Constraint> contacts, B
   auto* const step = new (slot) RecordedStep{.number = record.begun,
                                              .budget = budget.work,
                                              .contacts = contacts.size(),
-                                             .force_floats = response.force.size(),
-                                             .displacement_floats = response.displacement.size(),
+                                             .forces = response.force.size(),
+                                             .displaced_nodes = response.displacement.size(),
                                              .displacement_aligned = aligned ? 1U : 0U,
                                              .finished = 0,
                                              .status = 0,
@@ -101,8 +101,8 @@ std::uint32_t outcome_digest(const Elastostatic::StepReport& report, const Elast
                                  std::bit_cast<std::uint64_t>(report.details.switch_work)};
   const std::uint32_t digest = add(0, facts);
   if (!answered(report.status)) return digest;
-  const std::size_t floats = std::min(response.displacement.size(), std::size_t{4} * field_nodes);
-  return crc32c(std::as_bytes(response.displacement.first(floats)), crc32c(std::as_bytes(response.force), digest));
+  const std::size_t nodes = std::min<std::size_t>(response.displacement.size(), field_nodes);
+  return crc32c(std::as_bytes(response.displacement.first(nodes)), crc32c(std::as_bytes(response.force), digest));
 }
 
 Recorder::Requirement Recorder::required(const Model& model, const Elastostatic::Limits& limits,

@@ -78,8 +78,8 @@ TEST_CASE("the loop's forces and fields from a built model are the exact complia
         contacts.push_back({static_cast<std::uint32_t>(node), {}});
         contacts.back().value[axis] = 1e-3F;
       }
-      const auto report =
-          created.body.step(contacts, {.work = std::numeric_limits<std::uint64_t>::max()}, {force, {field, 4 * nodes}});
+      const auto report = created.body.step(contacts, {.work = std::numeric_limits<std::uint64_t>::max()},
+                                            {as_vec3(force), as_vec4({field, 4 * nodes})});
       REQUIRE(report.status == Status::ok);
       CHECK(report.constraint_level == 3);
 

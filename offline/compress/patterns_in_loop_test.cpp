@@ -51,7 +51,7 @@ class Answer {
   void step(const std::vector<Constraint>& contacts, std::uint64_t work) {
     force_.resize(3 * contacts.size());
     auto* const field = reinterpret_cast<float*>(field_memory_.data());
-    report = body_.step(contacts, {.work = work}, {force_, {field, floats_}});
+    report = body_.step(contacts, {.work = work}, {as_vec3(force_), as_vec4({field, floats_})});
     REQUIRE(answered(report.status));
   }
 

@@ -48,7 +48,7 @@ SpreadContacts spread_contacts(const ModelView& view, std::size_t contacts) {
 class Stepper {
  public:
   Stepper(const Model& model, std::size_t contacts)
-      : force_(3 * contacts), displacement_(4 * sizeof(float) * std::size_t{model.node_count()}) {
+      : force_(contacts), displacement_(4 * sizeof(float) * std::size_t{model.node_count()}) {
     const Elastostatic::Limits limits{static_cast<std::uint32_t>(contacts), static_cast<std::uint32_t>(sets)};
     memory_ = AlignedBytes(Elastostatic::required(model, limits).bytes);
     auto created = Elastostatic::create(model, limits, {memory_.data(), memory_.size()});
@@ -57,9 +57,9 @@ class Stepper {
   }
 
   std::uint64_t step(const std::vector<Constraint>& set) {
-    auto* field = reinterpret_cast<float*>(displacement_.data());
+    auto* field = reinterpret_cast<Vec4*>(displacement_.data());
     const auto report = body_.step(set, {std::numeric_limits<std::uint64_t>::max()},
-                                   {force_, {field, displacement_.size() / sizeof(float)}});
+                                   {force_, {field, displacement_.size() / sizeof(Vec4)}});
     if (report.status != Status::ok) {
       throw std::runtime_error("summation: a step ends with status " + std::to_string(static_cast<int>(report.status)));
     }
@@ -67,7 +67,7 @@ class Stepper {
   }
 
  private:
-  std::vector<float> force_;
+  std::vector<Vec3> force_;
   AlignedBytes memory_, displacement_;
   Elastostatic body_;
 };

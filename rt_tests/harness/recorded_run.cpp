@@ -18,7 +18,8 @@ void run_script(RecordedScript& script, typename D::Solver& body, std::span<floa
   for (std::uint32_t i = 0; i < RecordedScript::cycles; ++i) {
     const RecordedScript::Cycle cycle = script.next();
     const std::span<float> force(force_memory.data(), 3 * cycle.contacts.size());
-    const auto report = body.step(cycle.contacts, cycle.budget, {force, cycle.with_field ? field : std::span<float>()});
+    const auto report = body.step(cycle.contacts, cycle.budget,
+                                  {as_vec3(force), as_vec4(cycle.with_field ? field : std::span<float>())});
     if (flip && i == RecordedScript::cycles / 2) {
       field[0] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(field[0]) ^ 1U);
     }

@@ -178,7 +178,9 @@ TEST_CASE("whole steps take the same instructions when repeated and whatever the
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       contacts[i] = {nodes[2 * i], {value, -value, value}};
     }
-    return count_instructions([&] { body.body().step(contacts, {any_budget}, {force, body.field()}); });
+    return count_instructions([&] {
+      body.body().step(contacts, {any_budget}, {as_vec3(force), as_vec4(body.field())});
+    });
   };
   step(1e-3F);
   step(1e-3F);  // every library function has been called before, with the factor at hand too

@@ -80,7 +80,7 @@ TEST_CASE("a step keeps below the promised depth, whatever it has to do") {
       for (std::size_t i = 0; i < count; ++i) {
         contacts.push_back({nodes[first + i], {1e-3F, 0, -1e-3F}});
       }
-      const Elastostatic::Response response{std::span(force).first(3 * count), body.field()};
+      const Elastostatic::Response response{as_vec3(std::span(force).first(3 * count)), as_vec4(body.field())};
       Elastostatic::StepReport report;
       const std::size_t whole = depth_of([&] { report = body.body().step(contacts, {work}, response); });
       CHECK(answered(report.status));

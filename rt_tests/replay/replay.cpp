@@ -58,8 +58,8 @@ class RecordView {
   [[nodiscard]] RecordedStep step(std::uint64_t number) const {
     RecordedStep step;
     std::memcpy(&step, slot(number), sizeof step);
-    require(step.number == number && step.contacts <= 1U << 20 && step.force_floats <= 1U << 24 &&
-                step.displacement_floats <= std::uint64_t{1} << 32,
+    require(step.number == number && step.contacts <= 1U << 20 && step.forces <= 1U << 22 &&
+                step.displaced_nodes <= std::uint64_t{1} << 30,
             "the record is damaged: a step is not what it should be");
     return step;
   }
@@ -93,11 +93,11 @@ class Rerun {
   /// Whether what comes of it is what was recorded.
   bool is_same(const RecordedStep& step) {
     const std::vector<Constraint> contacts = record_.contacts(step);
-    force_.resize(static_cast<std::size_t>(step.force_floats));
-    const auto floats = static_cast<std::size_t>(step.displacement_floats);
-    if (field_.size() < sizeof(float) * (floats + 1)) field_ = AlignedBytes(sizeof(float) * (floats + 1));
-    float* const field = reinterpret_cast<float*>(field_.data()) + (step.displacement_aligned != 0 ? 0 : 1);
-    const Elastostatic::Response response{force_, {field, floats}};
+    force_.resize(static_cast<std::size_t>(step.forces));
+    const auto nodes = static_cast<std::size_t>(step.displaced_nodes);
+    if (field_.size() < sizeof(Vec4) * (nodes + 1)) field_ = AlignedBytes(sizeof(Vec4) * (nodes + 1));
+    std::byte* const field = field_.data() + (step.displacement_aligned != 0 ? 0 : sizeof(float));
+    const Elastostatic::Response response{force_, {reinterpret_cast<Vec4*>(field), nodes}};
     const Elastostatic::StepReport report = body_.step(contacts, {step.budget}, response);
     return step.finished == 0 || (static_cast<std::uint32_t>(report.status) == step.status &&
                                   outcome_digest(report, response, record_.facts.field_nodes) == step.digest);
@@ -106,7 +106,7 @@ class Rerun {
  private:
   const RecordView& record_;
   Elastostatic& body_;
-  std::vector<float> force_;
+  std::vector<Vec3> force_;
   AlignedBytes field_;
 };
 

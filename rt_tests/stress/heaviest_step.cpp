@@ -30,8 +30,8 @@ std::int64_t instructions_of_heaviest_step(const Model& model, std::uint32_t con
   }
   Hosted<typename D::Solver> host(model, D::limits(contacts, factors));
   const std::vector<Constraint> spread = spread_contacts(model.view(), contacts);
-  std::vector<float> force(3 * spread.size());
-  const typename D::Solver::Response response{force, host.field()};
+  std::vector<Vec3> force(spread.size());
+  const typename D::Solver::Response response{force, as_vec4(host.field())};
   host.body().step({}, {~std::uint64_t{0}}, response);  // every library function has been called before
   instruction_counter::start();
   host.body().step(spread, {~std::uint64_t{0}}, response);

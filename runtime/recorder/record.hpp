@@ -55,8 +55,8 @@ struct RecordedStep {
   std::uint64_t number;
   std::uint64_t budget;
   std::uint64_t contacts;  ///< as many as were given; those beyond max_contacts, which are refused, are not kept
-  std::uint64_t force_floats;
-  std::uint64_t displacement_floats;
+  std::uint64_t forces;
+  std::uint64_t displaced_nodes;
   std::uint32_t displacement_aligned;  ///< 1: at a multiple of 16 bytes
   std::uint32_t finished;              ///< 1: it came back, and the rest is of its outcome
   std::uint32_t status;

@@ -12,6 +12,7 @@
 #include "runtime/constraint.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/model.hpp"
+#include "runtime/vec.hpp"
 
 namespace greenloop {
 
@@ -55,7 +56,8 @@ class Hosted {
   StepReport step(std::span<const Constraint> constraints, std::uint64_t work = any_budget, bool with_field = true) {
     forces_ = 3 * constraints.size();
     if (forces_ > force_.size()) force_.resize(forces_);
-    return body_.step(constraints, {work}, {{force_.data(), forces_}, with_field ? field() : std::span<float>()});
+    return body_.step(constraints, {work},
+                      {as_vec3(std::span(force_).first(forces_)), as_vec4(with_field ? field() : std::span<float>())});
   }
 
   [[nodiscard]] const Limits& limits() const { return limits_; }

@@ -48,7 +48,7 @@ void run_cycle() {
   Solver::StepReport report;
   const std::uint64_t begin = instructions();
   for (std::uint32_t k = 0; k < loop.steps_per_cycle; ++k) {
-    report = loop.body->step(loop.contact, loop.budget, {loop.force, loop.field});
+    report = loop.body->step(loop.contact, loop.budget, {as_vec3(loop.force), as_vec4(loop.field)});
   }
   note(report, static_cast<std::uint32_t>(instructions() - begin));
   loop.timing.late += periodic_interrupt_waits() ? 1 : 0;
@@ -76,7 +76,7 @@ Timing run_timed_loop(Solver& body, Budget budget, std::span<const std::uint32_t
   cycle = 0;
   if (motion.factor_at_hand) {
     move_contacts();
-    loop.body->step(loop.contact, {~std::uint64_t{0}}, {loop.force, {}});
+    loop.body->step(loop.contact, {~std::uint64_t{0}}, {as_vec3(loop.force), {}});
   }
   start_periodic_interrupt(period);
   while (cycle < timed_cycles) {

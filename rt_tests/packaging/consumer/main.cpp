@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-int control_loop(std::span<const std::byte> file, bool (*sense)(greenloop::Constraint&), void (*actuate)(const float*));
+int control_loop(std::span<const std::byte> file, bool (*sense)(greenloop::Constraint&),
+                 void (*actuate)(const greenloop::Vec3&));
 
 namespace {
 
@@ -20,9 +21,9 @@ bool sense(greenloop::Constraint& contact) {
   return cycles++ < 100;
 }
 
-void actuate(const float* force) {
-  std::printf("%a %a %a\n", double{force[0]}, double{force[1]}, double{force[2]});
-  total_force += std::hypot(force[0], force[1], force[2]);
+void actuate(const greenloop::Vec3& force) {
+  std::printf("%a %a %a\n", double{force.x}, double{force.y}, double{force.z});
+  total_force += std::hypot(force.x, force.y, force.z);
 }
 
 std::span<const std::byte> read_aligned(const char* path) {
