@@ -1,26 +1,19 @@
 #include "offline/figures/summation.hpp"
 
-#include <ctime>
-
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "offline/compress/encode/touchable_nodes.hpp"
 #include "offline/compress/measure/field_size.hpp"
 #include "offline/compress/search/encoding_search.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/testing/hosted.hpp"
+#include "runtime/testing/thread_clock.hpp"
 
 namespace greenloop::offline {
 namespace {
 
 constexpr std::size_t sets = 8;  // take turns
-
-double thread_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 // Sets that are pressed by a thousandth of the body's height.
 struct SpreadContacts {
@@ -44,47 +37,28 @@ SpreadContacts spread_contacts(const ModelView& view, std::size_t contacts) {
   return all;
 }
 
-// A body with the memory it works in.
-class Stepper {
- public:
-  Stepper(const Model& model, std::size_t contacts)
-      : force_(contacts), displacement_(4 * sizeof(float) * std::size_t{model.node_count()}) {
-    const Elastostatic::Limits limits{static_cast<std::uint32_t>(contacts), static_cast<std::uint32_t>(sets)};
-    memory_ = AlignedBytes(Elastostatic::required(model, limits).bytes);
-    auto created = Elastostatic::create(model, limits, {memory_.data(), memory_.size()});
-    if (!created) throw std::runtime_error("summation: the model is refused");
-    body_ = created.body;
+// The work of a step, which must be answered as finely as can be.
+std::uint64_t step(Hosted<Elastostatic>& body, const std::vector<Constraint>& set) {
+  const auto report = body.step(set);
+  if (report.status != Status::ok) {
+    throw std::runtime_error("summation: a step ends with status " + std::to_string(static_cast<int>(report.status)));
   }
+  return report.work;
+}
 
-  std::uint64_t step(const std::vector<Constraint>& set) {
-    auto* field = reinterpret_cast<Vec4*>(displacement_.data());
-    const auto report = body_.step(set, {std::numeric_limits<std::uint64_t>::max()},
-                                   {force_, {field, displacement_.size() / sizeof(Vec4)}});
-    if (report.status != Status::ok) {
-      throw std::runtime_error("summation: a step ends with status " + std::to_string(static_cast<int>(report.status)));
-    }
-    return report.work;
-  }
-
- private:
-  std::vector<Vec3> force_;
-  AlignedBytes memory_, displacement_;
-  Elastostatic body_;
-};
-
-double mean_work(Stepper& stepper, const std::vector<std::vector<Constraint>>& all) {
+double mean_work(Hosted<Elastostatic>& body, const std::vector<std::vector<Constraint>>& all) {
   double work = 0;
-  for (const auto& set : all) stepper.step(set);
-  for (const auto& set : all) work += static_cast<double>(stepper.step(set));
+  for (const auto& set : all) step(body, set);
+  for (const auto& set : all) work += static_cast<double>(step(body, set));
   return work / static_cast<double>(all.size());
 }
 
-double median_seconds(Stepper& stepper, const std::vector<std::vector<Constraint>>& all, std::size_t rounds) {
+double median_seconds(Hosted<Elastostatic>& body, const std::vector<std::vector<Constraint>>& all, std::size_t rounds) {
   std::vector<double> times;
   for (std::size_t round = 0; round < rounds; ++round) {
-    const double start = thread_seconds();
-    for (const auto& set : all) stepper.step(set);
-    times.push_back((thread_seconds() - start) / static_cast<double>(all.size()));
+    const std::int64_t start = thread_nanoseconds();
+    for (const auto& set : all) step(body, set);
+    times.push_back(1e-9 * static_cast<double>(thread_nanoseconds() - start) / static_cast<double>(all.size()));
   }
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
   std::nth_element(times.begin(), middle, times.end());
@@ -98,9 +72,10 @@ SummationPoint time_summation(const ModelData& model, std::size_t contacts, std:
   const auto opened = Model::open(encoded.bytes.span());
   if (!opened) throw std::runtime_error("summation: the model is refused");
   const SpreadContacts all = spread_contacts(encoded.view, contacts);
-  Stepper stepper(opened.model, contacts);
-  const double work = mean_work(stepper, all.sets);
-  return {.blocks = all.blocks, .work = work, .seconds = median_seconds(stepper, all.sets, rounds)};
+  Hosted<Elastostatic> body(opened.model,
+                            {.max_contacts = static_cast<std::uint32_t>(contacts), .cached_factors = sets});
+  const double work = mean_work(body, all.sets);
+  return {.blocks = all.blocks, .work = work, .seconds = median_seconds(body, all.sets, rounds)};
 }
 
 SummationFit fit_summation(const std::vector<SummationPoint>& points) {

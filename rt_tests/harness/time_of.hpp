@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "sim_hw/guard/thread_clock.hpp"
+#include "runtime/testing/thread_clock.hpp"
 
 namespace greenloop {
 

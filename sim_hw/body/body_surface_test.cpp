@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "formats/testing/synthetic_model.hpp"
-#include "formats/verify.hpp"
 #include "formats/write/aligned_bytes.hpp"
 
 namespace greenloop {
@@ -18,9 +17,9 @@ namespace {
 BodySurface surface_of(const ModelData& data) {
   const auto encoded = encode(data);
   const AlignedBytes bytes(encoded);
-  ModelView view;
-  REQUIRE(verify(bytes.span(), view).ok());
-  return body_surface(view);
+  const auto opened = Model::open(bytes.span());
+  REQUIRE(opened);
+  return body_surface(opened.model);
 }
 
 TEST_CASE("the refined octahedron comes back closed and facing outwards") {
@@ -28,7 +27,8 @@ TEST_CASE("the refined octahedron comes back closed and facing outwards") {
   CHECK(surface.triangles.size() == 8 * 64);
   CHECK(surface.position.size() == 258);
   std::set<std::pair<std::uint32_t, std::uint32_t>> half_edges;
-  for (const auto& [a, b, c] : surface.triangles) {
+  for (const Surface::Triangle& triangle : surface.triangles) {
+    const auto& [a, b, c] = triangle.node;
     for (const auto& half_edge : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
       CHECK(half_edges.insert(half_edge).second);
     }

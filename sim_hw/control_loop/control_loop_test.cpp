@@ -39,7 +39,7 @@ struct Bench {
     const auto opened = Model::open(bytes.span());
     REQUIRE(opened);
     model = opened.model;
-    surface = body_surface(model.view());
+    surface = body_surface(model);
     body.emplace(model, Elastostatic::Limits{.max_contacts = max_contacts});
     setup.probe_radius = probe_radius;
     setup.max_contacts = max_contacts;

@@ -1,7 +1,7 @@
 #include "sim_hw/control_loop/loop_thread.hpp"
 
+#include "runtime/testing/thread_clock.hpp"
 #include "sim_hw/guard/allocation_guard.hpp"
-#include "sim_hw/guard/thread_clock.hpp"
 
 namespace greenloop {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "formats/testing/synthetic_model.hpp"
-#include "formats/verify.hpp"
 #include "formats/write/aligned_bytes.hpp"
 
 namespace greenloop {
@@ -16,9 +15,9 @@ namespace {
 BodySurface sphere(double touchable_above) {
   const auto encoded = encode(synthetic_model({.levels = 4, .touchable_above = touchable_above}));
   const AlignedBytes bytes(encoded);
-  ModelView view;
-  REQUIRE(verify(bytes.span(), view).ok());
-  return body_surface(view);
+  const auto opened = Model::open(bytes.span());
+  REQUIRE(opened);
+  return body_surface(opened.model);
 }
 
 /// How deep a sphere reaches beyond the nearest node, m; negative outside.

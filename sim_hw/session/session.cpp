@@ -116,7 +116,7 @@ SessionResult run_session(const SessionOptions& options) {
   SessionResult result;
   result.least_work = need.least_work;
   result.budget = budget_of(options, model, need);
-  const BodySurface surface = body_surface(model.view());
+  const BodySurface surface = body_surface(model);
   HapticDevice device(device_setup(options, surface, *model.view().info));
   result.tools = device.state().num_tools;
   result.cycles_asked = std::llround(options.seconds * options.rate);
