@@ -7,8 +7,8 @@
 #include "offline/compress/measure/field_size.hpp"
 #include "offline/compress/search/encoding_search.hpp"
 #include "runtime/elastostatic.hpp"
-#include "runtime/testing/hosted.hpp"
-#include "runtime/testing/thread_clock.hpp"
+#include "runtime/hosted/hosted.hpp"
+#include "runtime/hosted/thread_clock.hpp"
 
 namespace greenloop::offline {
 namespace {

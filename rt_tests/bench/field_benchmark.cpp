@@ -11,7 +11,7 @@
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/harness/time_of.hpp"
 #include "runtime/compliance/field.hpp"
-#include "runtime/testing/hosted.hpp"
+#include "runtime/hosted/hosted.hpp"
 #include "runtime/testing/placed_body.hpp"
 #include "runtime/wavelet/domain.hpp"
 

@@ -12,7 +12,7 @@
 #include "rt_tests/harness/time_of.hpp"
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
-#include "runtime/testing/hosted.hpp"
+#include "runtime/hosted/hosted.hpp"
 
 namespace greenloop::bench {
 namespace {

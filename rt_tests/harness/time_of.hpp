@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "runtime/testing/thread_clock.hpp"
+#include "runtime/hosted/thread_clock.hpp"
 
 namespace greenloop {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rt_tests/harness/elastostatic_driver.hpp"
-#include "runtime/testing/hosted.hpp"
+#include "runtime/hosted/hosted.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
 #include "sim_hw/guard/instruction_counter.hpp"
 

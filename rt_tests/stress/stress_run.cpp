@@ -15,7 +15,7 @@
 #include "rt_tests/harness/minor_faults.hpp"
 #include "rt_tests/harness/time_of.hpp"
 #include "rt_tests/stress/force_step.hpp"
-#include "runtime/testing/hosted.hpp"
+#include "runtime/hosted/hosted.hpp"
 #include "sim_hw/guard/guarded.hpp"
 
 namespace greenloop {

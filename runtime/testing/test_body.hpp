@@ -10,7 +10,7 @@
 #include "formats/write/writer.hpp"
 #include "runtime/algebra/fnv1a.hpp"
 #include "runtime/elastostatic.hpp"
-#include "runtime/testing/hosted.hpp"
+#include "runtime/hosted/hosted.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
 
 namespace greenloop {

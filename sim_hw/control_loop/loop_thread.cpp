@@ -1,6 +1,6 @@
 #include "sim_hw/control_loop/loop_thread.hpp"
 
-#include "runtime/testing/thread_clock.hpp"
+#include "runtime/hosted/thread_clock.hpp"
 #include "sim_hw/guard/allocation_guard.hpp"
 
 namespace greenloop {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "runtime/testing/hosted.hpp"
+#include "runtime/hosted/hosted.hpp"
 #include "sim_hw/control_loop/loop_body.hpp"
 
 namespace greenloop {
