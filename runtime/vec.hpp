@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 namespace greenloop {
 
@@ -31,9 +32,13 @@ std::span<To> view_as(std::span<From> from) noexcept {
 // start where a vector may.
 
 inline std::span<Vec3> as_vec3(std::span<float> xyz) noexcept { return detail::view_as<Vec3>(xyz); }
-inline std::span<const Vec3> as_vec3(std::span<const float> xyz) noexcept { return detail::view_as<const Vec3>(xyz); }
+template <class Float>
+requires std::is_same_v<Float, const float> std::span<const Vec3> as_vec3(std::span<Float> xyz)
+noexcept { return detail::view_as<const Vec3>(xyz); }
 inline std::span<Vec4> as_vec4(std::span<float> xyz0) noexcept { return detail::view_as<Vec4>(xyz0); }
-inline std::span<const Vec4> as_vec4(std::span<const float> xyz0) noexcept { return detail::view_as<const Vec4>(xyz0); }
+template <class Float>
+requires std::is_same_v<Float, const float> std::span<const Vec4> as_vec4(std::span<Float> xyz0)
+noexcept { return detail::view_as<const Vec4>(xyz0); }
 
 inline std::span<float> as_floats(std::span<Vec3> vectors) noexcept { return detail::view_as<float>(vectors); }
 inline std::span<float> as_floats(std::span<Vec4> vectors) noexcept { return detail::view_as<float>(vectors); }
