@@ -8,6 +8,8 @@
 
 namespace greenloop {
 
+struct ModelData;
+
 /// The whole file in 64-byte-aligned memory. Throws std::runtime_error naming the file and the reason. Offline only.
 [[nodiscard]] AlignedBytes load_file(const std::filesystem::path& path);
 
@@ -16,6 +18,10 @@ struct ModelFile {
   AlignedBytes bytes;
   ModelView view;
 };
+
+/// The file of a model, as encode in writer.hpp makes it, with the view that its verification gave: for who reads on
+/// what was just encoded. Throws std::invalid_argument as encode does. Offline only.
+[[nodiscard]] ModelFile encoded_file(const ModelData& model);
 
 /// Verifies `bytes`. Throws std::runtime_error with `name`, usually the file's, and what is wrong. Offline only.
 [[nodiscard]] ModelFile verified_model(AlignedBytes bytes, const std::string& name);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <stdexcept>
@@ -48,6 +49,16 @@ TEST_CASE("model file: written, it loads aligned and verified") {
   const ModelFile model = open_model_file(path);
   CHECK(model.bytes.size() == bytes.size());
   CHECK(reinterpret_cast<std::uintptr_t>(model.bytes.data()) % layout::alignment == 0);
+  CHECK(model.view.levels == 2);
+}
+
+TEST_CASE("model file: encoded, it stands as written, with its view") {
+  const ModelData data = synthetic_model({.levels = 2});
+  const ModelFile model = encoded_file(data);
+  const auto bytes = encode(data);
+  const auto found = model.bytes.span();
+  CHECK(std::equal(found.begin(), found.end(), bytes.begin(), bytes.end()));
+  CHECK(static_cast<const void*>(model.view.header) == model.bytes.data());
   CHECK(model.view.levels == 2);
 }
 

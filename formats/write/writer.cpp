@@ -15,6 +15,7 @@
 #include "formats/verify.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/describe.hpp"
+#include "formats/write/model_file.hpp"
 #include "formats/write/section_file.hpp"
 
 namespace greenloop {
@@ -294,15 +295,22 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
   return bytes;
 }
 
-std::vector<std::byte> encode(const ModelData& model) {
+ModelFile encoded_file(const ModelData& model) {
   require(!model.levels.empty() && model.levels.size() <= layout::max_levels,
           fmt::format("{} levels, expected 1 to {}", model.levels.size(), layout::max_levels));
   const bool cuts = std::any_of(model.levels.begin(), model.levels.end(),
                                 [](const LevelData& level) { return level.counts.cut_error != 0; });
-  auto file = file_of(SectionList(model).take(), static_cast<std::uint32_t>(model.levels.size()),
-                      cuts ? layout::first_minor_of_cuts : std::uint16_t{0});
-  require_valid(AlignedBytes(file));
+  ModelFile file{AlignedBytes(file_of(SectionList(model).take(), static_cast<std::uint32_t>(model.levels.size()),
+                                      cuts ? layout::first_minor_of_cuts : std::uint16_t{0})),
+                 {}};
+  file.view = require_valid(file.bytes);
   return file;
+}
+
+std::vector<std::byte> encode(const ModelData& model) {
+  const ModelFile file = encoded_file(model);
+  const auto bytes = file.bytes.span();
+  return {bytes.begin(), bytes.end()};
 }
 
 std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint32_t q) {

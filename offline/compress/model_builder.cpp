@@ -299,7 +299,7 @@ class Build {
     return found;
   }
 
-  [[nodiscard]] Measured measure(const EncodedModel& encoded, const Trial& chosen) {
+  [[nodiscard]] Measured measure(const ModelFile& encoded, const Trial& chosen) {
     Measured measured{.trial = chosen, .patterns = {}, .field = FieldError(read_), .worst_patches = {}};
     const CompressedCompliance all(encoded.view);
     FieldError error;
@@ -341,7 +341,7 @@ class Build {
     report_.patches = sample_.patches().size();
   }
 
-  void describe_levels(const WaveletCompliance& compliance, const Measured& finest, const EncodedModel& encoded) {
+  void describe_levels(const WaveletCompliance& compliance, const Measured& finest, const ModelFile& encoded) {
     const CompressedCompliance complete(encoded.view);
     const AnsweredContacts answered(encoded.view, complete, contacts_);
     for (std::uint32_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
@@ -374,7 +374,7 @@ class Build {
 
   // the chosen point with the errors measured on everything
   void describe_frontier(const TrialBench& bench, const ContactPatches& patches, double floor,
-                         const EncodedModel& encoded) {
+                         const ModelFile& encoded) {
     store_errors(report_, model_);
     const auto samples = sample_levels(input_.mesh, wavelet_, bench.compliance, model_.info.coarsest_constraint_level);
     std::vector<Trial> trials = report_.trials;

@@ -68,7 +68,7 @@ double median_seconds(Hosted<Elastostatic>& body, const std::vector<std::vector<
 }  // namespace
 
 SummationPoint time_summation(const ModelData& model, std::size_t contacts, std::size_t rounds) {
-  const EncodedModel encoded(model);
+  const ModelFile encoded = encoded_file(model);
   const auto opened = Model::open(encoded.bytes.span());
   if (!opened) throw std::runtime_error("summation: the model is refused");
   const SpreadContacts all = spread_contacts(encoded.view, contacts);

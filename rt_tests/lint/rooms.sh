@@ -28,7 +28,7 @@ downwards() {  # downwards FOLDER ROOM...
     printf '%s: includes point upwards:\n%s\n' "$folder" "$upwards"
     status=1
   fi
-  for room in $(sources "$folder/*/*" | cut -d/ -f2 | sort -u); do
+  for room in $(sources "$folder/*/*" | sed "s#^$folder/##" | cut -d/ -f1 | sort -u); do
     case " $* testing packaging examples messages " in
       *" $room "*) ;;
       *) printf '%s/%s has no place in the order of rooms (%s)\n' "$folder" "$room" "$0"; status=1 ;;
@@ -39,5 +39,6 @@ downwards formats layout layout.hpp view view.hpp stored_blocks.hpp verify.hpp v
 downwards runtime loop.hpp constraint.hpp vec.hpp model.hpp memory algebra wavelet compliance factor elastostatic.hpp \
   elastostatic surface.hpp surface contact recorder.hpp recorder hosted
 downwards offline progress.hpp surface remesh volume sources scene compress pipeline report figures cli
+downwards offline/compress wavelet encode measure search
 downwards sim_hw guard body messages device transport control_loop session
 exit $status

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "formats/verify.hpp"
 #include "offline/compress/measure/field_error.hpp"
 
 namespace greenloop::offline {
@@ -36,14 +34,8 @@ ModelData encoded_model(const TrialBench& bench, const Encoding& encoding) {
   return model;
 }
 
-EncodedModel::EncodedModel(const ModelData& model) : bytes(encode(model)) {
-  if (const auto result = verify(bytes.span(), view); !result.ok()) {
-    throw std::logic_error(std::string("compression: an encoded model does not verify: ") + result.field);
-  }
-}
-
 Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding,
-                    const EncodedModel& model, const CompressedCompliance& compressed) {
+                    const ModelFile& model, const CompressedCompliance& compressed) {
   Trial trial{.encoding = encoding, .bytes = model.bytes.size()};
   trial.blocks = model.view.level[model.view.levels - 1].counts->kept_blocks;
   trial.patch_force = patches.worst_force_error(compressed, compressed.finest());
@@ -55,13 +47,13 @@ Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, cons
 }
 
 Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
-  const EncodedModel model(encoded_model(bench, encoding));
+  const ModelFile model = encoded_file(encoded_model(bench, encoding));
   return measure_trial(bench, patches, encoding, model, CompressedCompliance(model.view));
 }
 
 std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPatches& patches, std::size_t count,
                                        double threshold) {
-  const EncodedModel model(encoded_model(bench, encoding_at(threshold)));
+  const ModelFile model = encoded_file(encoded_model(bench, encoding_at(threshold)));
   const CompressedCompliance compressed(model.view);
   std::vector<std::size_t> worst;
   for (const auto& error : patches.force_errors(compressed, compressed.finest())) {

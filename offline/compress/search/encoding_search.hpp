@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "formats/view.hpp"
-#include "formats/write/aligned_bytes.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/compress/encode/coupling_coder.hpp"
 #include "offline/compress/measure/contact_patches.hpp"
 #include "offline/compress/measure/exact_sample.hpp"
@@ -65,17 +65,9 @@ struct TrialBench {
 /// The bench's model with its couplings.
 [[nodiscard]] ModelData encoded_model(const TrialBench& bench, const Encoding& encoding);
 
-/// A model's bytes and what they stand for; the view points into the bytes. Move only.
-struct EncodedModel {
-  /// Throws std::logic_error if the encoded model does not verify.
-  explicit EncodedModel(const ModelData& model);
-  AlignedBytes bytes;
-  ModelView view;
-};
-
 /// What an encoding comes to, by the model that it makes. Work: 64 columns a patch and the sample's columns.
 [[nodiscard]] Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding,
-                                  const EncodedModel& model, const CompressedCompliance& compressed);
+                                  const ModelFile& model, const CompressedCompliance& compressed);
 
 /// Encodes and measures one trial.
 [[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);

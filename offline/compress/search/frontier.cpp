@@ -47,7 +47,7 @@ void measure_level(const LevelSample& sample, const CompressedCompliance& compre
 
 void measure_levels(const TrialBench& bench, const ContactPatches& patches, const std::vector<LevelSample>& samples,
                     Trial& trial) {
-  const EncodedModel model(encoded_model(bench, trial.encoding));
+  const ModelFile model = encoded_file(encoded_model(bench, trial.encoding));
   const CompressedCompliance compressed(model.view);
   if (trial.bytes == 0) trial = measure_trial(bench, patches, trial.encoding, model, compressed);
   trial.levels = level_costs(model, bench.step_work);
@@ -59,7 +59,7 @@ void measure_levels(const TrialBench& bench, const ContactPatches& patches, cons
 }
 
 // of truncate_to_level's result: where the next level's sections begin
-std::size_t bytes_up_to(const EncodedModel& model, std::uint32_t level) {
+std::size_t bytes_up_to(const ModelFile& model, std::uint32_t level) {
   const auto bytes = model.bytes.span();
   for (std::uint32_t i = 0; i < model.view.header->section_count; ++i) {
     layout::SectionEntry entry;
@@ -81,7 +81,7 @@ std::vector<LevelSample> sample_levels(const SemiRegularMesh& mesh, const Surfac
   return samples;
 }
 
-std::vector<LevelTrial> level_costs(const EncodedModel& model, const LevelWork& work) {
+std::vector<LevelTrial> level_costs(const ModelFile& model, const LevelWork& work) {
   const auto units = work ? work(model.bytes.span()) : std::vector<std::uint64_t>(model.view.levels, 0);
   std::vector<LevelTrial> levels;
   for (std::uint32_t level = model.view.info->coarsest_constraint_level; level < model.view.levels; ++level) {

@@ -31,7 +31,7 @@ struct LevelSample {
 
 /// Bytes, blocks and, unless `work` is empty, work of an encoded model cut off after each constraint level; errors 0.
 /// Encodes nothing.
-[[nodiscard]] std::vector<LevelTrial> level_costs(const EncodedModel& model, const LevelWork& work);
+[[nodiscard]] std::vector<LevelTrial> level_costs(const ModelFile& model, const LevelWork& work);
 
 /// Adds thresholds at powers of two of the chosen one, from half of it to 16 times as much, where nothing near was
 /// tried yet and the couplings at hand reach: at most five, to be tried by measure_frontier.

@@ -125,7 +125,7 @@ TEST_CASE("what is not tried yet is tried; what has its levels stays") {
 TEST_CASE("a level's errors are those of the model cut off after it") {
   const auto samples = sample_levels(bench().body.mesh, bench().wavelet, bench().compliance, coarsest);
   const auto point = measure_frontier(bench().get(), bench().patches, samples, tried({0.01})).front();
-  const EncodedModel whole(encoded_model(bench().get(), point.encoding));
+  const ModelFile whole = encoded_file(encoded_model(bench().get(), point.encoding));
   const auto bytes = whole.bytes.span();
   const AlignedBytes cut(truncate_to_level({bytes.begin(), bytes.end()}, coarsest));
   CHECK(point.levels[0].bytes == cut.size());

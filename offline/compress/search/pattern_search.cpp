@@ -27,8 +27,8 @@ double excess_of(const PatternErrors& errors, const Accuracy& accuracy) {
              : excess_of(errors.kind, errors.field.worst, errors.peak.worst, accuracy);
 }
 
-EncodedModel encoded_at(const TrialBench& bench, double threshold) {
-  return EncodedModel(encoded_model(bench, encoding_at(threshold)));
+ModelFile encoded_at(const TrialBench& bench, double threshold) {
+  return encoded_file(encoded_model(bench, encoding_at(threshold)));
 }
 
 Sites all_sites(const ExactContacts& contacts) {
@@ -37,7 +37,7 @@ Sites all_sites(const ExactContacts& contacts) {
   return sites;
 }
 
-std::vector<AnswerError> errors_of(const EncodedModel& model, const ExactContacts& contacts, const Sites& sites) {
+std::vector<AnswerError> errors_of(const ModelFile& model, const ExactContacts& contacts, const Sites& sites) {
   const CompressedCompliance compressed(model.view);
   const AnsweredContacts answered(model.view, compressed, contacts);
   std::vector<AnswerError> all;
@@ -54,7 +54,7 @@ class ThresholdSearch {
       : bench_(bench), contacts_(contacts), floor_(floor) {}
 
   // all sites; those that were worst join the searched ones
-  double check(const EncodedModel& model) {
+  double check(const ModelFile& model) {
     const auto errors = errors_of(model, contacts_, all_sites(contacts_));
     std::vector<std::pair<double, std::size_t>> worst;
     auto next = errors.begin();
@@ -114,7 +114,7 @@ const PatternErrors& worst_pattern(const std::vector<PatternErrors>& errors, con
 
 std::vector<AnswerError> answer_errors(const TrialBench& bench, const ExactContacts& contacts,
                                        const Encoding& encoding) {
-  return errors_of(EncodedModel(encoded_model(bench, encoding)), contacts, all_sites(contacts));
+  return errors_of(encoded_file(encoded_model(bench, encoding)), contacts, all_sites(contacts));
 }
 
 std::optional<FoundEncoding> search_threshold(const TrialBench& bench, const ExactContacts& contacts, double threshold,

@@ -28,7 +28,7 @@ inline constexpr std::uint32_t most_accurate_contacts = 64;
 /// An encoding and the model that it makes.
 struct FoundEncoding {
   Encoding encoding;
-  EncodedModel model;
+  ModelFile model;
 };
 
 /// The encoding of a threshold near the largest from `floor` to `threshold` with which the answers at the finest level

@@ -1,9 +1,7 @@
 #include "offline/compress/testing/dense_compliance.hpp"
 
 #include <cstring>
-#include <stdexcept>
 
-#include "formats/verify.hpp"
 #include "offline/compress/encode/model_tables.hpp"
 #include "offline/compress/wavelet/equilibrated_prediction.hpp"
 #include "offline/compress/wavelet/wavelet_compliance.hpp"
@@ -174,9 +172,7 @@ ModelData model_of(const Body& body, layout::Wavelet kind, const Encoding& encod
   return model;
 }
 
-File::File(const ModelData& model) : bytes(encode(model)) {
-  if (const auto result = verify(bytes.span(), view); !result.ok()) throw std::logic_error(result.field);
-}
+File::File(const ModelData& model) : ModelFile(encoded_file(model)) {}
 
 layout::Info facts() {
   layout::Info info{};

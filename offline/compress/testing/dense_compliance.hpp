@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "formats/view.hpp"
-#include "formats/write/aligned_bytes.hpp"
+#include "formats/write/model_file.hpp"
 #include "formats/write/writer.hpp"
 #include "offline/compress/encode/coupling_coder.hpp"
 #include "offline/compress/testing/test_body.hpp"
@@ -41,10 +41,8 @@ using Sparse = Eigen::SparseMatrix<double>;
 [[nodiscard]] ModelData model_of(const Body& body, layout::Wavelet kind, const Encoding& encoding);
 
 /// A verified model file.
-struct File {
+struct File : ModelFile {
   explicit File(const ModelData& model);
-  AlignedBytes bytes;
-  ModelView view;
 };
 
 /// Young's modulus, contacts and a rate.
