@@ -41,6 +41,7 @@ Status check_request(const Body& body, std::size_t contacts, Budget budget, cons
 // the factor of the planned set; null if its capacitance matrix is not positive definite
 Factor* find_factor(Body& body, const Plan& plan) {
   if (plan.cached != nullptr) {
+    body.cache.use(*plan.cached);  // also if the answer overflows
     return plan.cached;
   }
   drop_batch(body.job, body.capacitance);
