@@ -23,7 +23,8 @@
 namespace greenloop {
 namespace {
 
-constexpr Elastostatic::Limits limits{.max_contacts = 12, .cached_factors = 3, .glide_cycles = 5};
+constexpr Elastostatic::Limits limits{
+    .max_contacts = 12, .cached_factors = 3, .mixtures = false, .keep_capacitance = true, .glide_cycles = 5};
 
 // a recorded body and what is done to it: contacts, budgets and buffers of every kind, wrong ones among them
 class Recorded {
@@ -165,7 +166,7 @@ TEST_CASE("a flipped bit is found, in a question and in an outcome, at the step 
   SUBCASE("status") { step_in(record, answered).status ^= 1U; }
   SUBCASE("displacement") {
     auto* const contact = reinterpret_cast<Constraint*>(&step_in(record, answered) + 1);
-    reinterpret_cast<unsigned char*>(contact->displacement)[2] ^= 1U;
+    reinterpret_cast<unsigned char*>(contact->value)[2] ^= 1U;
   }
   const Replay again = replay_in_place(record, recorded.body);
   CHECK(again.first == 50);
