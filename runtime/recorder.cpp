@@ -20,7 +20,7 @@ std::uint32_t add(std::uint32_t digest, const Value& value) {
 std::uint64_t address(const void* at) { return reinterpret_cast<std::uintptr_t>(at); }
 
 const std::byte* arena_of(const Record& record) {
-  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(record.arena_address));
+  return std::bit_cast<const std::byte*>(static_cast<std::uintptr_t>(record.arena_address));
 }
 
 std::byte* at(Record& record, std::uint64_t offset) { return reinterpret_cast<std::byte*>(&record) + offset; }

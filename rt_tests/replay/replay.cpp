@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
@@ -14,7 +15,7 @@
 namespace greenloop {
 namespace {
 
-std::byte* pointer(std::uint64_t address) { return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(address)); }
+std::byte* pointer(std::uint64_t address) { return std::bit_cast<std::byte*>(static_cast<std::uintptr_t>(address)); }
 
 void require(bool right, const char* what) {
   if (!right) throw std::runtime_error(what);

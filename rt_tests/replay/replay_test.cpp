@@ -207,7 +207,7 @@ TEST_CASE("what a recorder needs is checked") {
   const std::size_t arena_bytes = Elastostatic::required(model.model(), limits).bytes;
   const auto need = Recorder::required(model.model(), limits, {.steps = 8});
   CHECK(need.checkpoint_bytes == arena_bytes);
-  CHECK(need.bytes > 3 * arena_bytes + 8 * limits.max_contacts * sizeof(Constraint));
+  CHECK(need.bytes > 3 * arena_bytes + 8 * sizeof(Constraint) * limits.max_contacts);
   CHECK(Recorder::required(model.model(), limits, {.steps = 0}).bytes == 0);
   AlignedBytes arena(arena_bytes), memory(need.bytes + 64);
   const auto create = [&](std::span<const std::byte> of, std::span<std::byte> in, std::uint32_t steps) {
