@@ -5,9 +5,8 @@
 #include <type_traits>
 
 #include "formats/verify/rule_text.hpp"
-#include "runtime/elastostatic.hpp"
+#include "runtime/c_values.hpp"
 #include "runtime/elastostatic/body.hpp"
-#include "runtime/greenloop.h"
 #include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
@@ -75,10 +74,6 @@ static_assert(sizeof(Constraint) == sizeof(greenloop_constraint) &&
 // NOLINTEND(misc-redundant-expression)
 static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
 
-const Model& model_in(const greenloop_model* model) {
-  return *std::launder(reinterpret_cast<const Model*>(model->storage));
-}
-
 const layout::NodeRecord* find_node(const greenloop_model* model, std::uint32_t node) {
   const ModelView& view = model_in(model).view();
   return node < view.node_count ? &node_record(view, node) : nullptr;
@@ -112,6 +107,30 @@ const char* text_at(const char* const (&texts)[count], unsigned index) {
 }
 
 }  // namespace
+
+Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
+  Elastostatic::Limits same{.max_contacts = limits.max_contacts,
+                            .cached_factors = limits.cached_factors,
+                            .forces_only = limits.forces_only != 0,
+                            .mixtures = limits.no_mixtures == 0,
+                            .keep_capacitance = limits.keep_capacitance != 0};
+  same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
+  same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
+  return same;
+}
+
+greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept {
+  const Elastostatic::StepDetails& details = report.details;
+  return {static_cast<greenloop_status>(report.status),
+          report.refused,
+          report.work,
+          report.constraint_level,
+          report.field_level,
+          report.error,
+          {details.cached_factor ? 1 : 0, details.finer_level, details.finer_contacts, details.changed_nodes,
+           details.glide, details.level_difference, details.switch_work, details.pending_work}};
+}
+
 }  // namespace greenloop
 
 using namespace greenloop;
@@ -162,21 +181,6 @@ int greenloop_position(const greenloop_model* model, uint32_t node, float* posit
   return 1;
 }
 
-namespace {
-
-Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) {
-  Elastostatic::Limits same{.max_contacts = limits.max_contacts,
-                            .cached_factors = limits.cached_factors,
-                            .forces_only = limits.forces_only != 0,
-                            .mixtures = limits.no_mixtures == 0,
-                            .keep_capacitance = limits.keep_capacitance != 0};
-  same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
-  same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
-  return same;
-}
-
-}  // namespace
-
 greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
   const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
   const Elastostatic::Limits& limits = intent.limits;
@@ -207,19 +211,8 @@ greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic
                                                           const greenloop_constraint* contacts, size_t count,
                                                           uint64_t work, float* force, float* displacement,
                                                           uint32_t nodes) {
-  auto* const in_arena = reinterpret_cast<Body*>(body);
-  const std::span<Vec4> field(reinterpret_cast<Vec4*>(displacement), displacement == nullptr ? 0 : nodes);
-  const Elastostatic::StepReport report = std::bit_cast<Elastostatic>(in_arena).step(
-      {reinterpret_cast<const Constraint*>(contacts), count}, {work}, {{reinterpret_cast<Vec3*>(force), count}, field});
-  const Elastostatic::StepDetails& details = report.details;
-  return {static_cast<greenloop_status>(report.status),
-          report.refused,
-          report.work,
-          report.constraint_level,
-          report.field_level,
-          report.error,
-          {details.cached_factor ? 1 : 0, details.finer_level, details.finer_contacts, details.changed_nodes,
-           details.glide, details.level_difference, details.switch_work, details.pending_work}};
+  return report_of(
+      body_in(body).step(constraints_of(contacts, count), {work}, response_of(count, force, displacement, nodes)));
 }
 
 int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32_t i, uint32_t j, float* block) {

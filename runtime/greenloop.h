@@ -1,7 +1,8 @@
 /* Greenloop for C99 and every language that calls C: the same loops as the C++ headers beside it, the same bits.
  *
- * Memory: the caller owns all of it. A model is read in place: its bytes and the arena stay where they are, unchanged by
- * others, while a body uses them; a body needs the greenloop_model no more once it is made. Nothing here allocates, locks or enters the kernel.
+ * Memory: the caller owns all of it. A model is read in place: its bytes and the arena stay where they are, unchanged
+ * by others, while a body uses them; a body needs the greenloop_model no more once it is made. Nothing here allocates,
+ * locks or enters the kernel.
  *
  * Threads: a greenloop_model does not change once it is open, so any number of threads may use one at once, each with a
  * body and an arena of its own. A body is for one thread at a time; so are the buffers of a step.
@@ -323,6 +324,57 @@ int greenloop_vertex_on_surface(const greenloop_model* model, size_t vertex, gre
 
 /* One sentence; static storage. */
 const char* greenloop_surface_error_text(greenloop_surface_error error);
+
+/* ---- The recorder: what runtime/recorder.hpp gives, docs/recorder.md. ----
+ *
+ * Keeps the last steps of one body in the caller's memory, GREENLOOP_ALIGNMENT-aligned, so that greenloop-replay can
+ * run them again to the same bits. Arena and memory must outlive it and stay where they are. */
+
+typedef struct greenloop_recorder greenloop_recorder;
+
+typedef struct greenloop_recorder_options {
+  uint32_t steps;       /* kept, >= 1 */
+  uint64_t interval;    /* steps from one checkpoint to the next; 0: greenloop_recorder_checkpoint is called */
+  uint32_t field_nodes; /* whose displacement goes into the digest, the first ones of the file */
+} greenloop_recorder_options;
+
+typedef enum greenloop_recorder_error {
+  GREENLOOP_RECORDER_OK,
+  GREENLOOP_RECORDER_BAD_OPTIONS,
+  GREENLOOP_RECORDER_BAD_BODY,
+  GREENLOOP_RECORDER_MEMORY_TOO_SMALL,
+  GREENLOOP_RECORDER_MEMORY_MISALIGNED
+} greenloop_recorder_error;
+
+typedef struct greenloop_recorder_created {
+  greenloop_recorder_error error;
+  size_t requested, available, missing; /* bytes */
+  greenloop_recorder* recorder;         /* null on an error */
+} greenloop_recorder_created;
+
+/* Bytes; 0: greenloop_recorder_create would refuse. Start-up. */
+size_t greenloop_recorder_required(const greenloop_model* model, greenloop_elastostatic_limits limits,
+                                   greenloop_recorder_options options);
+
+/* For a body just created with this model and these limits in `arena`, before its first step. Start-up; copies the
+ * arena. */
+greenloop_recorder_created greenloop_recorder_create(const greenloop_model* model, greenloop_elastostatic_limits limits,
+                                                     const void* arena, size_t arena_bytes,
+                                                     greenloop_recorder_options options, void* memory, size_t bytes);
+
+/* greenloop_elastostatic_step, recorded. For the loop. */
+greenloop_elastostatic_report greenloop_recorder_step(greenloop_recorder* recorder, greenloop_elastostatic* body,
+                                                      const greenloop_constraint* contacts, size_t count, uint64_t work,
+                                                      float* force, float* displacement, uint32_t nodes);
+
+/* Copies the arena, for a replay to start from. For a moment of the loop that has the time. */
+void greenloop_recorder_checkpoint(greenloop_recorder* recorder);
+
+/* What is to be written to a file. */
+const void* greenloop_recorder_record(const greenloop_recorder* recorder, size_t* bytes);
+
+/* One sentence; static storage. */
+const char* greenloop_recorder_error_text(greenloop_recorder_error error);
 
 #ifdef __cplusplus
 }

@@ -64,7 +64,7 @@ enum class CreateError : std::uint8_t {
 /// What `create` says of the memory it was given.
 struct Creation {
   CreateError error = CreateError::none;
-  std::size_t requested = 0;  ///< bytes
+  std::size_t requested = 0;  ///< bytes; of a body those in use, from its creation to its end: its high-water mark
   std::size_t available = 0;
   std::size_t missing = 0;
   explicit operator bool() const noexcept { return error == CreateError::none; }

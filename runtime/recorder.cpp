@@ -20,7 +20,7 @@ std::uint32_t add(std::uint32_t digest, const Value& value) {
 std::uint64_t address(const void* at) { return reinterpret_cast<std::uintptr_t>(at); }
 
 const std::byte* arena_of(const Record& record) {
-  return reinterpret_cast<const std::byte*>(static_cast<std::uintptr_t>(record.arena_address));
+  return std::bit_cast<const std::byte*>(static_cast<std::uintptr_t>(record.arena_address));
 }
 
 std::byte* at(Record& record, std::uint64_t offset) { return reinterpret_cast<std::byte*>(&record) + offset; }
@@ -48,11 +48,7 @@ void describe(const Model& model, const Elastostatic::Limits& limits, const Reco
   record.model_address = address(model.view().header);
   record.model_bytes = model.view().header->file_bytes;
   record.model_crc = model.view().header->header_crc;
-  record.max_contacts = limits.max_contacts;
-  record.cached_factors = limits.cached_factors;
-  record.forces_only = limits.forces_only ? 1 : 0;
-  record.refining_work = limits.refining_work;
-  record.glide_cycles = limits.glide_cycles;
+  record.limits = limits;
   record.steps = options.steps;
   record.interval = options.interval;
   record.field_nodes = options.field_nodes;
@@ -77,7 +73,7 @@ RecordedStep* begin_step(Record& record, std::span<const Constraint> contacts, B
                                              .finished = 0,
                                              .status = 0,
                                              .digest = 0};
-  const std::size_t kept = std::min<std::size_t>(contacts.size(), record.max_contacts);
+  const std::size_t kept = std::min<std::size_t>(contacts.size(), record.limits.max_contacts);
   if (kept > 0) std::memcpy(slot + sizeof(RecordedStep), contacts.data(), kept * sizeof(Constraint));
   ++record.begun;
   return step;
@@ -86,13 +82,15 @@ RecordedStep* begin_step(Record& record, std::span<const Constraint> contacts, B
 }  // namespace
 
 std::uint32_t outcome_digest(const Elastostatic::StepReport& report, const Elastostatic::Response& response,
-                             std::uint32_t field_nodes) noexcept {
+                             std::uint64_t field_nodes) noexcept {
   const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status),
                                  report.refused,
                                  report.constraint_level,
                                  report.details.finer_level,
                                  report.details.finer_contacts,
                                  report.field_level,
+                                 std::bit_cast<std::uint32_t>(report.error),
+                                 report.details.cached_factor ? 1U : 0U,
                                  report.details.changed_nodes,
                                  report.work,
                                  report.details.pending_work,
@@ -101,7 +99,7 @@ std::uint32_t outcome_digest(const Elastostatic::StepReport& report, const Elast
                                  std::bit_cast<std::uint64_t>(report.details.switch_work)};
   const std::uint32_t digest = add(0, facts);
   if (!answered(report.status)) return digest;
-  const std::size_t nodes = std::min<std::size_t>(response.displacement.size(), field_nodes);
+  const auto nodes = static_cast<std::size_t>(std::min<std::uint64_t>(response.displacement.size(), field_nodes));
   return crc32c(std::as_bytes(response.displacement.first(nodes)), crc32c(std::as_bytes(response.force), digest));
 }
 

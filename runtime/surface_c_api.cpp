@@ -1,10 +1,9 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
-#include <new>
 #include <type_traits>
 
-#include "runtime/greenloop.h"
+#include "runtime/c_values.hpp"
 #include "runtime/surface.hpp"
 
 namespace greenloop {
@@ -26,10 +25,6 @@ static_assert(same(GREENLOOP_SURFACE_OK, Surface::Error::none) &&
 static_assert(sizeof(Surface::Triangle) == sizeof(greenloop_triangle) &&
               sizeof(layout::VertexRecord) == sizeof(greenloop_vertex));
 static_assert(sizeof(Surface) == sizeof(void*) && std::is_trivially_copyable_v<Surface>);
-
-const Model& model_in(const greenloop_model* model) {
-  return *std::launder(reinterpret_cast<const Model*>(model->storage));
-}
 
 Surface surface_of(const greenloop_surface* surface) {
   return std::bit_cast<Surface>(reinterpret_cast<const SurfaceParts*>(surface));

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 
 namespace greenloop {
@@ -15,7 +16,7 @@ AddressRange whole_pages(AddressRange range) {
   return {range.begin / page * page, (range.end + page - 1) / page * page};
 }
 
-void* pointer(std::uint64_t address) { return reinterpret_cast<void*>(static_cast<std::uintptr_t>(address)); }
+void* pointer(std::uint64_t address) { return std::bit_cast<void*>(static_cast<std::uintptr_t>(address)); }
 
 }  // namespace
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
@@ -14,7 +15,7 @@
 namespace greenloop {
 namespace {
 
-std::byte* pointer(std::uint64_t address) { return reinterpret_cast<std::byte*>(static_cast<std::uintptr_t>(address)); }
+std::byte* pointer(std::uint64_t address) { return std::bit_cast<std::byte*>(static_cast<std::uintptr_t>(address)); }
 
 void require(bool right, const char* what) {
   if (!right) throw std::runtime_error(what);
@@ -30,7 +31,7 @@ class RecordView {
     require(facts.version == record_version && facts.pointer_bytes == sizeof(void*),
             "the record is of another version of greenloop or another kind of machine");
     require(facts.bytes == bytes.size(), "the record was cut or extended: copy it again");
-    const std::uint64_t slot = sizeof(RecordedStep) + sizeof(Constraint) * std::uint64_t{facts.max_contacts};
+    const std::uint64_t slot = sizeof(RecordedStep) + sizeof(Constraint) * std::uint64_t{facts.limits.max_contacts};
     require(facts.steps > 0 && facts.slot_bytes >= slot && facts.slot_bytes <= facts.bytes / facts.steps &&
                 holds(facts.steps_offset, facts.slot_bytes * facts.steps),
             "the record is damaged: its steps do not fit");
@@ -67,7 +68,7 @@ class RecordView {
   /// Those beyond what is kept are zero.
   [[nodiscard]] std::vector<Constraint> contacts(const RecordedStep& step) const {
     std::vector<Constraint> contacts(static_cast<std::size_t>(step.contacts));
-    const std::size_t kept = std::min<std::size_t>(contacts.size(), facts.max_contacts);
+    const std::size_t kept = std::min<std::size_t>(contacts.size(), facts.limits.max_contacts);
     if (kept > 0) std::memcpy(contacts.data(), slot(step.number) + sizeof step, kept * sizeof(Constraint));
     return contacts;
   }
@@ -138,14 +139,9 @@ void restore(std::span<const std::byte> checkpoint, std::span<const std::byte> r
   }
 }
 
-Elastostatic::Limits limits_of(const Record& record) {
-  return {record.max_contacts, record.cached_factors, record.forces_only != 0, record.glide_cycles,
-          record.refining_work};
-}
-
 Elastostatic body_of(const Record& record, const Model& model) {
   const auto created = Elastostatic::create(
-      model, limits_of(record), {pointer(record.arena_address), static_cast<std::size_t>(record.arena_bytes)});
+      model, record.limits, {pointer(record.arena_address), static_cast<std::size_t>(record.arena_bytes)});
   require(bool{created} && created.requested == record.arena_bytes,
           "a body here does not take the memory that the recorded one took: use the same build of the library");
   return created.body;

@@ -4,16 +4,19 @@
 #include <fmt/format.h>
 #include <sys/wait.h>
 
+#include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "runtime/greenloop.h"
 #include "runtime/recorder.hpp"
 #include "runtime/recorder/record.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -23,7 +26,8 @@
 namespace greenloop {
 namespace {
 
-constexpr Elastostatic::Limits limits{.max_contacts = 12, .cached_factors = 3, .glide_cycles = 5};
+constexpr Elastostatic::Limits limits{
+    .max_contacts = 12, .cached_factors = 3, .mixtures = false, .keep_capacitance = true, .glide_cycles = 5};
 
 // a recorded body and what is done to it: contacts, budgets and buffers of every kind, wrong ones among them
 class Recorded {
@@ -165,7 +169,7 @@ TEST_CASE("a flipped bit is found, in a question and in an outcome, at the step 
   SUBCASE("status") { step_in(record, answered).status ^= 1U; }
   SUBCASE("displacement") {
     auto* const contact = reinterpret_cast<Constraint*>(&step_in(record, answered) + 1);
-    reinterpret_cast<unsigned char*>(contact->displacement)[2] ^= 1U;
+    reinterpret_cast<unsigned char*>(contact->value)[2] ^= 1U;
   }
   const Replay again = replay_in_place(record, recorded.body);
   CHECK(again.first == 50);
@@ -203,7 +207,7 @@ TEST_CASE("what a recorder needs is checked") {
   const std::size_t arena_bytes = Elastostatic::required(model.model(), limits).bytes;
   const auto need = Recorder::required(model.model(), limits, {.steps = 8});
   CHECK(need.checkpoint_bytes == arena_bytes);
-  CHECK(need.bytes > 3 * arena_bytes + 8 * limits.max_contacts * sizeof(Constraint));
+  CHECK(need.bytes > 3 * arena_bytes + 8 * sizeof(Constraint) * limits.max_contacts);
   CHECK(Recorder::required(model.model(), limits, {.steps = 0}).bytes == 0);
   AlignedBytes arena(arena_bytes), memory(need.bytes + 64);
   const auto create = [&](std::span<const std::byte> of, std::span<std::byte> in, std::uint32_t steps) {
@@ -217,6 +221,52 @@ TEST_CASE("what a recorder needs is checked") {
   CHECK(small.missing == 1);
   CHECK(create(arena.span(), all.subspan(8, need.bytes), 8).error == Recorder::Error::memory_misaligned);
   CHECK(create(arena.span(), all.first(need.bytes), 8));
+}
+
+TEST_CASE("steps recorded in C are run again, and every error has a text of its own") {
+  const AlignedBytes file(encode(synthetic_model({.levels = 3})));
+  greenloop_model model;
+  REQUIRE(greenloop_open(file.data(), file.size(), &model).rule == GREENLOOP_RULE_OK);
+  greenloop_elastostatic_limits of_body{};
+  of_body.max_contacts = 4;
+  of_body.cached_factors = 2;
+  const greenloop_recorder_options options{.steps = 30, .interval = 0, .field_nodes = 10};
+  AlignedBytes arena(greenloop_elastostatic_required(&model, of_body).bytes);
+  AlignedBytes memory(greenloop_recorder_required(&model, of_body, options));
+  const auto body = greenloop_elastostatic_create(&model, of_body, arena.data(), arena.size());
+  REQUIRE(body.error == GREENLOOP_CREATE_OK);
+  const auto create = [&](greenloop_recorder_options with, std::size_t bytes) {
+    return greenloop_recorder_create(&model, of_body, arena.data(), arena.size(), with, memory.data(), bytes);
+  };
+  CHECK(create({.steps = 0, .interval = 0, .field_nodes = 0}, memory.size()).error == GREENLOOP_RECORDER_BAD_OPTIONS);
+  const auto small = create(options, memory.size() - 64);
+  CHECK(small.error == GREENLOOP_RECORDER_MEMORY_TOO_SMALL);
+  CHECK(small.missing == 64);
+  CHECK(small.recorder == nullptr);
+  const auto created = create(options, memory.size());
+  REQUIRE(created.error == GREENLOOP_RECORDER_OK);
+  std::uint32_t node = 0;
+  while (greenloop_is_touchable(&model, node) == 0) ++node;
+  for (int i = 0; i < 40; ++i) {
+    if (i == 20) greenloop_recorder_checkpoint(created.recorder);
+    const greenloop_constraint contact{node, {0, 0, static_cast<float>(i) * 1e-5F}, GREENLOOP_HOLD};
+    float force[3];
+    const auto report = greenloop_recorder_step(created.recorder, body.body, &contact, 1,
+                                                static_cast<std::uint64_t>(1) << 60, force, nullptr, 0);
+    REQUIRE(greenloop_answered(report.status) == 1);
+  }
+  std::size_t bytes = 0;
+  const auto* const record = static_cast<const std::byte*>(greenloop_recorder_record(created.recorder, &bytes));
+  auto same = std::bit_cast<Elastostatic>(reinterpret_cast<Body*>(body.body));
+  const Replay again = replay_in_place({record, bytes}, same);
+  CHECK(again.first == 20);
+  CHECK(again.steps == 20);
+  CHECK(!again.differs);
+  std::set<std::string> texts;
+  for (int error = GREENLOOP_RECORDER_OK; error <= GREENLOOP_RECORDER_MEMORY_MISALIGNED; ++error) {
+    texts.insert(greenloop_recorder_error_text(static_cast<greenloop_recorder_error>(error)));
+  }
+  CHECK(texts.size() == GREENLOOP_RECORDER_MEMORY_MISALIGNED + 1);
 }
 
 class Folder {

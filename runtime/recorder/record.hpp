@@ -5,11 +5,12 @@
 //
 //   offset 0       Record              with the body's limits and where its arena and its model stood
 //   steps_offset   Slot [steps]        a ring: step n is in slot n modulo steps; slot_bytes each:
-//                                      RecordedStep, then Contact [max_contacts]
+//                                      RecordedStep, then Constraint [max_contacts]
 //   checkpoint     arena_bytes each    copies of the arena before a step, of which the first is before step 0
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 #include "runtime/elastostatic.hpp"
 
@@ -36,15 +37,10 @@ struct Record {
   std::uint64_t model_address;
   std::uint64_t model_bytes;
   std::uint32_t model_crc;  ///< layout::Header::header_crc
-  std::uint32_t max_contacts;
-  std::uint32_t cached_factors;
-  std::uint32_t forces_only;
-  std::uint64_t refining_work;
-  std::uint32_t glide_cycles;
-  std::uint32_t steps;  ///< of the ring
+  std::uint32_t steps;      ///< of the ring
+  Elastostatic::Limits limits;
   std::uint64_t interval;
-  std::uint32_t field_nodes;
-  std::uint32_t reserved;
+  std::uint64_t field_nodes;
   std::uint64_t begun;  ///< steps, of which all but the last are finished for certain
   std::uint64_t steps_offset;
   std::uint64_t slot_bytes;
@@ -62,11 +58,11 @@ struct RecordedStep {
   std::uint32_t status;
   std::uint32_t digest;  ///< outcome_digest
 };
-static_assert(sizeof(Record) == 176 && sizeof(RecordedStep) == 56);
+static_assert(std::is_trivially_copyable_v<Record> && sizeof(RecordedStep) == 56);
 
 /// CRC-32C of what a step reported and, if it answered, of its forces and of the first `field_nodes` nodes'
 /// displacement. For the loop; work: linear in these.
 [[nodiscard]] std::uint32_t outcome_digest(const Elastostatic::StepReport& report,
-                                           const Elastostatic::Response& response, std::uint32_t field_nodes) noexcept;
+                                           const Elastostatic::Response& response, std::uint64_t field_nodes) noexcept;
 
 }  // namespace greenloop

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <bit>
+#include <new>
+
+#include "runtime/elastostatic.hpp"
+#include "runtime/greenloop.h"
+
+// What the functions of greenloop.h are given and give, in C++; for their sources alone.
+
+namespace greenloop {
+
+inline const Model& model_in(const greenloop_model* model) {
+  return *std::launder(reinterpret_cast<const Model*>(model->storage));
+}
+
+inline Elastostatic body_in(greenloop_elastostatic* body) {
+  return std::bit_cast<Elastostatic>(reinterpret_cast<Body*>(body));
+}
+
+[[nodiscard]] Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept;
+
+inline std::span<const Constraint> constraints_of(const greenloop_constraint* constraints, std::size_t count) {
+  return {reinterpret_cast<const Constraint*>(constraints), count};
+}
+
+inline Elastostatic::Response response_of(std::size_t count, float* force, float* displacement, std::uint32_t nodes) {
+  const std::span<Vec4> field(reinterpret_cast<Vec4*>(displacement), displacement == nullptr ? 0 : nodes);
+  return {{reinterpret_cast<Vec3*>(force), count}, field};
+}
+
+[[nodiscard]] greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept;
+
+}  // namespace greenloop
