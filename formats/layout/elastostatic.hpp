@@ -95,7 +95,7 @@ struct Level {
   std::uint32_t node_count;           ///< |M(q)|
   std::uint32_t domain_count;         ///< domain nodes of M(q): the first ones
   std::uint32_t base_triangle_count;  ///< q = 0 only, else 0
-  float cut_error;                    ///< field_error at coarsest_constraint_level without the details of levels after q
+  float cut_error;             ///< field_error at coarsest_constraint_level without the details of levels after q
   std::uint64_t kept_blocks;   ///< 3x3 blocks stored in levels 0..q: scales and couplings
   std::uint64_t dense_blocks;  ///< domain nodes of K(q), squared
   float rms_error;             ///< ||U^ - U||_F / ||U||_F

@@ -31,8 +31,8 @@ class CompressedCompliance {
   void apply_to_coefficients(std::size_t level, std::size_t columns, const double* f, double* y) const;
 
   /// What forces on the averages of `level` move on the whole surface, with the details of levels 0 .. `details`: x has
-  /// rows(finest()) * columns * 3 numbers, f as above. With all details its averages of `level` are U^_level f. Work: as
-  /// apply, and an inverse transform.
+  /// rows(finest()) * columns * 3 numbers, f as above. With all details its averages of `level` are U^_level f. Work:
+  /// as apply, and an inverse transform.
   void displace(std::size_t level, std::size_t details, std::size_t columns, const double* f, double* x) const;
 
   /// U^_level between some of its nodes: 3 nodes.size() squared, m/N. Work: 9 per coupling of the coefficients that
