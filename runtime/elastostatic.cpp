@@ -104,7 +104,7 @@ void release(Body& body, const Elastostatic::Response& response, Elastostatic::S
   body.last.release();
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
-    std::memset(response.displacement.data(), 0, response.displacement.size_bytes());
+    std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
     report.work += response.displacement.size();
   }
   report.constraint_level = finest;
