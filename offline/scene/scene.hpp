@@ -83,7 +83,7 @@ struct Scene {
 /// The same for a scene already in memory; `file` is for messages and for paths relative to it.
 [[nodiscard]] Scene parse_scene(std::string_view text, const std::filesystem::path& file);
 
-/// The beginning of canonical_text: mesh, levels, material and regions, all that exact columns follow from. A key that
+/// The part of canonical_text about mesh, levels, material and regions: all that exact columns follow from. A key that
 /// changes them belongs here; any other does not, and leaves stores valid.
 [[nodiscard]] std::string body_text(const Scene& scene);
 

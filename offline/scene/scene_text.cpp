@@ -65,8 +65,7 @@ std::string regions_text(const std::string& role, const std::vector<Region>& reg
 
 std::string mesh_text(const MeshSource& mesh) {
   return std::string(mesh.tetrahedra ? "[volume]" : "[surface]") + "\nfile = " + string(mesh.name) + "\n" +
-         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n" +
-         (mesh.keep_vertex_map ? "keep_vertex_map = true\n" : "");
+         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n";
 }
 
 std::string remesh_text(const Scene& scene) {
@@ -100,22 +99,19 @@ std::string budget_text(const StepBudget& budget) {
          "contacts = " + std::to_string(budget.contacts) + "\n";
 }
 
-std::string body_text(const MeshSource& mesh, const Scene& scene) {
-  return mesh_text(mesh) + remesh_text(scene) + material_text(scene.material) + regions_text("fixed", scene.fixed) +
+std::string tables_of_body(const Scene& scene) {
+  return remesh_text(scene) + material_text(scene.material) + regions_text("fixed", scene.fixed) +
          regions_text("touched", scene.touched) + regions_text("read", scene.read);
 }
 
 }  // namespace
 
-std::string body_text(const Scene& scene) {
-  MeshSource mesh = scene.mesh;
-  mesh.keep_vertex_map = false;  // a column does not depend on it
-  return body_text(mesh, scene);
-}
+std::string body_text(const Scene& scene) { return mesh_text(scene.mesh) + tables_of_body(scene); }
 
 std::string canonical_text(const Scene& scene) {
-  return body_text(scene.mesh, scene) + "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) +
-         "\n" + accuracy_text(scene.accuracy) + compression_text(scene.wavelet) + budget_text(scene.budget) +
+  return mesh_text(scene.mesh) + (scene.mesh.keep_vertex_map ? "keep_vertex_map = true\n" : "") +
+         tables_of_body(scene) + "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
+         accuracy_text(scene.accuracy) + compression_text(scene.wavelet) + budget_text(scene.budget) +
          (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
 }
 

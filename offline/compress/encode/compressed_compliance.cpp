@@ -148,7 +148,7 @@ void CompressedCompliance::couple(std::size_t level, std::size_t to_level, std::
     if (!any(own, width)) continue;
     std::fill(scaled.begin(), scaled.end(), 0.0);
     multiply(root_.data() + 9 * i, false, columns, own, scaled.data());
-    multiply(diagonal_.data() + 9 * i, false, columns, scaled.data(), sum.data() + i * width);
+    if (i < moved) multiply(diagonal_.data() + 9 * i, false, columns, scaled.data(), sum.data() + i * width);
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
       const Link& link = links_[at];
       if (link.other >= moved) continue;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "formats/stored_blocks.hpp"
@@ -50,6 +51,34 @@ std::vector<double> noise(std::size_t count, std::uint64_t seed) {
   std::vector<double> x(count);
   for (auto& value : x) value = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
   return x;
+}
+
+std::vector<double> coefficients_of(const CompressedCompliance& compressed, std::vector<double> x) {
+  for (std::size_t l = compressed.finest(); l > 0; --l) compressed.wavelet().split(l, 3, x.data());
+  return x;
+}
+
+TEST_CASE("a field with fewer details has the same coefficients up to those, and none beyond") {
+  const CompressedCompliance compressed(file(layout::Wavelet::lifted_linear).view);
+  const std::size_t finest = compressed.finest(), size = 3 * compressed.rows(finest);
+  for (std::size_t level = 0; level <= finest; ++level) {
+    const auto f = noise(3 * compressed.rows(level), level);
+    std::vector<double> x(size);
+    compressed.displace(level, finest, 1, f.data(), x.data());
+    const auto whole = coefficients_of(compressed, x);
+    const double largest = *std::max_element(whole.begin(), whole.end());
+    for (std::size_t details = 0; details <= finest; ++details) {
+      CAPTURE(level);
+      CAPTURE(details);
+      compressed.displace(level, details, 1, f.data(), x.data());
+      const auto cut = coefficients_of(compressed, x);
+      const std::size_t end = 3 * compressed.rows(details);
+      double difference = 0;
+      for (std::size_t i = 0; i < size; ++i)
+        difference = std::max(difference, std::abs(cut[i] - (i < end ? whole[i] : 0)));
+      CHECK(difference < 1e-12 * largest);
+    }
+  }
 }
 
 TEST_CASE("between some nodes stands what their columns say") {
