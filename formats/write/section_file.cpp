@@ -40,15 +40,15 @@ std::vector<std::byte> file_of(std::vector<SectionBytes> sections, std::uint32_t
   std::vector<std::byte> file(sizeof(header) + sections.size() * sizeof(layout::SectionEntry));
   pad_to_alignment(file);
   std::size_t entry_at = sizeof(header);
-  for (auto& [entry, bytes] : sections) {
-    entry.offset = file.size();
-    entry.bytes = bytes.size();
-    entry.crc = crc32c(bytes);
-    std::memcpy(file.data() + entry_at, &entry, sizeof(entry));
-    entry_at += sizeof(entry);
-    file.insert(file.end(), bytes.begin(), bytes.end());
+  for (SectionBytes& section : sections) {
+    section.entry.offset = file.size();
+    section.entry.bytes = section.bytes.size();
+    section.entry.crc = crc32c(section.bytes);
+    std::memcpy(file.data() + entry_at, &section.entry, sizeof(section.entry));
+    entry_at += sizeof(section.entry);
+    file.insert(file.end(), section.bytes.begin(), section.bytes.end());
     pad_to_alignment(file);
-    bytes = {};
+    section.bytes = {};
   }
   seal(file, header);
   return file;
