@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <random>
 #include <set>
@@ -78,7 +79,7 @@ TEST_CASE("surface: C and C++ find the same node and point") {
     const auto point = greenloop_surface_nearest_point(both.c, position);
     const auto same_point = both.cpp.nearest_point(same);
     CHECK(point.triangle == same_point.triangle);
-    CHECK(std::memcmp(point.weight, same_point.weight, sizeof point.weight) == 0);
+    CHECK(std::equal(point.weight, point.weight + 3, same_point.weight));
     CHECK(point.squared_distance == same_point.squared_distance);
   }
 }
@@ -113,7 +114,9 @@ TEST_CASE("a vertex map is told in C too") {
   greenloop_vertex where{};
   for (std::size_t i = 0; i < 9; ++i) {
     REQUIRE(greenloop_vertex_on_surface(&model, i, &where) == 1);
-    CHECK(std::memcmp(&where, &opened.model.view().vertices[i], sizeof where) == 0);
+    const layout::VertexRecord& same = opened.model.view().vertices[i];
+    CHECK(std::equal(where.node, where.node + 3, same.node));
+    CHECK(std::equal(where.weight, where.weight + 3, same.weight));
   }
   CHECK(greenloop_vertex_on_surface(&model, 9, &where) == 0);
   const Both without;

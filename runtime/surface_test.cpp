@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <random>
 #include <vector>
@@ -74,7 +73,7 @@ class TestSurface {
     CHECK(node.squared_distance == expected.squared_distance);
     const auto point = surface.nearest_point(position), same = nearest_point(position);
     REQUIRE(point.triangle == same.triangle);
-    CHECK(std::memcmp(point.weight, same.weight, sizeof point.weight) == 0);
+    CHECK(std::equal(point.weight, point.weight + 3, same.weight));
     CHECK(point.squared_distance == same.squared_distance);
   }
 

@@ -16,8 +16,8 @@ for language in cpp c; do
   example $language README.md >"$work/readme_example.$language"
   test -s "$work/readme_example.$language" || { echo "README.md has no $language block"; exit 1; }
   # the same with room for the fields of small models alone
-  sed 's/field\[4 \* 4096\]/field[4 * 16]/' "$work/readme_example.$language" >"$work/readme_example_small.$language"
-  grep -q 'field\[4 \* 16\]' "$work/readme_example_small.$language"
+  sed -E 's/field\[(4 \* )?4096\]/field[\116]/' "$work/readme_example.$language" >"$work/readme_example_small.$language"
+  grep -qE 'field\[(4 \* )?16\]' "$work/readme_example_small.$language"
 done
 
 cmake --install "$build" --prefix "$work/prefix" --component runtime >/dev/null

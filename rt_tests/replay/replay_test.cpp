@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 
 #include <bit>
@@ -29,14 +30,36 @@ namespace {
 constexpr Elastostatic::Limits limits{
     .max_contacts = 12, .cached_factors = 3, .mixtures = false, .keep_capacitance = true, .glide_cycles = 5};
 
+// memory at an address that no allocator uses again in another process
+class Mapped {
+ public:
+  explicit Mapped(std::size_t size)
+      : size_(size), data_(mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0)) {
+    REQUIRE(data_ != MAP_FAILED);
+  }
+  explicit Mapped(const std::vector<std::byte>& bytes) : Mapped(bytes.size()) {
+    std::memcpy(data_, bytes.data(), bytes.size());
+  }
+  Mapped(const Mapped&) = delete;
+  Mapped& operator=(const Mapped&) = delete;
+  ~Mapped() { munmap(data_, size_); }
+
+  [[nodiscard]] std::span<std::byte> span() const { return {static_cast<std::byte*>(data_), size_}; }
+
+ private:
+  std::size_t size_;
+  void* data_;
+};
+
 // a recorded body and what is done to it: contacts, budgets and buffers of every kind, wrong ones among them
 class Recorded {
  public:
   explicit Recorded(const Recorder::Options& options, layout::Wavelet wavelet = layout::Wavelet::lifted_linear)
-      : file_(encode(synthetic_model({.levels = 4, .wavelet = wavelet}))), model_(Model::open(file_.span()).model) {
-    need_ = Elastostatic::required(model_, limits);
-    arena_ = AlignedBytes(need_.bytes);
-    body = Elastostatic::create(model_, limits, {arena_.data(), arena_.size()}).body;
+      : file_(encode(synthetic_model({.levels = 4, .wavelet = wavelet}))),
+        model_(Model::open(file_.span()).model),
+        need_(Elastostatic::required(model_, limits)),
+        arena_(need_.bytes) {
+    body = Elastostatic::create(model_, limits, arena_.span()).body;
     memory_ = AlignedBytes(Recorder::required(model_, limits, options).bytes);
     const auto created = Recorder::create(model_, limits, arena_.span(), options, {memory_.data(), memory_.size()});
     REQUIRE(created);
@@ -87,10 +110,10 @@ class Recorded {
     return (view.level[q].nodes[node - view.level[q].node_begin].flags & layout::node_touchable) != 0;
   }
 
-  AlignedBytes file_;
+  Mapped file_;
   Model model_;
   Elastostatic::Requirement need_;
-  AlignedBytes arena_;
+  Mapped arena_;
   AlignedBytes memory_;
   AlignedBytes field_;
   std::vector<float> force_;
