@@ -84,9 +84,9 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   return sum <= body.force_limit;
 }
 
-// displacements by the forces of the planned set
-void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
-                 const FieldLevels& levels, std::span<Vec4> displacement) {
+// displacements by the forces of the planned set; apart, so that what makes a factor does not stand on its stack
+[[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
+                                   const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   compute_field(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
@@ -100,16 +100,19 @@ void reconstruct(const Body& body, std::span<const Constraint> contacts, const C
 }
 
 // nothing is touched: the body is at rest
-void release(Body& body, const Elastostatic::Response& response, Elastostatic::StepReport& report) {
+Elastostatic::StepReport release(Body& body, const Elastostatic::Response& response, std::uint64_t work) {
   body.last.release();
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
-    report.work += response.displacement.size();
+    work += response.displacement.size();
   }
+  Elastostatic::StepReport report;
+  report.work = work;
   report.constraint_level = finest;
   report.details.finer_level = static_cast<std::uint8_t>(finest);
   report.field_level = response.displacement.empty() ? finest : finest_displaced(body, response);
+  return report;
 }
 
 Elastostatic::StepReport held(Status status, std::uint64_t work) {
@@ -244,6 +247,30 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   return report;
 }
 
+Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> contacts, Budget budget,
+                                   const Elastostatic::Response& response) {
+  const Status request = check_request(body, contacts.size(), budget, response);
+  if (request != Status::ok) {
+    return held(request, 0);
+  }
+  const std::uint64_t checking = check_contacts_work(contacts.size());
+  const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
+  if (checked != Status::ok) {
+    Elastostatic::StepReport report = held(checked, checking);
+    report.refused = refused;
+    return report;
+  }
+  if (contacts.empty()) {
+    return release(body, response, checking);
+  }
+  body.answered = false;
+  const bool wants_field = !response.displacement.empty();
+  const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
+  const Plan plan = make_plan(body, contacts, budget.work - checking, wants_field, displaced);
+  return plan.fits ? answer(body, contacts, plan, checking + plan.work, budget.work, response)
+                   : held(Status::held_over_budget, checking + plan.work);
+}
+
 }  // namespace
 
 Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
@@ -299,31 +326,9 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 }
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
-                                            const Elastostatic::Response& response) noexcept {
-  Body& body = *body_;
-  const Status request = check_request(body, contacts.size(), budget, response);
-  if (request != Status::ok) {
-    return held(request, 0);
-  }
-  Elastostatic::StepReport report;
-  report.work = check_contacts_work(contacts.size());
-  const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
-  if (checked != Status::ok) {
-    report.status = checked;
-    report.refused = refused;
-    return report;
-  }
-  if (contacts.empty()) {
-    release(body, response, report);
-  } else {
-    const bool wants_field = !response.displacement.empty();
-    const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
-    body.answered = false;
-    const Plan plan = make_plan(body, contacts, budget.work - report.work, wants_field, displaced);
-    report = plan.fits ? answer(body, contacts, plan, report.work + plan.work, budget.work, response)
-                       : held(Status::held_over_budget, report.work + plan.work);
-  }
-  assert(Arena::intact(body.last_red_zone));
+                                            const Response& response) noexcept {
+  const StepReport report = take_step(*body_, contacts, budget, response);
+  assert(Arena::intact(body_->last_red_zone));
   return report;
 }
 

@@ -74,9 +74,6 @@ class Answer {
   Elastostatic body_;
 };
 
-constexpr Elastostatic::Limits at_once{
-    .max_contacts = most_contacts, .cached_factors = 1, .glide_cycles = 1, .refining_work = 0};
-
 struct FieldErrors {
   double field = 0, peak = 0;
 };
@@ -94,16 +91,18 @@ FieldErrors field_errors(const test::Body& body, const Answer& answer, const Eig
   return {std::sqrt(off / norm), std::sqrt(largest_off / largest)};
 }
 
-// calls visit(site, its contacts, budget) from the least budget to more than enough
+// calls visit(site, its contacts, limits that just hold them, budget) from the least budget to more than enough
 template <class Visit>
-void visit_budgets(const test::Body& body, const ExactContacts& exact, const Elastostatic::Requirement& need,
-                   std::uint32_t levels, Visit visit) {
-  const auto most = 2 * static_cast<double>(need.worst_work[levels - 1]);
+void visit_budgets(const test::Body& body, const ExactContacts& exact, const Model& model, Elastostatic::Limits limits,
+                   Visit visit) {
   for (std::size_t s = 0; s < exact.sites().size(); ++s) {
     if (exact.sites()[s].rows.size() > most_contacts) continue;
     const auto contacts = contacts_of(body, exact.sites()[s], 0);
+    limits.max_contacts = static_cast<std::uint32_t>(contacts.size());
+    const auto need = Elastostatic::required(model, limits);
+    const auto most = 2 * static_cast<double>(need.worst_work[model.level_count() - 1]);
     for (auto work = static_cast<double>(need.least_work); work < most; work *= 1.5) {
-      visit(s, contacts, static_cast<std::uint64_t>(work));
+      visit(s, contacts, limits, static_cast<std::uint64_t>(work));
     }
   }
 }
@@ -114,11 +113,10 @@ void check_loop(const test::Body& body, const ExactContacts& exact, layout::Wave
   const AnsweredContacts measured(file.view, compressed, exact);
   const auto opened = Model::open(file.bytes.span());
   REQUIRE(opened);
-  const auto need = Elastostatic::required(opened.model, at_once);
-
+  const Elastostatic::Limits at_once{.cached_factors = 1, .glide_cycles = 1, .refining_work = 0};
   std::set<std::uint32_t> levels, cuts;
-  visit_budgets(body, exact, need, file.view.levels, [&](std::size_t s, const auto& contacts, std::uint64_t work) {
-    Answer answer(opened.model, at_once);
+  const auto compare = [&](std::size_t s, const auto& contacts, const auto& limits, std::uint64_t work) {
+    Answer answer(opened.model, limits);
     answer.step(contacts, work);
     const Elastostatic::StepReport& report = answer.report;
     if (report.details.finer_level != report.constraint_level) return;
@@ -132,7 +130,8 @@ void check_loop(const test::Body& body, const ExactContacts& exact, layout::Wave
     const FieldErrors field = field_errors(body, answer, exact.field(s).col(0));
     CHECK(std::abs(field.field - error.field) < 1e-4 * (1 + error.field));
     CHECK(std::abs(field.peak - error.peak) < 1e-4 * (1 + error.peak));
-  });
+  };
+  visit_budgets(body, exact, opened.model, at_once, compare);
   CHECK(levels.size() > 1);
   CHECK(cuts.size() > 1);
 }
@@ -173,10 +172,8 @@ TEST_CASE("no answer is further from the exact one than its report says: coarse,
   const test::File file(data);
   const auto opened = Model::open(file.bytes.span());
   REQUIRE(opened);
-  const Elastostatic::Limits limits{.max_contacts = most_contacts, .cached_factors = 4, .glide_cycles = 4};
-  const auto need = Elastostatic::required(opened.model, limits);
   int gliding = 0, cut = 0, tight = 0;
-  visit_budgets(body, exact, need, file.view.levels, [&](std::size_t s, const auto& contacts, std::uint64_t work) {
+  const auto compare = [&](std::size_t s, const auto& contacts, const auto& limits, std::uint64_t work) {
     Answer answer(opened.model, limits);
     // from the answer that fits to a finer one
     for (const std::uint64_t budget : {work, work, ~std::uint64_t{0}, ~std::uint64_t{0}, ~std::uint64_t{0}}) {
@@ -193,7 +190,8 @@ TEST_CASE("no answer is further from the exact one than its report says: coarse,
       cut += report.field_level + 1 < file.view.levels ? 1 : 0;
       tight += error > 0.5 * double{report.error} ? 1 : 0;
     }
-  });
+  };
+  visit_budgets(body, exact, opened.model, {.cached_factors = 4, .glide_cycles = 4}, compare);
   CHECK(gliding > 10);
   CHECK(cut > 10);
   CHECK(tight > 10);

@@ -105,6 +105,7 @@ float largest_force_sum(const ModelView& view, const Lifting& lifting) {
 // what is written once, at the start
 struct Tables {
   ModelView* view = nullptr;
+  FactorTools* factor_tools = nullptr;
   RefinementTables refinement;
   ColumnCost* cost[layout::max_levels] = {};
   PredictionOffsets offsets;
@@ -116,6 +117,7 @@ struct Tables {
 
 void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
   tables.view = arena.take<ModelView>(1);
+  tables.factor_tools = arena.take<FactorTools>(1);
   tables.refinement.carve(arena, view);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     tables.cost[c] = arena.take<ColumnCost>(domain_up_to(view, c));
@@ -240,6 +242,9 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
     body.cost.level[q] = tables.cost[q];
   }
   body.refinement = tables.refinement.refinement(*body.view, body.lifting);
+  body.tools = new (tables.factor_tools) FactorTools{body.counts,    body.refinement, body.cost,
+                                                     body.stored,    body.cache,      body.capacitance,
+                                                     body.factoring, body.force,      body.resolution.index_of_place};
   fill_tables(view, tables, body);
   if (!body.counts.forces_only) {
     prepare_fields(view, tables, body);

@@ -47,8 +47,9 @@ struct Body {
   CapacitanceScratch capacitance;
   FactorChanges changes;  ///< what tells the nearest cached factor from the planned set
   FactorScratch factoring;
-  Float4* solution = nullptr;     ///< of a set's columns in the order of its factor
-  float* column_force = nullptr;  ///< [3 * columns] of the planned set
+  const FactorTools* tools = nullptr;  ///< of this body, once for all steps
+  Float4* solution = nullptr;          ///< of a set's columns in the order of its factor
+  float* column_force = nullptr;       ///< [3 * columns] of the planned set
   float* other_column_force = nullptr;
   float* older_force = nullptr;  ///< [3 * contacts] by the level before
   Float4* force = nullptr;       ///< [domain], zero between steps
@@ -60,9 +61,7 @@ struct Body {
   Mixture mixture;
   const std::byte* last_red_zone = nullptr;
 
-  [[nodiscard]] FactorTools factor_tools() {
-    return {counts, refinement, cost, stored, cache, capacitance, factoring, force, resolution.index_of_place};
-  }
+  [[nodiscard]] const FactorTools& factor_tools() const { return *tools; }
   [[nodiscard]] FieldModel field_model() const { return {refinement, mirrored, base, offsets, block_sums, add_tiles}; }
   [[nodiscard]] FieldScratch field_scratch() const { return {force, field_sums}; }
 };

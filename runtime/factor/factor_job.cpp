@@ -59,7 +59,8 @@ void copy_without(const FactorChanges& changes, const FactorTools& tools, Factor
   }
 }
 
-Factor* make_fresh(const FactorTools& tools, ColumnSet set, const Touched& touched) {
+// apart, so that neither has the stack of the other
+[[gnu::noinline]] Factor* make_fresh(const FactorTools& tools, ColumnSet set, const Touched& touched) {
   Factor& factor = tools.cache.make_room(set);
   assemble_capacitance(tools.refinement, set, touched, tools.capacitance, tools.force, tools.cache.stride(),
                        factor.matrix);
@@ -72,22 +73,24 @@ Factor* make_fresh(const FactorTools& tools, ColumnSet set, const Touched& touch
   return cholesky_factor(3 * set.count, tools.cache.stride(), factor.matrix) ? &factor : nullptr;
 }
 
-}  // namespace
-
-Factor* make_factor(const FactorTools& tools, ColumnSet set, const Touched& touched,
-                    const FactorChanges* changes) noexcept {
-  if (changes == nullptr) {
-    return make_fresh(tools, set, touched);
-  }
-  const std::uint32_t changed = changes->base->changes + changes->added + changes->removed;
+[[gnu::noinline]] Factor* make_from(const FactorTools& tools, ColumnSet set, const Touched& touched,
+                                    const FactorChanges& changes) {
+  const std::uint32_t changed = changes.base->changes + changes.added + changes.removed;
   Factor& factor = tools.cache.make_room(set);
-  copy_without(*changes, tools, factor);
+  copy_without(changes, tools, factor);
   factor.changes = changed;
-  if (changes->added > 0 && !enter_nodes(tools, *changes, touched, factor)) {
+  if (changes.added > 0 && !enter_nodes(tools, changes, touched, factor)) {
     return nullptr;
   }
   list_positions(set, tools.index_of_place, factor);
   return &factor;
+}
+
+}  // namespace
+
+Factor* make_factor(const FactorTools& tools, ColumnSet set, const Touched& touched,
+                    const FactorChanges* changes) noexcept {
+  return changes == nullptr ? make_fresh(tools, set, touched) : make_from(tools, set, touched, *changes);
 }
 
 namespace {
