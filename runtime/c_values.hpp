@@ -10,6 +10,12 @@
 
 namespace greenloop {
 
+/// Whether an enumerator of C stands for one of C++.
+template <class C, class Cpp>
+constexpr bool same(C c, Cpp cpp) {
+  return static_cast<int>(c) == static_cast<int>(cpp);
+}
+
 inline const Model& model_in(const greenloop_model* model) {
   return *std::launder(reinterpret_cast<const Model*>(model->storage));
 }

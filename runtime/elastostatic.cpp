@@ -119,6 +119,7 @@ Elastostatic::StepReport held(Status status, std::uint64_t work) {
   Elastostatic::StepReport report;
   report.status = status;
   report.work = work;
+  report.error = std::numeric_limits<float>::infinity();
   return report;
 }
 
@@ -249,6 +250,7 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
 
 Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> contacts, Budget budget,
                                    const Elastostatic::Response& response) {
+  body.answered = false;
   const Status request = check_request(body, contacts.size(), budget, response);
   if (request != Status::ok) {
     return held(request, 0);
@@ -263,7 +265,6 @@ Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> conta
   if (contacts.empty()) {
     return release(body, response, checking);
   }
-  body.answered = false;
   const bool wants_field = !response.displacement.empty();
   const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
   const Plan plan = make_plan(body, contacts, budget.work - checking, wants_field, displaced);
@@ -311,7 +312,7 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
   if (counting.bytes() > memory.size()) {
     created.requested = counting.bytes() <= SIZE_MAX ? static_cast<std::size_t>(counting.bytes()) : 0;
     created.error = CreateError::arena_too_small;
-    created.missing = created.requested - memory.size();
+    created.missing = created.requested > memory.size() ? created.requested - memory.size() : 0;
     return created;
   }
   created.requested = static_cast<std::size_t>(counting.bytes());

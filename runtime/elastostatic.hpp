@@ -64,7 +64,7 @@ class Elastostatic {
     std::uint32_t constraint_level = 0;  ///< level at which they were resolved, of a mixed set the coarser one
     std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
     float error = 0;  ///< largest relative error, of forces and field, that answers like this one were measured to have
-                      ///< offline (docs/loop.md, "Errors"); infinity: not measured
+                      ///< offline (docs/loop.md, "Errors"); infinity: not measured, or not answered
     StepDetails details;
   };
 
@@ -87,11 +87,12 @@ class Elastostatic {
   /// clock; same model, limits, history, constraints and budget give the same bits. Work: at most budget.work.
   StepReport step(std::span<const Constraint> constraints, Budget budget, const Response& response) noexcept;
 
-  /// The compliance between two constraints, by their places among those of the last answer, as it was answered with:
-  /// the displacement of i per force at j, m/N, of nodes that share a column the column's. block: 3 c + r, displacement
-  /// r per force c. False, and nothing is written, unless the capacitance is kept (Limits), the last step was answered
-  /// and its factor is still in the cache, which one factor of a finer level may replace. For the loop; work:
-  /// constant but for a look into the cache.
+  /// The compliance between two constraints, by their places among those of the last answer, at the levels that it was
+  /// answered at: the displacement of i per force at j, m/N, of nodes that share a column the column's. While a glide
+  /// is under way (StepDetails::glide below 1) the answer's forces are not those that it gives. block: 3 c + r,
+  /// displacement r per force c. False, and nothing is written, unless the capacitance is kept (Limits), the last step
+  /// was answered and its factor is still in the cache, which one factor of a finer level may replace. For the loop;
+  /// work: constant but for a look into the cache.
   bool compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept;
 
  private:

@@ -335,6 +335,11 @@ TEST_CASE("refusals have a name, write nothing and leave the body usable") {
   bad = held.contacts;
   bad[0].node = bad[3].node;
   held.refuses(bad, Status::held_duplicate, 3);
+  for (const auto kind : {Constraint::Kind::normal, Constraint::Kind::force, Constraint::Kind::pattern}) {
+    bad = held.contacts;
+    bad[2] = {.node = layout::none, .kind = kind};  // what `node` is follows from the kind
+    held.refuses(bad, Status::held_unsupported, 2);
+  }
   bad = held.contacts;
   bad[2].node = model.view().node_count - 1;
   held.refuses(bad, Status::held_not_touchable, 2);

@@ -174,7 +174,7 @@ typedef struct greenloop_elastostatic_report {
   uint64_t work;             /* units spent, never more than the budget */
   uint32_t constraint_level; /* level at which they were resolved, of a mixed set the coarser one */
   uint32_t field_level;      /* finest level whose details are in the field */
-  float error;               /* largest relative error that such answers were measured to have; infinity: unknown */
+  float error;               /* largest relative error that such answers were measured to have; infinity: unknown, held */
   greenloop_elastostatic_details details;
 } greenloop_elastostatic_report;
 
@@ -221,8 +221,9 @@ greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic
                                                           uint64_t work, float* force, float* displacement,
                                                           uint32_t nodes);
 
-/* The compliance between two constraints, by their places among those of the last answer, as it was answered with: the
- * displacement of i per force at j [m/N], of nodes that share a column the column's. block: 9 floats, 3 c + r,
+/* The compliance between two constraints, by their places among those of the last answer, at the levels that it
+ * was answered at: the displacement of i per force at j [m/N], of nodes that share a column the column's. While a glide
+ * is under way the answer's forces are not those that it gives. block: 9 floats, 3 c + r,
  * displacement r per force c. 0, and nothing is written, unless the capacitance is kept (limits), the last step was
  * answered and its factor is still in the cache, which one factor of a finer level may replace. For the loop. */
 int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32_t i, uint32_t j, float* block);

@@ -5,6 +5,7 @@
 
 #include "formats/verify.hpp"
 #include "formats/view.hpp"
+#include "runtime/vec.hpp"
 
 namespace greenloop {
 
@@ -23,6 +24,10 @@ class Model {
   [[nodiscard]] std::uint32_t node_count() const noexcept { return view_.node_count; }
   /// Nodes of mesh levels 0..level, which come first; level below level_count().
   [[nodiscard]] std::uint32_t node_count(std::uint32_t level) const noexcept;
+  /// Whether a node may be a contact; false for one that the model does not have. Work: a unit per level.
+  [[nodiscard]] bool is_touchable(std::uint32_t node) const noexcept;
+  /// Where a node is at rest, m; node below node_count(). Work: a unit per level.
+  [[nodiscard]] Vec3 position(std::uint32_t node) const noexcept;
   [[nodiscard]] std::uint32_t level_count() const noexcept { return view_.levels; }
 
  private:

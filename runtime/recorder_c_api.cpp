@@ -8,11 +8,6 @@
 namespace greenloop {
 namespace {
 
-template <class C, class Cpp>
-constexpr bool same(C c, Cpp cpp) {
-  return static_cast<int>(c) == static_cast<int>(cpp);
-}
-
 static_assert(same(GREENLOOP_RECORDER_OK, Recorder::Error::none) &&
               same(GREENLOOP_RECORDER_BAD_OPTIONS, Recorder::Error::bad_options) &&
               same(GREENLOOP_RECORDER_BAD_BODY, Recorder::Error::bad_body) &&

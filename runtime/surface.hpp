@@ -77,7 +77,8 @@ class Surface {
   /// The node nearest to a position (m), at rest, among those of the surface's triangles that have all `flags`
   /// (layout::NodeFlag; a contact needs layout::node_touchable); of equally near ones the first. Exact for the
   /// distances as computed in double. For the loop; work: a few tens of triangles where one part of the surface is
-  /// nearest, at most all: see docs/surface.md.
+  /// nearest and its nodes have the flags, and every one that is nearer than the answer; at most all: see
+  /// docs/surface.md.
   [[nodiscard]] NearestNode nearest_node(Vec3 position, std::uint32_t flags = 0) const noexcept;
 
   /// The point of the surface nearest to a position (m), at rest; of equally near triangles the first. Exact, and of

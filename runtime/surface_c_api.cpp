@@ -9,11 +9,6 @@
 namespace greenloop {
 namespace {
 
-template <class C, class Cpp>
-constexpr bool same(C c, Cpp cpp) {
-  return static_cast<int>(c) == static_cast<int>(cpp);
-}
-
 static_assert(GREENLOOP_NONE == layout::none && same(GREENLOOP_NODE_DOMAIN, layout::node_domain) &&
               same(GREENLOOP_NODE_TOUCHABLE, layout::node_touchable) &&
               same(GREENLOOP_NODE_FIXED, layout::node_fixed) && same(GREENLOOP_NODE_READ, layout::node_read));

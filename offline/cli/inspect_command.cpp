@@ -54,6 +54,10 @@ Json levels_of(const ModelView& view) {
                       {"worst_patch_force_error", level.patch_force_error},
                       {"field_rms_error", level.field_rms_error},
                       {"field_column_error", level.field_column_error},
+                      {"field_error", level.field_error},
+                      {"field_peak", level.field_peak},
+                      {"force_error", level.force_error},
+                      {"cut_error", level.cut_error},
                       {"field_blocks", 2 * level.kept_blocks - columns}});
   }
   return levels;

@@ -156,6 +156,8 @@ TEST_CASE("inspect --json: wavelet, bits, certificate and frontier are the file'
   std::uint64_t blocks[17] = {};
   for (LevelData& level : data.levels) {
     level.counts.patch_force_error = 0.25;
+    level.counts.force_error = 0.125;
+    level.counts.cut_error = 0.5;
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       blocks[layout::value_bits[layer]] += level.couplings[layer].index.size();
     }
@@ -170,6 +172,9 @@ TEST_CASE("inspect --json: wavelet, bits, certificate and frontier are the file'
   CHECK(found["lambda_min"] == 2.5e-6);
   CHECK(found["certificate"] == true);
   CHECK(found["worst_patch_force_error"] == 0.25);
+  CHECK(found["version"] == "4.2");
+  CHECK(found["constraint_levels"][0]["force_error"] == 0.125);
+  CHECK(found["constraint_levels"][0]["cut_error"] == 0.5);
   CHECK(found["frontier"] == Json::parse(R"([{"threshold": 0.5}])"));
   CHECK(found["bits"] == Json{{"4", blocks[4]}, {"8", blocks[8]}, {"16", blocks[16]}});
 }

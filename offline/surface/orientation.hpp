@@ -10,7 +10,7 @@ namespace greenloop::offline {
 [[nodiscard]] int orientation(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
 
 /// The sign (-1, 0, +1) of det[b - a, c - a, d - a]: positive if a, b, c look clockwise from d, which is the sign of a
-/// tetrahedron's volume in formats/exchange. Exact in the same sense.
+/// tetrahedron's volume in formats/mesh. Exact in the same sense.
 [[nodiscard]] int orientation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                               const Eigen::Vector3d& d);
 

@@ -119,11 +119,12 @@ Replay run(const RecordView& record, std::uint64_t first, Elastostatic& body) {
     replay.unfinished = step.finished == 0;
     if (!rerun.is_same(step)) replay.differs = number;
   }
+  require(replay.steps > 0, "nothing to run again: no step came after the last checkpoint");
   return replay;
 }
 
-// Words that a new body here has other than the recorded one had when it was new are addresses of this process: of its
-// code, of the caller's Model. They stay while a body lives. All others are the checkpoint's.
+// Words that a new body here has other than the recorded one had when it was new are addresses of this process's code,
+// or padding. They stay while a body lives. All others are the checkpoint's.
 void restore(std::span<const std::byte> checkpoint, std::span<const std::byte> recorded_new, std::byte* arena) {
   using Word = std::uintptr_t;
   for (std::size_t i = 0; i + sizeof(Word) <= checkpoint.size(); i += sizeof(Word)) {

@@ -167,6 +167,15 @@ TEST_CASE("steps run again in place give the same bits, from the oldest checkpoi
   CHECK(!again.unfinished);
 }
 
+TEST_CASE("a record from which no step can be run again is refused") {
+  Recorded recorded({.steps = 8});
+  CHECK_THROWS_WITH(static_cast<void>(replay_in_place(recorded.record(), recorded.body)),
+                    "nothing to run again: no step came after the last checkpoint");
+  for (int i = 0; i < 30; ++i) recorded.step();
+  recorded.recorder.checkpoint();
+  CHECK_THROWS_AS(static_cast<void>(replay_in_place(recorded.record(), recorded.body)), std::runtime_error);
+}
+
 TEST_CASE("a checkpoint of the caller's choice is one to start from") {
   Recorded recorded({.steps = 50});
   for (int i = 0; i < 120; ++i) {

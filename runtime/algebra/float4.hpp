@@ -58,13 +58,6 @@ inline Float4 load_halves(const std::byte* value) {
   return low_halves(reinterpret_cast<Half8>(Long2{word, 0}));
 }
 
-// four floats by their upper halves
-inline Float4 load_upper_halves(const std::uint16_t* value) {
-  std::int64_t word;
-  std::memcpy(&word, value, sizeof word);
-  const auto halves = reinterpret_cast<Half8>(Long2{word, 0});
-  return reinterpret_cast<Float4>(__builtin_shufflevector(Half8{}, halves, 0, 8, 1, 9, 2, 10, 3, 11));
-}
 }  // namespace detail
 
 /// Lane by lane 0 where the magnitude is below 2^-90: keeps denormal numbers out of the sums.

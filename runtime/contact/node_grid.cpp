@@ -6,6 +6,7 @@ namespace greenloop {
 namespace {
 
 std::int32_t cells_along(double extent) {
+  if (!(extent > 0)) return 1;
   const auto whole = static_cast<std::int32_t>(extent);
   return std::clamp<std::int32_t>(whole + (extent > whole ? 1 : 0), 1, NodeGrid::most_in_a_row);
 }

@@ -13,14 +13,14 @@ bool finite(const Constraint& contact) {
 }
 
 Status check_contact(const Constraint& contact, std::uint32_t node_count, const NodeFacts* facts) {
+  if (contact.kind != Constraint::Kind::hold) {
+    return Status::held_unsupported;  // what `node` and `value` are follows from the kind
+  }
   if (contact.node >= node_count) {
     return Status::held_out_of_range;
   }
   if (!facts[contact.node].touchable) {
     return Status::held_not_touchable;
-  }
-  if (contact.kind != Constraint::Kind::hold) {
-    return Status::held_unsupported;
   }
   if (!finite(contact)) {
     return Status::held_not_finite;

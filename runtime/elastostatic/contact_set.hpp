@@ -33,7 +33,8 @@ struct CheckedContacts {
 /// Work units of check_contacts.
 constexpr std::uint64_t check_contacts_work(std::uint64_t contacts) { return 4 * contacts; }
 
-/// Refuses contacts that are out of range, not touchable, not finite or named twice; the first at fault decides.
+/// Refuses contacts of another kind than hold, out of range, not touchable, not finite or named twice; the first at
+/// fault decides.
 CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count,
                                NodeFacts* facts) noexcept;
 

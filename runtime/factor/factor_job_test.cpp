@@ -391,6 +391,10 @@ TEST_CASE("there is no compliance where none is kept, nothing was answered or a 
   float transposed[9];
   CHECK(with.body().compliance(3, 0, transposed));
   CHECK(block[1] == transposed[3]);
+  with.step(contacts, 0);  // refused
+  CHECK_FALSE(with.body().compliance(0, 3, block));
+  with.step(contacts, any_budget);
+  CHECK(with.body().compliance(0, 3, block));
   with.step({}, any_budget);
   CHECK_FALSE(with.body().compliance(0, 0, block));
   CHECK(with.requirement().bytes > without.requirement().bytes);

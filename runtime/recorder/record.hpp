@@ -50,7 +50,7 @@ struct Record {
 struct RecordedStep {
   std::uint64_t number;
   std::uint64_t budget;
-  std::uint64_t contacts;  ///< as many as were given; those beyond max_contacts, which are refused, are not kept
+  std::uint64_t contacts;  ///< as many as were given, or max_contacts + 1 where more were, which are refused alike
   std::uint64_t forces;
   std::uint64_t displaced_nodes;
   std::uint32_t displacement_aligned;  ///< 1: at a multiple of 16 bytes

@@ -1,25 +1,16 @@
-#include <bit>
-#include <cstddef>
+// What greenloop.h says of the library, of models and of every solver.
 #include <cstring>
 #include <new>
 #include <type_traits>
 
 #include "formats/verify/rule_text.hpp"
 #include "runtime/c_values.hpp"
-#include "runtime/elastostatic/body.hpp"
-#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {
 
 static_assert(GREENLOOP_MAX_LEVELS == layout::max_levels && GREENLOOP_ALIGNMENT == layout::alignment &&
               GREENLOOP_NO_CONSTRAINT == StepReport::no_constraint);
-
-template <class C, class Cpp>
-constexpr bool same(C c, Cpp cpp) {
-  return static_cast<int>(c) == static_cast<int>(cpp);
-}
-
 static_assert(same(GREENLOOP_RULE_OK, VerifyRule::ok) &&
               same(GREENLOOP_RULE_MISALIGNED_MEMORY, VerifyRule::misaligned_memory) &&
               same(GREENLOOP_RULE_TOO_SHORT, VerifyRule::too_short) &&
@@ -62,29 +53,17 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
 static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
               same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
 static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic));
-
-// NOLINTBEGIN(misc-redundant-expression): two types are compared
 static_assert(sizeof(Model) <= sizeof(greenloop_model) && alignof(Model) <= alignof(greenloop_model) &&
               std::is_trivially_destructible_v<Model>);
-static_assert(sizeof(Constraint) == sizeof(greenloop_constraint) &&
-              alignof(Constraint) == alignof(greenloop_constraint) &&
-              offsetof(Constraint, node) == offsetof(greenloop_constraint, node) &&
-              offsetof(Constraint, value) == offsetof(greenloop_constraint, value) &&
-              offsetof(Constraint, kind) == offsetof(greenloop_constraint, kind));
-// NOLINTEND(misc-redundant-expression)
-static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
-
-const layout::NodeRecord* find_node(const greenloop_model* model, std::uint32_t node) {
-  const ModelView& view = model_in(model).view();
-  return node < view.node_count ? &node_record(view, node) : nullptr;
-}
 
 constexpr const char* create_error_texts[] = {
     "the body was created",
     "the arena is too small: give it as many bytes as were requested",
     "the arena is not 64-byte aligned",
     "the limits are out of range: 1..4096 contacts, 1..1024 cached factors, at most 256 cycles of a glide",
-    "the model is not one of a subdivided triangulation, or a force reaches too much of it, or it is too large",
+    "the model is of another problem, or not one of a subdivided triangulation, or a force reaches too much of it, or "
+    "it "
+    "is too large",
 };
 
 constexpr const char* status_texts[] = {
@@ -94,7 +73,8 @@ constexpr const char* status_texts[] = {
     "held: a contact names no node of the model, or there are more contacts than the limits allow",
     "held: a contact names a node that the scene did not declare touchable",
     "held: two contacts name the same node",
-    "held: the field's buffer is not 16-byte aligned",
+    "held: there is not one force for each contact, or the field has another number of nodes than any levels of the "
+    "body, or is not 16-byte aligned",
     "held: the budget is below the least work",
     "held: the capacitance matrix is not positive definite to working precision",
     "held: the forces are too large for a finite field",
@@ -107,30 +87,6 @@ const char* text_at(const char* const (&texts)[count], unsigned index) {
 }
 
 }  // namespace
-
-Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
-  Elastostatic::Limits same{.max_contacts = limits.max_contacts,
-                            .cached_factors = limits.cached_factors,
-                            .forces_only = limits.forces_only != 0,
-                            .mixtures = limits.no_mixtures == 0,
-                            .keep_capacitance = limits.keep_capacitance != 0};
-  same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
-  same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
-  return same;
-}
-
-greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept {
-  const Elastostatic::StepDetails& details = report.details;
-  return {static_cast<greenloop_status>(report.status),
-          report.refused,
-          report.work,
-          report.constraint_level,
-          report.field_level,
-          report.error,
-          {details.cached_factor ? 1 : 0, details.finer_level, details.finer_contacts, details.changed_nodes,
-           details.glide, details.level_difference, details.switch_work, details.pending_work}};
-}
-
 }  // namespace greenloop
 
 using namespace greenloop;
@@ -149,9 +105,6 @@ greenloop_fault greenloop_open(const void* bytes, size_t size, greenloop_model* 
           result.limit};
 }
 
-uint32_t greenloop_node_count_to(const greenloop_model* model, uint32_t level) {
-  return level < model_in(model).level_count() ? model_in(model).node_count(level) : 0;
-}
 greenloop_version_numbers greenloop_version(void) {
   return {GREENLOOP_VERSION_MAJOR, GREENLOOP_VERSION_MINOR, GREENLOOP_VERSION_PATCH, layout::version_major,
           layout::version_minor};
@@ -160,68 +113,34 @@ greenloop_version_numbers greenloop_version(void) {
 int greenloop_answered(greenloop_status status) { return answered(static_cast<Status>(status)) ? 1 : 0; }
 
 greenloop_problem greenloop_model_problem(const greenloop_model* model) {
-  return static_cast<greenloop_problem>(model_in(model).view().info->problem);
+  return static_cast<greenloop_problem>(model_in(model).problem());
 }
 
 uint32_t greenloop_node_count(const greenloop_model* model) { return model_in(model).node_count(); }
 
+uint32_t greenloop_node_count_to(const greenloop_model* model, uint32_t level) {
+  return level < model_in(model).level_count() ? model_in(model).node_count(level) : 0;
+}
+
 uint32_t greenloop_level_count(const greenloop_model* model) { return model_in(model).level_count(); }
 
 int greenloop_is_touchable(const greenloop_model* model, uint32_t node) {
-  const layout::NodeRecord* record = find_node(model, node);
-  return record != nullptr && (record->flags & layout::node_touchable) != 0 ? 1 : 0;
+  return model_in(model).is_touchable(node) ? 1 : 0;
 }
 
 int greenloop_position(const greenloop_model* model, uint32_t node, float* position) {
-  const layout::NodeRecord* record = find_node(model, node);
-  if (record == nullptr) {
+  if (node >= model_in(model).node_count()) {
     return 0;
   }
-  std::memcpy(position, record->position, sizeof record->position);
+  const Vec3 place = model_in(model).position(node);
+  std::memcpy(position, &place, sizeof place);
   return 1;
 }
 
-greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
-  const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
-  const Elastostatic::Limits& limits = intent.limits;
-  return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.mixtures ? 0 : 1,
-           limits.keep_capacitance ? 1 : 0, limits.glide_cycles, limits.refining_work},
-          intent.budget.work,
-          intent.rate};
+const char* greenloop_rule_text(greenloop_rule rule) {
+  const bool known = static_cast<unsigned>(rule) <= static_cast<unsigned>(VerifyRule::inconsistent);
+  return known ? rule_text(static_cast<VerifyRule>(rule)).meaning : "unknown";
 }
-
-greenloop_elastostatic_requirement greenloop_elastostatic_required(const greenloop_model* model,
-                                                                   greenloop_elastostatic_limits limits) {
-  const Elastostatic::Requirement need = Elastostatic::required(model_in(model), limits_of(limits));
-  greenloop_elastostatic_requirement requirement = {need.bytes, need.least_work, {}};
-  std::memcpy(requirement.worst_work, need.worst_work, sizeof need.worst_work);
-  return requirement;
-}
-
-greenloop_elastostatic_created greenloop_elastostatic_create(const greenloop_model* model,
-                                                             greenloop_elastostatic_limits limits, void* arena,
-                                                             size_t bytes) {
-  const auto created =
-      Elastostatic::create(model_in(model), limits_of(limits), {static_cast<std::byte*>(arena), bytes});
-  return {static_cast<greenloop_create_error>(created.error), created.requested, created.available, created.missing,
-          reinterpret_cast<greenloop_elastostatic*>(std::bit_cast<Body*>(created.body))};
-}
-
-greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic* body,
-                                                          const greenloop_constraint* contacts, size_t count,
-                                                          uint64_t work, float* force, float* displacement,
-                                                          uint32_t nodes) {
-  return report_of(
-      body_in(body).step(constraints_of(contacts, count), {work}, response_of(count, force, displacement, nodes)));
-}
-
-int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32_t i, uint32_t j, float* block) {
-  const auto* const in_arena = reinterpret_cast<const Body*>(body);
-  const auto same = std::bit_cast<Elastostatic>(in_arena);
-  return same.compliance(i, j, std::span<float, 9>(block, 9)) ? 1 : 0;
-}
-
-const char* greenloop_rule_text(greenloop_rule rule) { return rule_text(static_cast<VerifyRule>(rule)).meaning; }
 
 const char* greenloop_create_error_text(greenloop_create_error error) {
   return text_at(create_error_texts, static_cast<unsigned>(error));

@@ -1,0 +1,88 @@
+// Contact with an elastic body in C.
+#include <bit>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+
+#include "runtime/c_values.hpp"
+
+namespace greenloop {
+namespace {
+
+// NOLINTBEGIN(misc-redundant-expression): two types are compared
+static_assert(sizeof(Constraint) == sizeof(greenloop_constraint) &&
+              alignof(Constraint) == alignof(greenloop_constraint) &&
+              offsetof(Constraint, node) == offsetof(greenloop_constraint, node) &&
+              offsetof(Constraint, value) == offsetof(greenloop_constraint, value) &&
+              offsetof(Constraint, kind) == offsetof(greenloop_constraint, kind));
+// NOLINTEND(misc-redundant-expression)
+static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
+
+}  // namespace
+
+Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
+  Elastostatic::Limits same{.max_contacts = limits.max_contacts,
+                            .cached_factors = limits.cached_factors,
+                            .forces_only = limits.forces_only != 0,
+                            .mixtures = limits.no_mixtures == 0,
+                            .keep_capacitance = limits.keep_capacitance != 0};
+  same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
+  same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
+  return same;
+}
+
+greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept {
+  const Elastostatic::StepDetails& details = report.details;
+  return {static_cast<greenloop_status>(report.status),
+          report.refused,
+          report.work,
+          report.constraint_level,
+          report.field_level,
+          report.error,
+          {details.cached_factor ? 1 : 0, details.finer_level, details.finer_contacts, details.changed_nodes,
+           details.glide, details.level_difference, details.switch_work, details.pending_work}};
+}
+
+}  // namespace greenloop
+
+using namespace greenloop;
+
+greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
+  const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
+  const Elastostatic::Limits& limits = intent.limits;
+  return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.mixtures ? 0 : 1,
+           limits.keep_capacitance ? 1 : 0, limits.glide_cycles, limits.refining_work},
+          intent.budget.work,
+          intent.rate};
+}
+
+greenloop_elastostatic_requirement greenloop_elastostatic_required(const greenloop_model* model,
+                                                                   greenloop_elastostatic_limits limits) {
+  const Elastostatic::Requirement need = Elastostatic::required(model_in(model), limits_of(limits));
+  greenloop_elastostatic_requirement requirement = {need.bytes, need.least_work, {}};
+  std::memcpy(requirement.worst_work, need.worst_work, sizeof need.worst_work);
+  return requirement;
+}
+
+greenloop_elastostatic_created greenloop_elastostatic_create(const greenloop_model* model,
+                                                             greenloop_elastostatic_limits limits, void* arena,
+                                                             size_t bytes) {
+  const auto created =
+      Elastostatic::create(model_in(model), limits_of(limits), {static_cast<std::byte*>(arena), bytes});
+  return {static_cast<greenloop_create_error>(created.error), created.requested, created.available, created.missing,
+          reinterpret_cast<greenloop_elastostatic*>(std::bit_cast<Body*>(created.body))};
+}
+
+greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic* body,
+                                                          const greenloop_constraint* contacts, size_t count,
+                                                          uint64_t work, float* force, float* displacement,
+                                                          uint32_t nodes) {
+  return report_of(
+      body_in(body).step(constraints_of(contacts, count), {work}, response_of(count, force, displacement, nodes)));
+}
+
+int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32_t i, uint32_t j, float* block) {
+  const auto* const in_arena = reinterpret_cast<const Body*>(body);
+  const auto same = std::bit_cast<Elastostatic>(in_arena);
+  return same.compliance(i, j, std::span<float, 9>(block, 9)) ? 1 : 0;
+}
