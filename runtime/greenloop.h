@@ -174,7 +174,7 @@ typedef struct greenloop_elastostatic_report {
   uint64_t work;             /* units spent, never more than the budget */
   uint32_t constraint_level; /* level at which they were resolved, of a mixed set the coarser one */
   uint32_t field_level;      /* finest level whose details are in the field */
-  float error;               /* largest relative error that such answers were measured to have; infinity: unknown, held */
+  float error; /* largest relative error that such answers were measured to have; infinity: unknown, held */
   greenloop_elastostatic_details details;
 } greenloop_elastostatic_report;
 
