@@ -208,7 +208,7 @@ TEST_CASE("every code has a text of its own") {
   }
   CHECK(texts.size() == (GREENLOOP_RULE_INCONSISTENT + 1) + (GREENLOOP_CREATE_UNSUPPORTED_MODEL + 1) +
                             (GREENLOOP_HELD_UNSUPPORTED + 1));
-  CHECK(std::string(greenloop_rule_text(static_cast<greenloop_rule>(99))) == "unknown");
+  CHECK(std::string(greenloop_rule_text(static_cast<greenloop_rule>(GREENLOOP_RULE_INCONSISTENT + 1))) == "unknown");
   greenloop_model none;
   CHECK(greenloop_open(nullptr, 0, &none).rule != GREENLOOP_RULE_OK);
   CHECK(greenloop_model_problem(&none) == 0);

@@ -12,7 +12,7 @@
 namespace greenloop {
 namespace {
 
-constexpr std::size_t most_forces = std::size_t{1} << 22;  // a response with more is refused like one with so many
+constexpr std::uint64_t most_forces = 1U << 22;  // a response with more is refused like one with so many
 
 template <class Value>
 std::uint32_t add(std::uint32_t digest, const Value& value) {
@@ -66,16 +66,16 @@ RecordedStep* begin_step(Record& record, std::span<const Constraint> contacts, B
                          const Elastostatic::Response& response) {
   std::byte* const slot = at(record, record.steps_offset + record.slot_bytes * (record.begun % record.steps));
   const bool aligned = address(response.displacement.data()) % 16 == 0;
-  auto* const step =
-      new (slot) RecordedStep{.number = record.begun,
-                              .budget = budget.work,
-                              .contacts = std::min(contacts.size(), record.limits.max_contacts + std::size_t{1}),
-                              .forces = std::min(response.force.size(), most_forces),
-                              .displaced_nodes = response.displacement.size(),
-                              .displacement_aligned = aligned ? 1U : 0U,
-                              .finished = 0,
-                              .status = 0,
-                              .digest = 0};
+  auto* const step = new (slot)
+      RecordedStep{.number = record.begun,
+                   .budget = budget.work,
+                   .contacts = std::min<std::uint64_t>(contacts.size(), record.limits.max_contacts + std::uint64_t{1}),
+                   .forces = std::min<std::uint64_t>(response.force.size(), most_forces),
+                   .displaced_nodes = response.displacement.size(),
+                   .displacement_aligned = aligned ? 1U : 0U,
+                   .finished = 0,
+                   .status = 0,
+                   .digest = 0};
   const std::size_t kept = std::min<std::size_t>(contacts.size(), record.limits.max_contacts);
   if (kept > 0) std::memcpy(slot + sizeof(RecordedStep), contacts.data(), kept * sizeof(Constraint));
   ++record.begun;
