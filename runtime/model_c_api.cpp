@@ -53,17 +53,17 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
 static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
               same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
 static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic));
+// NOLINTBEGIN(misc-redundant-expression): two types are compared
 static_assert(sizeof(Model) <= sizeof(greenloop_model) && alignof(Model) <= alignof(greenloop_model) &&
               std::is_trivially_destructible_v<Model>);
+// NOLINTEND(misc-redundant-expression)
 
 constexpr const char* create_error_texts[] = {
     "the body was created",
     "the arena is too small: give it as many bytes as were requested",
     "the arena is not 64-byte aligned",
     "the limits are out of range: 1..4096 contacts, 1..1024 cached factors, at most 256 cycles of a glide",
-    "the model is of another problem, or not one of a subdivided triangulation, or a force reaches too much of it, or "
-    "it "
-    "is too large",
+    "the model is of another problem, not of a subdivided triangulation, too large, or a force reaches too much of it",
 };
 
 constexpr const char* status_texts[] = {
@@ -73,8 +73,7 @@ constexpr const char* status_texts[] = {
     "held: a contact names no node of the model, or there are more contacts than the limits allow",
     "held: a contact names a node that the scene did not declare touchable",
     "held: two contacts name the same node",
-    "held: there is not one force for each contact, or the field has another number of nodes than any levels of the "
-    "body, or is not 16-byte aligned",
+    "held: not one force a contact, or a field of another size than some levels have, or not 16-byte aligned",
     "held: the budget is below the least work",
     "held: the capacitance matrix is not positive definite to working precision",
     "held: the forces are too large for a finite field",

@@ -81,14 +81,18 @@ std::uint64_t field_digest(TestBody& body, const Touch& touch) {
   return hash_bytes(empty_hash, std::as_bytes(std::span<const float>(body.field())));
 }
 
-// the fast loop: forces only, every cycle
-std::uint64_t run_force_loop(const TestModel& model, std::uint32_t cycles, Newest<Touch>& newest) {
+// the fast loop: forces only, every cycle; after the first it waits until `taken`, for a slow loop that begins late
+template <class Taken>
+std::uint64_t run_force_loop(const TestModel& model, std::uint32_t cycles, Newest<Touch>& newest, Taken taken) {
   const auto nodes = model.touchable();
   TestBody body(model, limits);
   std::uint64_t digest = empty_hash;
   for (std::uint32_t cycle = 0; cycle < cycles; ++cycle) {
     const Touch touch = touch_at(cycle, nodes);
     newest.put(touch);
+    while (!taken()) {
+      std::this_thread::yield();
+    }
     const Elastostatic::StepReport report = body.step(touch.contacts(), any_budget, false);
     digest = hash_step(digest, report, body.force(), {});
   }
@@ -96,11 +100,13 @@ std::uint64_t run_force_loop(const TestModel& model, std::uint32_t cycles, Newes
 }
 
 // the slow loop: the whole field of the newest contacts, as often as it can
-std::vector<FieldDigest> run_field_loop(const TestModel& model, std::uint32_t cycles, Newest<Touch>& newest) {
+std::vector<FieldDigest> run_field_loop(const TestModel& model, std::uint32_t cycles, Newest<Touch>& newest,
+                                        std::atomic<bool>& taken) {
   TestBody body(model, limits);
   std::vector<FieldDigest> fields;
   for (Touch touch; touch.cycle + 1 < cycles;) {
     if (newest.take(touch)) {
+      taken = true;
       fields.push_back({touch.cycle, field_digest(body, touch)});
     } else {
       std::this_thread::yield();
@@ -114,12 +120,13 @@ TEST_CASE("a slow loop shows the fields of a fast loop's newest contacts") {
   const TestModel model({.levels = 3});
   Newest<Touch> newest;
   std::vector<FieldDigest> fields;
-  std::thread slow([&] { fields = run_field_loop(model, cycles, newest); });
-  const std::uint64_t forces = run_force_loop(model, cycles, newest);
+  std::atomic<bool> taken = false;
+  std::thread slow([&] { fields = run_field_loop(model, cycles, newest, taken); });
+  const std::uint64_t forces = run_force_loop(model, cycles, newest, [&] { return taken.load(); });
   slow.join();
 
   Newest<Touch> nobody_takes;
-  CHECK(run_force_loop(model, cycles, nobody_takes) == forces);
+  CHECK(run_force_loop(model, cycles, nobody_takes, [] { return true; }) == forces);
   const auto nodes = model.touchable();
   TestBody reference(model, limits);
   std::size_t wrong = 0;
