@@ -97,6 +97,7 @@ void check_way(const Way& way, const Elastostatic::StepReport& report, std::uint
 void compare(const Way& way, const TestModel& model, TestBody& body) {
   CAPTURE(way.name);
   const Outcome outcome = take(way, body, {1e-3F, 0.0F, FLT_TRUE_MIN});
+  MESSAGE(way.name, ", ", way.nodes.size(), " contacts: ", outcome.instructions[0], " instructions");
   check_way(way, outcome.report, model.model().level_count() - 1);
   CHECK(all_equal(outcome.instructions));
 }
