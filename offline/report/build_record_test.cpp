@@ -2,8 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "formats/testing/temporary_folder.hpp"
 #include "offline/report/axis.hpp"
-#include "offline/report/temporary_file.hpp"
+#include "offline/report/testing/message_of.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/testing/temporary_folder.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/compress/measure/field_size.hpp"
 #include "offline/report/axis.hpp"
@@ -19,7 +20,7 @@
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
 #include "offline/report/report_command.hpp"
-#include "offline/report/temporary_file.hpp"
+#include "offline/report/testing/message_of.hpp"
 
 namespace greenloop::offline {
 namespace {

@@ -4,7 +4,8 @@
 
 #include <string>
 
-#include "offline/report/temporary_file.hpp"
+#include "formats/testing/temporary_folder.hpp"
+#include "offline/report/testing/message_of.hpp"
 
 namespace greenloop::offline {
 namespace {

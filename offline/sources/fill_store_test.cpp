@@ -1,28 +1,17 @@
 #include "offline/sources/fill_store.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
-
-#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "formats/layout.hpp"
+#include "formats/testing/temporary_folder.hpp"
 #include "offline/volume/testing/shapes.hpp"
 
 namespace greenloop::offline {
 namespace {
-
-struct TemporaryFile {
-  TemporaryFile() = default;
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() { std::filesystem::remove(path); }
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("greenloop-" + std::to_string(getpid()) + "-fill.h5");
-};
 
 /// A surface without a volume: columns at five of its nodes, rows at all.
 GreenStoreContents measured_body() {
@@ -66,9 +55,9 @@ class NumberedColumns final : public ColumnSource {
 };
 
 TEST_CASE("a store is filled with the columns it lacks, in blocks of neighbours") {
-  const TemporaryFile file;
+  const TemporaryFolder folder("greenloop-fill");
   const auto contents = measured_body();
-  auto store = GreenStore::create(file.path, contents);
+  auto store = GreenStore::create(folder.path() / "fill.h5", contents);
   store.write_columns(1, Eigen::MatrixXd::Constant(36, 3, -1.0));
   NumberedColumns source(contents);
   std::vector<double> fractions;
@@ -82,9 +71,9 @@ TEST_CASE("a store is filled with the columns it lacks, in blocks of neighbours"
 }
 
 TEST_CASE("a source of other blocks, units, rows or columns than the store's is refused") {
-  const TemporaryFile file;
+  const TemporaryFolder folder("greenloop-fill");
   const auto contents = measured_body();
-  auto store = GreenStore::create(file.path, contents);
+  auto store = GreenStore::create(folder.path() / "fill.h5", contents);
   const auto refuses = [&](const char* why, auto change) {
     NumberedColumns source(contents);
     change(source);

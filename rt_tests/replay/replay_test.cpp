@@ -1,4 +1,5 @@
 #include "rt_tests/replay/replay.hpp"
+#include "formats/testing/temporary_folder.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -301,18 +302,6 @@ TEST_CASE("steps recorded in C are run again, and every error has a text of its 
   CHECK(texts.size() == GREENLOOP_RECORDER_MEMORY_MISALIGNED + 1);
 }
 
-class Folder {
- public:
-  Folder() : path(std::filesystem::temp_directory_path() / fmt::format("replay_test_{}", getpid())) {
-    std::filesystem::create_directory(path);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { std::filesystem::remove_all(path); }
-
-  std::filesystem::path path;
-};
-
 int exit_status(const std::string& command) {
   const int status = std::system(command.c_str());
   REQUIRE(WIFEXITED(status));
@@ -325,8 +314,8 @@ TEST_CASE("another process gives the same bits, and finds a flipped one") {
   SUBCASE("equilibrated") { wavelet = layout::Wavelet::equilibrated; }
   Recorded recorded({.steps = 100, .interval = 40, .field_nodes = 1000}, wavelet);
   for (int i = 0; i < 230; ++i) recorded.step();
-  const Folder folder;
-  const auto model = folder.path / "body.gloop", record = folder.path / "body.record";
+  const TemporaryFolder folder("replay_test");
+  const auto model = folder.path() / "body.gloop", record = folder.path() / "body.record";
   write_file(model, recorded.file());
   auto bytes = recorded.record();
   const auto run = [&] {

@@ -1,15 +1,13 @@
 #include "offline/compress/testing/solved_body.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <utility>
 
 #include "formats/layout.hpp"
 #include "formats/store/green_store.hpp"
+#include "formats/testing/temporary_folder.hpp"
 #include "offline/compress/wavelet/node_order.hpp"
 #include "offline/sources/fem/elasticity.hpp"
 #include "offline/sources/fem/green_functions.hpp"
@@ -18,16 +16,6 @@
 
 namespace greenloop::offline::test {
 namespace {
-
-// a file of this process, gone with the object
-struct TemporaryFile {
-  TemporaryFile() = default;
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() { std::filesystem::remove(path); }
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("greenloop-" + std::to_string(getpid()) + "-solved.h5");
-};
 
 GreenStoreContents problem(const Body& body, const Material& material) {
   GreenStoreContents contents;
@@ -71,8 +59,8 @@ Body solve_body(const SemiRegularMesh& surface, const Region& fixed, const Mater
   for (std::size_t node = 0; node < body.flags.size(); ++node) {
     if ((body.flags[node] & layout::node_domain) != 0) body.column_nodes.push_back(node);
   }
-  const TemporaryFile file;
-  auto store = GreenStore::create(file.path, problem(body, material));
+  const TemporaryFolder folder("greenloop-solved");
+  auto store = GreenStore::create(folder.path() / "solved.h5", problem(body, material));
   (void)solve_green_functions(store);
   body.compliance = store.read_columns(0, store.column_count());
   return body;

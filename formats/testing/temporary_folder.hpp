@@ -1,12 +1,13 @@
 #pragma once
 
 #include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <string_view>
 
-namespace greenloop::offline {
+namespace greenloop {
 
 /// A folder of this test process, deleted at the end of its scope.
 class TemporaryFolder {
@@ -29,15 +30,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The message of the exception that `action` throws; empty if it throws none.
-template <class Action>
-std::string message_of(Action&& action) {
-  try {
-    action();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return {};
-}
-
-}  // namespace greenloop::offline
+}  // namespace greenloop
