@@ -186,12 +186,14 @@ void report_levels(const Body& body, const Plan& plan, Elastostatic::StepReport&
   const ContactSet& set = body.planned;
   report.constraint_level = set.coarsest();
   report.details.finer_level = static_cast<std::uint8_t>(set.finest());
-  std::uint64_t finer = set.coarsest() == set.finest() ? plan.counts.contacts : 0;
-  for (std::uint32_t k = set.columns; finer < plan.counts.contacts && column_level(set.column[k - 1]) == set.finest();
-       --k) {
-    finer += set.members[k - 1];
+  report.details.finer_contacts = static_cast<std::uint16_t>(plan.counts.contacts);
+  if (set.coarsest() != set.finest()) {
+    std::uint32_t finer = 0;
+    for (std::uint32_t k = 0; k < set.columns; ++k) {
+      finer += column_level(set.column[k]) == set.finest() ? set.members[k] : 0;
+    }
+    report.details.finer_contacts = static_cast<std::uint16_t>(finer);
   }
-  report.details.finer_contacts = static_cast<std::uint16_t>(finer);
   report.field_level = plan.field_levels.details;
 }
 

@@ -4,7 +4,6 @@
 #include <cstring>
 
 namespace greenloop {
-
 namespace {
 
 // whether a contact that was held is resolved at another level than it was

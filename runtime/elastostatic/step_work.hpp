@@ -10,6 +10,18 @@
 
 namespace greenloop {
 
+/// Counts of a model and its limits that the work of a step follows from.
+struct ModelCounts : FactorCounts {
+  std::uint32_t levels = 0;
+  std::uint32_t max_contacts = 0;
+  std::uint32_t glide_cycles = 1;
+  bool forces_only = false;
+  bool mixtures = true;
+  std::uint64_t refining_work = 0;
+  std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
+  std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F
+};
+
 /// Work units of resolving contacts at a level, counting the blocks of their field and asking the cache.
 [[nodiscard]] std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept;
 

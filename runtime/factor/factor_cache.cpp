@@ -3,16 +3,16 @@
 #include <cstring>
 
 #include "runtime/algebra/cholesky.hpp"
+#include "runtime/algebra/fnv1a.hpp"
 
 namespace greenloop {
 namespace {
 
-// FNV-1a over whole words, never 0
+// FNV-1a over whole words, mixed downwards, never 0
 std::uint64_t key_of(ColumnSet set) {
-  constexpr std::uint64_t prime = 0x100000001b3;
-  std::uint64_t key = 0xcbf29ce484222325;
+  std::uint64_t key = Fnv1a().value();
   for (std::uint32_t k = 0; k < set.count; ++k) {
-    key = (key ^ set.column[k]) * prime;
+    key = (key ^ set.column[k]) * Fnv1a::prime;
     key ^= key >> 29;
   }
   return key == 0 ? 1 : key;

@@ -269,7 +269,7 @@ bool continue_changes(FactorJob& job, const FactorTools& tools, ColumnSet set, c
 }
 
 // bound of the work until the factor is that of the set
-std::uint64_t left_of(FactorJob& job, const ModelCounts& counts, const SetCounts& whole) {
+std::uint64_t left_of(FactorJob& job, const FactorCounts& counts, const SetCounts& whole) {
   if (job.changes.missing + job.changes.removed == 0) {
     return 0;
   }

@@ -29,7 +29,7 @@ struct FactorScratch {
 
 /// What the factors of a body are made with.
 struct FactorTools {
-  const ModelCounts& counts;
+  const FactorCounts& counts;
   const Refinement& refinement;
   const ColumnCosts& cost;
   const std::uint32_t* stored;  ///< [domain] blocks of all layers in a coefficient's column

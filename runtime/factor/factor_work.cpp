@@ -6,12 +6,12 @@ namespace greenloop {
 namespace {
 
 // of copying the capacitance matrix of so many rows where it is kept
-std::uint64_t kept_work(const ModelCounts& model, std::uint64_t order) {
+std::uint64_t kept_work(const FactorCounts& model, std::uint64_t order) {
   return model.keeps_capacitance ? order * order / 2 : 0;
 }
 
 // bounds for any batch of a set
-CapacitanceCounts batch_counts(const ModelCounts& model, const SetCounts& whole) {
+CapacitanceCounts batch_counts(const FactorCounts& model, const SetCounts& whole) {
   CapacitanceCounts counts = capacitance_counts(model, whole);
   counts.bounds = counts.bounds || !has_panel(counts.room, counts.slots, counts.rows);
   return counts;
@@ -25,7 +25,7 @@ std::uint64_t touch_work(const SetCounts& set) noexcept {
 
 std::uint64_t count_field_work(const SetCounts& set) noexcept { return set.coefficients; }
 
-CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept {
+CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts& set) noexcept {
   return {.prediction = model.prediction,
           .columns = set.columns,
           .rows = set.columns,
@@ -39,7 +39,7 @@ CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& 
           .bounds = set.bounds};
 }
 
-std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept {
+std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * set.columns);
   return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
          assemble_capacitance_work(capacitance_counts(model, set)) + kept_work(model, order) +
@@ -61,7 +61,8 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
   }
 }
 
-std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set, const ChangeCounts& changes) noexcept {
+std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set,
+                                 const ChangeCounts& changes) noexcept {
   const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
   CapacitanceCounts capacitance = capacitance_counts(model, set);
   capacitance.rows = changes.added;
@@ -75,7 +76,7 @@ std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set,
          6 * set.columns;
 }
 
-std::uint64_t most_in_a_batch(const ModelCounts& model, const SetCounts& whole) noexcept {
+std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole) noexcept {
   return batch_width(model.capacitance_room, whole.coefficients > 0 ? whole.coefficients : 1);
 }
 
@@ -83,7 +84,7 @@ std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns)
   return find_changes_work(factors + 4, columns);
 }
 
-std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set, std::uint64_t removed) noexcept {
+std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set, std::uint64_t removed) noexcept {
   const std::uint64_t columns = set.columns + removed;
   const auto order = static_cast<std::uint32_t>(3 * columns);
   return (1 + removed) * kept_work(model, order) + std::uint64_t{order} * order / 2 +
@@ -91,19 +92,19 @@ std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set, s
          begin_capacitance_work(batch_counts(model, set));
 }
 
-std::uint64_t enter_work(const ModelCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {
+std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {
   const std::uint64_t kept = model.keeps_capacitance ? 9 * (columns_before + 1) : 0;
   return kept + store_capacitance_work(set.columns) + columns_before +
          cholesky_append_work(static_cast<std::uint32_t>(3 * columns_before), 3);
 }
 
-std::uint64_t most_slice_work(const ModelCounts& model, const SetCounts& whole) noexcept {
+std::uint64_t most_slice_work(const FactorCounts& model, const SetCounts& whole) noexcept {
   const std::uint64_t fresh = factor_work(model, whole);
   const std::uint64_t begin = begin_batch_work(model, whole, FactorChanges::most);
   return compare_factors_work(model.cached_factors, whole.columns) + (fresh > begin ? fresh : begin);
 }
 
-std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole, const FactorChanges& changes) noexcept {
+std::uint64_t pending_work(const FactorCounts& model, const SetCounts& whole, const FactorChanges& changes) noexcept {
   const std::uint64_t missing = changes.missing;
   const std::uint64_t most = most_in_a_batch(model, whole);
   const std::uint64_t adding = (missing + most - 1) / most;
@@ -116,7 +117,7 @@ std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole, con
          missing * enter_work(model, whole, whole.columns);
 }
 
-std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole) noexcept {
+std::uint64_t pending_work(const FactorCounts& model, const SetCounts& whole) noexcept {
   FactorChanges changes;
   changes.missing = static_cast<std::uint32_t>(whole.columns);
   return pending_work(model, whole, changes);

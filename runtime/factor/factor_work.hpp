@@ -7,20 +7,12 @@
 
 namespace greenloop {
 
-/// Counts of a model and its limits that the work of a step follows from.
-struct ModelCounts {
-  std::uint32_t levels = 0;
-  std::uint32_t max_contacts = 0;
+/// What the work of factors follows from, beside their sets.
+struct FactorCounts {
   std::uint32_t cached_factors = 0;
-  std::uint32_t glide_cycles = 1;
-  std::uint64_t refining_work = 0;
+  bool keeps_capacitance = false;
   std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
   Prediction prediction{};
-  bool forces_only = false;
-  bool mixtures = true;
-  bool keeps_capacitance = false;
-  std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
-  std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F
 };
 
 /// What a set of columns holds.
@@ -44,10 +36,10 @@ struct SetCounts {
 [[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
 
 /// What the whole capacitance matrix of a set takes.
-[[nodiscard]] CapacitanceCounts capacitance_counts(const ModelCounts& model, const SetCounts& set) noexcept;
+[[nodiscard]] CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts& set) noexcept;
 
 /// Work units of a capacitance factor.
-[[nodiscard]] std::uint64_t factor_work(const ModelCounts& model, const SetCounts& set) noexcept;
+[[nodiscard]] std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexcept;
 
 /// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. stored: [domain] blocks of
 /// all layers in each coefficient's column.
@@ -55,7 +47,7 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
                   SetCounts& counts) noexcept;
 
 /// Work units of make_factor from a base, the columns of the new nodes included.
-[[nodiscard]] std::uint64_t update_factor_work(const ModelCounts& model, const SetCounts& set,
+[[nodiscard]] std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set,
                                                const ChangeCounts& changes) noexcept;
 
 // The pieces of continue_factor (factor_job.hpp).
@@ -64,24 +56,24 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 [[nodiscard]] std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns) noexcept;
 
 /// Nodes that enter a factor together: as many rows of their matrix as the scratch has room for.
-[[nodiscard]] std::uint64_t most_in_a_batch(const ModelCounts& model, const SetCounts& whole) noexcept;
+[[nodiscard]] std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole) noexcept;
 
 /// Work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of the batch.
-[[nodiscard]] std::uint64_t begin_batch_work(const ModelCounts& model, const SetCounts& set,
+[[nodiscard]] std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set,
                                              std::uint64_t removed) noexcept;
 
 /// Work units of bordering the factor of a whole set by a node.
-[[nodiscard]] std::uint64_t enter_work(const ModelCounts& model, const SetCounts& set,
+[[nodiscard]] std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set,
                                        std::uint64_t columns_before) noexcept;
 
 /// Work units that a slice may spend, beside giving up a batch: every piece of it fits.
-[[nodiscard]] std::uint64_t most_slice_work(const ModelCounts& model, const SetCounts& whole) noexcept;
+[[nodiscard]] std::uint64_t most_slice_work(const FactorCounts& model, const SetCounts& whole) noexcept;
 
 /// Bound of the work units until a factor has the changes, and all the missing nodes, of `whole`; 0: there are none.
-[[nodiscard]] std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole,
+[[nodiscard]] std::uint64_t pending_work(const FactorCounts& model, const SetCounts& whole,
                                          const FactorChanges& changes) noexcept;
 
 /// The same of a factor that is not begun.
-[[nodiscard]] std::uint64_t pending_work(const ModelCounts& model, const SetCounts& whole) noexcept;
+[[nodiscard]] std::uint64_t pending_work(const FactorCounts& model, const SetCounts& whole) noexcept;
 
 }  // namespace greenloop
