@@ -31,15 +31,16 @@ inline std::uint32_t stored_row(const CouplingsView& view, std::uint32_t block) 
                                : static_cast<const std::uint32_t*>(view.index)[block];
 }
 
-/// Element k of a block, in quanta; value_bits: the layer's.
-inline std::int16_t stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t block,
+/// Element k of a block of N x N, in quanta; value_bits: the layer's.
+template <unsigned N>
+std::int16_t stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t block,
                                  std::uint32_t k) {
   if (value_bits == 4) {
-    const int byte = std::to_integer<int>(view.value[5 * std::size_t{block} + k / 2]);
+    const int byte = std::to_integer<int>(view.value[layout::block_bytes(N, 4) * block + k / 2]);
     const int nibble = k % 2 == 0 ? byte & 15 : byte >> 4;
     return static_cast<std::int16_t>(nibble < 8 ? nibble : nibble - 16);
   }
-  const std::size_t at = 9 * std::size_t{block} + k;
+  const std::size_t at = std::size_t{N * N} * block + k;
   if (value_bits == 8) {
     return static_cast<std::int8_t>(view.value[at]);
   }
@@ -54,10 +55,11 @@ inline std::uint32_t stored_source(const PredictionsView& view, std::size_t term
                                : static_cast<const std::uint32_t*>(view.index)[term];
 }
 
-/// Element k of its weight, in units of layout::prediction_unit.
-inline std::int16_t stored_weight(const PredictionsView& view, std::size_t term, std::uint32_t k) {
+/// Element k of its weight, N x N, in units of layout::prediction_unit.
+template <unsigned N>
+std::int16_t stored_weight(const PredictionsView& view, std::size_t term, std::uint32_t k) {
   std::int16_t value;
-  std::memcpy(&value, view.weight + 2 * (9 * term + k), sizeof value);
+  std::memcpy(&value, view.weight + 2 * (N * N * term + k), sizeof value);
   return value;
 }
 

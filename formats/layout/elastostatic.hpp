@@ -44,6 +44,11 @@ namespace greenloop::layout {
 inline constexpr std::uint32_t layers = 4;
 inline constexpr std::uint32_t value_bits[layers] = {16, 16, 8, 4};  ///< of one element of a block
 
+/// Bytes of a stored block between nodes of so many components, with so many bits an element: the last half byte is 0.
+constexpr std::uint64_t block_bytes(std::uint32_t components, std::uint32_t bits) {
+  return (std::uint64_t{components} * components * bits + 7) / 8;
+}
+
 /// Bytes of zero behind the blocks of a section: a wide load of the last block stays inside it.
 inline constexpr std::uint64_t tail_bytes = 16;
 
@@ -225,12 +230,14 @@ struct PatternRecord {
 };
 static_assert(sizeof(PatternRecord) == 64);
 
-/// The scale of a coefficient: two symmetric positive definite matrices xx, xy, xz, yy, yz, zz.
+/// The scale of a coefficient of N components: two symmetric positive definite matrices, by rows from the diagonal on:
+/// xx, xy, xz, yy, yz, zz.
+template <unsigned N>
 struct Scale {
-  float root[6];      ///< R; (m/N)^(1/2)
-  float diagonal[6];  ///< R^-1 (W U W^T)_ii R^-1
+  float root[N * (N + 1) / 2];      ///< R; (m/N)^(1/2)
+  float diagonal[N * (N + 1) / 2];  ///< R^-1 (W U W^T)_ii R^-1
 };
-static_assert(sizeof(Scale) == 48);
+static_assert(sizeof(Scale<3>) == 48 && sizeof(Scale<1>) == 8);
 
 /// Sparse 3x3 blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
 ///   begin  u32 [n + 1]     first block of each column

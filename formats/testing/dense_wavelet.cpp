@@ -18,7 +18,7 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet) {
   MatrixXd form = MatrixXd::Zero(rows, rows);
   for (const LevelData& level : model.levels) {
     const auto first = static_cast<Index>(root.size());
-    for (const layout::Scale& own : level.scales) {
+    for (const layout::Scale<3>& own : level.scales.of<3>()) {
       const auto i = static_cast<Index>(root.size());
       root.push_back(symmetric_matrix(own.root));
       form.block<3, 3>(3 * i, 3 * i) = root.back() * symmetric_matrix(own.diagonal) * root.back();

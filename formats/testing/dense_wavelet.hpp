@@ -9,7 +9,7 @@
 
 namespace greenloop {
 
-/// A matrix of layout::Scale.
+/// A matrix of layout::Scale<3>.
 [[nodiscard]] Eigen::Matrix3d symmetric_matrix(const float (&six)[6]);
 
 /// The wavelet transform of docs/theory.md on dense matrices over the domain nodes of a model, three rows and columns a

@@ -24,8 +24,10 @@ ModelData smallest_model() {
                  {{1, 0, 0}, third_of_triangle, layout::node_domain | layout::node_read},
                  {{0, 1, 0}, third_of_triangle, layout::node_fixed}};
   level.representatives = {{0, layout::none, layout::none}};
-  level.scales.assign(2, {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
-                          .diagonal = {1, 0, 0, 1, 0, 1}});
+  const layout::Scale<3> scale = {.root = {root_of_compliance, 0, 0, root_of_compliance, 0, root_of_compliance},
+                                  .diagonal = {1, 0, 0, 1, 0, 1}};
+  level.scales.push_back(scale);
+  level.scales.push_back(scale);
   for (CouplingsData& layer : level.couplings) layer.begin = {0, 0, 0};
   level.couplings[0] = {.begin = {0, 0, 1}, .index = {0}, .value = {256, 0, 0, 0, 256, 0, 0, 64, 256}};
   model.levels = {level};

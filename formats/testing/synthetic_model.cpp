@@ -56,16 +56,16 @@ void store(const Matrix3d& matrix, float (&six)[6]) {
 }
 
 // Of the coefficients begin .. end-1.
-std::vector<layout::Scale> scales_of(const MatrixXd& form, Index begin, Index end) {
+ScalesData scales_of(const MatrixXd& form, Index begin, Index end) {
   const Eigen::Vector3d direction(1, -1, 0.5);
-  std::vector<layout::Scale> scales;
+  ScalesData scales;
   for (Index i = begin; i < end; ++i) {
     const Matrix3d block = form.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
     // a conditional compliance as if some neighbour were held along one direction; how many are is the writer's choice
     const Eigen::Vector3d held = block * direction;
     const Matrix3d conditional = 0.8 * (block - 0.5 / direction.dot(held) * held * held.transpose());
     const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(conditional).operatorSqrt();
-    layout::Scale scale;
+    layout::Scale<3> scale;
     store(root, scale.root);
     const Matrix3d inverse = symmetric_matrix(scale.root).inverse();
     store(inverse * block * inverse, scale.diagonal);
@@ -97,7 +97,7 @@ class Compression {
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
       auto& scales = model_.levels[q].scales;
       scales = scales_of(form, wavelet_.begin(q), wavelet_.end(q));
-      for (const layout::Scale& scale : scales) inverse_.emplace_back(symmetric_matrix(scale.root).inverse());
+      for (const layout::Scale<3>& scale : scales.of<3>()) inverse_.emplace_back(symmetric_matrix(scale.root).inverse());
     }
     choose_quanta(form);
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) add_couplings(q, form);

@@ -100,7 +100,7 @@ TEST_CASE("synthetic model: with all couplings in 16 bits every scaled value is 
     const ModelData model = synthetic_model({.levels = 4, .wavelet = kind, .epsilon = 0, .quantum = 1e-9});
     std::vector<Eigen::Matrix3d> inverse;
     for (const LevelData& level : model.levels) {
-      for (const auto& scale : level.scales) inverse.emplace_back(symmetric_matrix(scale.root).inverse());
+      for (const auto& scale : level.scales.of<3>()) inverse.emplace_back(symmetric_matrix(scale.root).inverse());
       for (std::uint32_t layer = 2; layer < layout::layers; ++layer) CHECK(level.couplings[layer].index.empty());
     }
     const DenseWavelet wavelet(model);

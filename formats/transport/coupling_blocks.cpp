@@ -12,7 +12,7 @@ void append_column(const CouplingsView& view, std::uint32_t layer, std::uint32_t
   if (column >= view.columns) return;  // of an empty section
   for (std::uint32_t b = view.begin[column]; b < view.begin[column + 1]; ++b) {
     CouplingBlock block{.row = stored_row(view, b), .layer = layer};
-    for (std::uint32_t k = 0; k < 9; ++k) block.value[k] = stored_value(view, layout::value_bits[layer], b, k);
+    for (std::uint32_t k = 0; k < 9; ++k) block.value[k] = stored_value<3>(view, layout::value_bits[layer], b, k);
     blocks.push_back(block);
   }
 }

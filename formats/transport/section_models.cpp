@@ -14,7 +14,7 @@ constexpr std::uint32_t length_contexts = 17;
 constexpr std::uint32_t most_step = 200;
 constexpr std::uint32_t step_of_exponent = 40 + 127 - 150;  // to_fixed's exponent over ours
 constexpr std::int64_t most_steps = 1 << 27;
-constexpr std::size_t scale_fields = sizeof(layout::Scale) / sizeof(std::uint32_t);
+constexpr std::size_t scale_fields = sizeof(layout::Scale<3>) / sizeof(std::uint32_t);
 
 std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t i) {
   std::uint32_t word = 0;
@@ -198,7 +198,7 @@ void MeshModel::code_scales(BitCoder& coder, std::uint32_t q, std::span<std::byt
   std::array<std::uint32_t, scale_fields> step{};
   for (std::size_t k = 0; k < scale_fields; ++k) step[k] = code_common_step(coder, section, k);
   WordModel words(scale_fields);
-  for (std::size_t i = 0; i < section.size() / sizeof(layout::Scale); ++i) {
+  for (std::size_t i = 0; i < section.size() / sizeof(layout::Scale<3>); ++i) {
     const std::uint32_t like = i < near.size() ? near[i][0] : no_neighbour;
     for (std::uint32_t k = 0; k < scale_fields; ++k) {
       const std::size_t at = scale_fields * i + k;

@@ -89,7 +89,7 @@ ModelData random_model(std::uint64_t seed) {
       for (float& coordinate : node.position) coordinate = number();
       node.area = number() + 1;
     }
-    for (layout::Scale& scale : level.scales) {
+    for (layout::Scale<3>& scale : level.scales.of<3>()) {
       for (float* matrix : {scale.root, scale.diagonal}) {
         for (std::size_t k : {1, 2, 4}) matrix[k] = number() / 4;
         for (std::size_t k : {0, 3, 5}) matrix[k] = number() / 4 + 1;
@@ -120,8 +120,8 @@ TEST_CASE("transport: scales of few digits take fewer bytes and come back, as do
   const std::size_t random = pack(encode(model)).size();
   std::size_t scales = 0;
   for (LevelData& level : model.levels) {
-    scales += level.scales.size();
-    for (layout::Scale& scale : level.scales) {
+    scales += level.scales.of<3>().size();
+    for (layout::Scale<3>& scale : level.scales.of<3>()) {
       for (float* matrix : {scale.root, scale.diagonal}) {
         for (std::size_t k = 0; k < 6; ++k) matrix[k] = std::round(1024 * matrix[k]) / 1024;
       }
@@ -129,7 +129,7 @@ TEST_CASE("transport: scales of few digits take fewer bytes and come back, as do
   }
   check_round_trip(encode(model));
   CHECK(pack(encode(model)).size() + 12 * scales < random);  // 8 bits a number
-  auto& odd = model.levels[2].scales;
+  const auto odd = model.levels[2].scales.of<3>();
   odd[1].root[1] = -0.0F;
   odd[1].diagonal[2] = std::numeric_limits<float>::denorm_min();
   odd[0].diagonal[4] = 1e-30F;

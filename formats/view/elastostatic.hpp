@@ -35,9 +35,15 @@ struct LevelView {
   const layout::RefinementRecord* refinement = nullptr;  ///< null on level 0
   const layout::StencilRecord* stencils = nullptr;       ///< [domain nodes]; null without Butterfly wavelets
   PredictionsView predictions;
-  const layout::Scale* scales = nullptr;  ///< [domain nodes]
+  const void* scales = nullptr;  ///< layout::Scale<components> [domain nodes]
   CouplingsView couplings[layout::layers];
   std::span<const layout::PatternRecord> patterns;  ///< empty: not measured, or no constraint level
+
+  /// N: the model's components.
+  template <unsigned N>
+  [[nodiscard]] const layout::Scale<N>* scales_of() const noexcept {
+    return static_cast<const layout::Scale<N>*>(scales);
+  }
 };
 
 /// An elastostatic model, in place.

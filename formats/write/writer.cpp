@@ -27,6 +27,8 @@ using layout::SectionEntry;
 using layout::SectionKind;
 using Bytes = std::vector<std::byte>;
 
+constexpr std::size_t numbers_of_scale = sizeof(layout::Scale<3>) / sizeof(float);
+
 void require(bool right, const std::string& what) {
   if (!right) throw std::invalid_argument("model to be written: " + what);
 }
@@ -162,7 +164,7 @@ class SectionList {
     for (std::size_t r = 0; r < level.representatives.size(); ++r) {
       check(fmt::format("representatives[{}]", r), level.representatives[r].size(), model_.levels[r].nodes.size());
     }
-    check("scales", level.scales.size(), domain_count(q));
+    check("scales", level.scales.numbers.size(), std::size_t{numbers_of_scale} * domain_count(q));
     if (!constrained) check("patterns", level.patterns.size(), 0);
   }
 
@@ -193,8 +195,8 @@ class SectionList {
                               section_name(SectionKind::predictions, q, 0));
   }
   Bytes scales_bytes(std::uint32_t q, std::uint32_t) {
-    kept_blocks_ += model_.levels[q].scales.size();
-    return bytes_of(model_.levels[q].scales);
+    kept_blocks_ += domain_count(q);
+    return bytes_of(model_.levels[q].scales.numbers);
   }
   Bytes couplings_bytes(std::uint32_t q, std::uint32_t layer) {
     const CouplingsData& data = model_.levels[q].couplings[layer];

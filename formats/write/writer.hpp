@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,25 @@ struct PredictionsData {
   std::vector<std::int16_t> weight;  ///< 9 per term, by columns
 };
 
+/// Scales of one level before encoding: layout::Scale<N> of each domain node, N: the model's components.
+struct ScalesData {
+  std::vector<float> numbers;  ///< [domain nodes * N (N + 1)]
+
+  template <unsigned N>
+  [[nodiscard]] std::span<layout::Scale<N>> of() {
+    return {reinterpret_cast<layout::Scale<N>*>(numbers.data()), numbers.size() / (N * (N + 1))};
+  }
+  template <unsigned N>
+  [[nodiscard]] std::span<const layout::Scale<N>> of() const {
+    return {reinterpret_cast<const layout::Scale<N>*>(numbers.data()), numbers.size() / (N * (N + 1))};
+  }
+  template <unsigned N>
+  void push_back(const layout::Scale<N>& scale) {
+    numbers.insert(numbers.end(), std::begin(scale.root), std::end(scale.root));
+    numbers.insert(numbers.end(), std::begin(scale.diagonal), std::end(scale.diagonal));
+  }
+};
+
 /// One level of a model before encoding.
 struct LevelData {
   layout::Level counts{};
@@ -35,7 +55,7 @@ struct LevelData {
   PredictionsData predictions;                  ///< empty on level 0 and without Equilibrated wavelets
   /// [mesh level][node in that level], every mesh level; empty below the coarsest constraint level
   std::vector<std::vector<std::uint32_t>> representatives;
-  std::vector<layout::Scale> scales;  ///< [domain nodes]
+  ScalesData scales;  ///< [domain nodes]
   std::array<CouplingsData, layout::layers> couplings;
   std::vector<layout::PatternRecord> patterns;  ///< by kind, then contacts; empty below the coarsest constraint level
 };

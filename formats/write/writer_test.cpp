@@ -82,7 +82,7 @@ TEST_CASE("writer: what the view shows is what was given") {
       CHECK((level.stencils.empty() || same_bytes(view.level[q].stencils, level.stencils)));
       CHECK(level.predictions.index.empty() == (q == 0 || kind != layout::Wavelet::equilibrated));
       CHECK((view.level[q].predictions.weight == nullptr) == level.predictions.index.empty());
-      CHECK(same_bytes(view.level[q].scales, level.scales));
+      CHECK(same_bytes(static_cast<const float*>(view.level[q].scales), level.scales.numbers));
       for (std::uint32_t r = 0; r < 4; ++r) {
         CHECK((view.representatives[q][r] == nullptr) == (q == 0));
         if (q > 0) CHECK(same_bytes(view.representatives[q][r], level.representatives[r]));
@@ -173,7 +173,7 @@ TEST_CASE("writer: refuses vectors that do not fit each other, by name") {
               "levels[1].representatives"));
   CHECK(names(encode_refusal([](ModelData& data) { data.levels[1].representatives[2].pop_back(); }),
               "levels[1].representatives[2]"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].scales.pop_back(); }), "levels[2].scales"));
+  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].scales.numbers.pop_back(); }), "levels[2].scales"));
   CHECK(names(encode_refusal([](ModelData& data) { data.info.coarsest_constraint_level = 1; }),
               "levels[0].representatives has 3 entries, expected 0"));
   for (std::size_t layer = 0; layer < layout::layers; ++layer) {
@@ -206,7 +206,7 @@ TEST_CASE("writer: refuses values and rows that do not fit their bits") {
 TEST_CASE("writer: refuses whatever verify would refuse, in its words") {
   CHECK(names(encode_refusal([](ModelData& data) { data.info.young = 0; }), "Info, field `young`"));
   CHECK(names(encode_refusal([](ModelData& data) { data.info.quantum[3] = 2; }), "Info, field `quantum`, index 3"));
-  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].scales[3].root[0] = -1; }),
+  CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].scales.of<3>()[3].root[0] = -1; }),
               "Scales(2), field `root`, index 3"));
   CHECK(names(encode_refusal([](ModelData& data) { data.levels[2].couplings[0].value[7] = -32768; }),
               "Couplings(2, 0), field `value`, index 7"));

@@ -42,7 +42,7 @@ const layout::Level& finest_level(const ModelView& model) { return *model.level[
 
 /// Bytes of scales and couplings of mesh level q.
 std::uint64_t compliance_bytes(const ModelView& model, std::uint32_t q) {
-  std::uint64_t bytes = model.level[q].counts->domain_count * sizeof(layout::Scale);
+  std::uint64_t bytes = model.level[q].counts->domain_count * sizeof(layout::Scale<3>);
   for (const layout::SectionEntry& entry : section_entries(model)) {
     if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings) && entry.a == q) bytes += entry.bytes;
   }

@@ -195,7 +195,7 @@ class RooflineRun {
     for (std::uint32_t q = 0; q <= body.touched.finest; ++q) {
       for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
         const std::uint32_t coefficient = body.touched.list[q][k];
-        bytes += sizeof(layout::Scale);
+        bytes += sizeof(layout::Scale<3>);
         bytes += coefficient < body.base.columns ? BaseColumns::tile_bytes * body.base.tiles : 0;
         for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
           add_column(view_->level[q].couplings[layer], layer, coefficient - view_->level[q].domain_begin);
@@ -214,7 +214,7 @@ class RooflineRun {
       const LevelView& level = view_->level[q];
       for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
         const std::uint32_t coefficient = body.touched.list[q][k];
-        bytes += sizeof(layout::Scale);
+        bytes += sizeof(layout::Scale<3>);
         for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
           const CouplingsView& couplings = level.couplings[layer];
           const std::uint32_t column = coefficient - level.domain_begin;

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <map>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,8 @@ void fill_couplings(std::mt19937_64& random, std::size_t columns, std::size_t be
   }
 }
 
-void fill_scales(std::mt19937_64& random, std::vector<layout::Scale>& scales) {
-  for (layout::Scale& scale : scales) {
+void fill_scales(std::mt19937_64& random, std::span<layout::Scale<3>> scales) {
+  for (layout::Scale<3>& scale : scales) {
     const float size = 0x1p-6F * (1 + uniform(random));
     for (float* matrix : {scale.root, scale.diagonal}) {
       for (int k = 0; k < 6; ++k) {
@@ -82,7 +83,7 @@ ModelData arbitrary_model(layout::Wavelet wavelet) {
       }
     }
     fill_weights(random, level.predictions);
-    fill_scales(random, level.scales);
+    fill_scales(random, level.scales.of<3>());
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       fill_couplings(random, domain(level), before, layer, level.couplings[layer]);
     }

@@ -109,10 +109,10 @@ class Walk {
 
   bool scales(std::uint32_t q) const {
     const LevelView& level = view_.level[q];
-    const auto right = [](const layout::Scale& scale) {
+    const auto right = [](const layout::Scale<3>& scale) {
       return scale.root[0] > 0 && scale.diagonal[0] > 0 && std::isfinite(scale.root[5] + scale.diagonal[5]);
     };
-    return array(level.scales, domain(q)) && all(level.scales, domain(q), right);
+    return array(level.scales_of<3>(), domain(q)) && all(level.scales_of<3>(), domain(q), right);
   }
 
   bool representatives(std::uint32_t c, std::uint32_t q) const {

@@ -140,7 +140,7 @@ BaseColumns BaseColumnsMaker::make(const ModelView& view) noexcept {
                    value_ + BaseColumns::tile_bytes * (std::size_t{made_.tiles} * row + column / BaseColumns::width);
                for (std::uint32_t k = 0; k < 9; ++k) {  // transposed
                  std::byte& element = tile[8 * (3 * (k % 3) + k / 3) + column % BaseColumns::width];
-                 const int value = stored_value(couplings, layout::value_bits[layer], position, k);
+                 const int value = stored_value<3>(couplings, layout::value_bits[layer], position, k);
                  element = static_cast<std::byte>(static_cast<std::int8_t>(element) + value);
                }
              });

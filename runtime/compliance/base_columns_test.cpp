@@ -45,7 +45,7 @@ TEST_CASE("columns of level 0 are whole where nearly all of their couplings exis
         for (std::uint32_t j = 0; base.holds[layer] && j < couplings.columns; ++j) {
           visit_rows(couplings, j, 0, base.columns, [&](std::uint32_t row, std::uint32_t position) {
             for (std::uint32_t k = 0; k < 9; ++k) {
-              const int stored = stored_value(couplings, layout::value_bits[layer], position, k);
+              const int stored = stored_value<3>(couplings, layout::value_bits[layer], position, k);
               CHECK(element(base, row, view.level[q].domain_begin + j, 3 * (k % 3) + k / 3) == stored);
               found += stored != 0 ? 1 : 0;
             }

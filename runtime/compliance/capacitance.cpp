@@ -57,7 +57,7 @@ std::uint32_t assign_slots(const ModelView& view, const Touched& touched, std::u
       if (scratch.slot[coefficient] == layout::none) {
         scratch.slot[coefficient] = slots;
         scratch.coefficient[slots] = coefficient;
-        scratch.root[slots++] = symmetric_block(level.scales[coefficient - level.domain_begin].root);
+        scratch.root[slots++] = symmetric_block(level.scales_of<3>()[coefficient - level.domain_begin].root);
       }
     }
   }
@@ -104,7 +104,7 @@ void set_diagonal(const Refinement& refinement, const PartialCapacitance& partia
       continue;
     }
     const LevelView& level = refinement.view->level[refinement.level[coefficient]];
-    const Block scale = symmetric_block(level.scales[coefficient - level.domain_begin].diagonal);
+    const Block scale = symmetric_block(level.scales_of<3>()[coefficient - level.domain_begin].diagonal);
     const Block diagonal = product(scratch.root[s], product(scale, scratch.root[s]));
     if (partial.panel) {
       panel_at(scratch, partial, s, s) = transposed(diagonal);

@@ -42,7 +42,7 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
           CHECK(places[n].target == written.index[b] / 3);
           for (std::uint32_t k = 0; k < 9; ++k) {
             const int value = written.value[9 * std::size_t{b} + k];
-            CHECK(stored_value(couplings, layout::value_bits[layer], b, k) == value);
+            CHECK(stored_value<3>(couplings, layout::value_bits[layer], b, k) == value);
             const float scaled = block_factor(data.info, layer) * blocks[n].column[k / 3][k % 3];
             CHECK(scaled == data.info.quantum[layer] * static_cast<float>(value));
           }

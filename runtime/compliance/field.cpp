@@ -42,10 +42,10 @@ class CoefficientColumn {
   void add(Float4 force, const CoefficientSums& sums) const {
     const layout::Info& info = *model_.refinement.view->info;
     const std::uint32_t own = coefficient_ - level_.domain_begin;
-    const Float4 scaled = symmetric_product(level_.scales[own].root, force);
+    const Float4 scaled = symmetric_product(level_.scales_of<3>()[own].root, force);
     if (coefficient_ < end_) {
       Float4& sum = sums.of_blocks[coefficient_];
-      sum = sum3(sum, symmetric_product(level_.scales[own].diagonal, without_denormals(scaled)));
+      sum = sum3(sum, symmetric_product(level_.scales_of<3>()[own].diagonal, without_denormals(scaled)));
     }
     if (coefficient_ < model_.base.columns) {
       model_.add_tiles(model_.base.column(coefficient_), tiles_of(end_),
@@ -131,7 +131,7 @@ void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums&
     const LevelView& level = view.level[q];
     Float4* const sum = sums.of_blocks + level.domain_begin;
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      sum[i] = symmetric_product(level.scales[i].root, sum[i]);
+      sum[i] = symmetric_product(level.scales_of<3>()[i].root, sum[i]);
     }
   }
 }

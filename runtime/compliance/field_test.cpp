@@ -74,7 +74,7 @@ float by_blocks(const ModelView& view, const LevelView& level, std::uint32_t i, 
   float sums[2] = {};  // of terms of even and of odd number
   for (std::size_t term = std::size_t{at.terms} * i; term < std::size_t{at.terms} * (i + 1); ++term) {
     const Float4 from = x[domain_node(view, stored_source(at, term))];
-    const auto weight = [&](std::uint32_t k) { return 65536 * static_cast<float>(stored_weight(at, term, k)); };
+    const auto weight = [&](std::uint32_t k) { return 65536 * static_cast<float>(stored_weight<3>(at, term, k)); };
     sums[(term - std::size_t{at.terms} * i) % 2] += (weight(1) * from[0] + weight(4) * from[1]) + weight(7) * from[2];
   }
   return 0x1p-28F * (sums[0] + sums[1]);

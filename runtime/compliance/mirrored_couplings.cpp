@@ -56,7 +56,7 @@ void store_value(std::uint32_t bits, std::byte* block, std::uint32_t k, std::int
 
 void store_transposed(const CouplingsView& from, std::uint32_t bits, std::uint32_t position, std::byte* block) {
   for (std::uint32_t k = 0; k < 9; ++k) {
-    store_value(bits, block, 3 * (k % 3) + k / 3, stored_value(from, bits, position, k));
+    store_value(bits, block, 3 * (k % 3) + k / 3, stored_value<3>(from, bits, position, k));
   }
 }
 

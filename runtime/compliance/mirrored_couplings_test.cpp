@@ -50,8 +50,8 @@ TEST_CASE("the mirrored couplings are the stored ones, transposed, each once, ro
           const std::uint32_t stored = find_row(level.couplings[layer], row - level.domain_begin, j);
           REQUIRE(stored != layout::none);
           for (std::uint32_t k = 0; k < 9; ++k) {
-            CHECK(stored_value(mirrored, layout::value_bits[layer], at, k) ==
-                  stored_value(level.couplings[layer], layout::value_bits[layer], stored, 3 * (k % 3) + k / 3));
+            CHECK(stored_value<3>(mirrored, layout::value_bits[layer], at, k) ==
+                  stored_value<3>(level.couplings[layer], layout::value_bits[layer], stored, 3 * (k % 3) + k / 3));
           }
         }
       }

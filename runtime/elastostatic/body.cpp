@@ -28,7 +28,7 @@ double prediction_sum(const ModelView& view, const Prediction& prediction, std::
     double sum[3] = {};
     for (std::uint32_t k = 0; k < 9 * at.predictions.terms; ++k) {
       const std::size_t term = std::size_t{at.predictions.terms} * i + k / 9;
-      sum[k % 3] += magnitude(double{layout::prediction_unit} * stored_weight(at.predictions, term, k % 9));
+      sum[k % 3] += magnitude(double{layout::prediction_unit} * stored_weight<3>(at.predictions, term, k % 9));
     }
     most = larger(most, larger(sum[0], larger(sum[1], sum[2])));
   }
@@ -76,7 +76,7 @@ double largest_scale(const ModelView& view, Part part) {
   double largest = 1;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     for (std::uint32_t i = 0; i < view.level[q].counts->domain_count; ++i) {
-      for (const float value : view.level[q].scales[i].*part) {
+      for (const float value : view.level[q].scales_of<3>()[i].*part) {
         largest = larger(largest, magnitude(double{value}));
       }
     }
@@ -86,7 +86,7 @@ double largest_scale(const ModelView& view, Part part) {
 
 // largest sum of the couplings' values, and the diagonal's, between two coefficients
 double largest_value(const ModelView& view) {
-  double sum = largest_scale(view, &layout::Scale::diagonal);
+  double sum = largest_scale(view, &layout::Scale<3>::diagonal);
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     sum += double{view.info->quantum[layer]} * (1U << (layout::value_bits[layer] - 1));
   }
@@ -94,7 +94,7 @@ double largest_value(const ModelView& view) {
 }
 
 float largest_force_sum(const ModelView& view, const Lifting& lifting) {
-  const double root = 3 * largest_scale(view, &layout::Scale::root);
+  const double root = 3 * largest_scale(view, &layout::Scale<3>::root);
   const double sums = 3.0 * view.domain_count * largest_value(view);
   const Prediction prediction = prediction_of(view);
   const double per_newton =

@@ -21,7 +21,7 @@ void add_blocks(const LevelView& level, std::uint32_t i, std::vector<Eigen::Trip
   for (std::uint32_t k = 0; k < 9 * level.predictions.terms; ++k) {
     const std::size_t term = std::size_t{level.predictions.terms} * i + k / 9;
     const Index from = Index{3} * stored_source(level.predictions, term);
-    predict.emplace_back(3 * odd + k % 3, from + k % 9 / 3, stored_weight(level.predictions, term, k % 9) / 4096.0);
+    predict.emplace_back(3 * odd + k % 3, from + k % 9 / 3, stored_weight<3>(level.predictions, term, k % 9) / 4096.0);
   }
 }
 

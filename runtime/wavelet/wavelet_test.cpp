@@ -47,7 +47,7 @@ void subtract_blocks(const ModelView& view, const LevelView& level, std::uint32_
                      std::vector<std::array<double, 3>>& d) {
   for (std::uint32_t k = 0; k < 9 * level.predictions.terms; ++k) {
     const std::size_t term = std::size_t{level.predictions.terms} * i + k / 9;
-    const double weight = stored_weight(level.predictions, term, k % 9) / 4096.0;
+    const double weight = stored_weight<3>(level.predictions, term, k % 9) / 4096.0;
     d[level.node_begin + i][k % 3] -= weight * d[domain_node(view, stored_source(level.predictions, term))][k % 9 / 3];
   }
 }

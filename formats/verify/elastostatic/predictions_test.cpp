@@ -53,7 +53,7 @@ TEST_CASE("verify accepts: predictions with 3x3 weights; the view shows them whe
     REQUIRE(expected.index.size() == 4 * mutant.view().level[q].counts->domain_count);
     for (std::size_t k = 0; k < expected.index.size(); ++k) {
       REQUIRE(stored_source(view, k) == expected.index[k]);
-      for (std::uint32_t e = 0; e < 9; ++e) REQUIRE(stored_weight(view, k, e) == expected.weight[9 * k + e]);
+      for (std::uint32_t e = 0; e < 9; ++e) REQUIRE(stored_weight<3>(view, k, e) == expected.weight[9 * k + e]);
     }
   }
 }

@@ -8,7 +8,6 @@ namespace {
 
 using layout::NodeRecord;
 using layout::RefinementRecord;
-using layout::Scale;
 using layout::StencilRecord;
 
 constexpr std::uint32_t known_flags =
@@ -311,7 +310,7 @@ bool verify_scales(const Section& section, VerifyContext& context) {
   SectionCheck check(section, context.result);
   LevelView& level = context.view.level[section.a];
   const std::uint32_t count = level.counts->domain_count;
-  const auto* scales = section.as<Scale>();
+  const auto* scales = section.as<layout::Scale<3>>();
   if (!check.require_count(count)) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!verify_positive_definite(check, "root", scales[i].root, i) ||

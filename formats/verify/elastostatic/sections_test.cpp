@@ -16,7 +16,6 @@ using layout::Info;
 using layout::Level;
 using layout::NodeRecord;
 using layout::RefinementRecord;
-using layout::Scale;
 using layout::SectionKind;
 using layout::StencilRecord;
 
@@ -60,9 +59,9 @@ void check_parent(std::uint32_t i, VerifyRule rule, const std::string& field, Ch
 template <class Change>
 void check_scale(std::uint32_t q, std::uint32_t i, VerifyRule rule, Change change) {
   ModelMutant root = valid(), diagonal = valid();
-  change(root.records<Scale>(SectionKind::scales, q)[i].root);
+  change(root.records<layout::Scale<3>>(SectionKind::scales, q)[i].root);
   check_refused(root, rule, SectionKind::scales, q, 0, "root", i);
-  change(diagonal.records<Scale>(SectionKind::scales, q)[i].diagonal);
+  change(diagonal.records<layout::Scale<3>>(SectionKind::scales, q)[i].diagonal);
   check_refused(diagonal, rule, SectionKind::scales, q, 0, "diagonal", i);
 }
 
@@ -419,8 +418,8 @@ TEST_CASE("verify accepts: any positive definite scale, however small or skewed"
   const float definite[][6] = {{1e-40F, 0, 0, 1e-40F, 0, 1e-40F}, {1e38F, 0, 0, 1e38F, 0, 1e38F}, {4, 2, 6, 5, 7, 14}};
   for (const auto& six : definite) {
     ModelMutant mutant = valid();
-    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1)[2].root);
-    std::copy(std::begin(six), std::end(six), mutant.records<Scale>(SectionKind::scales, 1)[3].diagonal);
+    std::copy(std::begin(six), std::end(six), mutant.records<layout::Scale<3>>(SectionKind::scales, 1)[2].root);
+    std::copy(std::begin(six), std::end(six), mutant.records<layout::Scale<3>>(SectionKind::scales, 1)[3].diagonal);
     CHECK(mutant.verdict().ok());
   }
 }

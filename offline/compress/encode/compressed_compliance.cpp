@@ -75,8 +75,8 @@ CompressedCompliance::CompressedCompliance(const ModelView& view) : wavelet_(vie
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& at = view.level[level];
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-      append(symmetric_matrix(at.scales[i].root), root_);
-      append(symmetric_matrix(at.scales[i].diagonal), diagonal_);
+      append(symmetric_matrix(at.scales_of<3>()[i].root), root_);
+      append(symmetric_matrix(at.scales_of<3>()[i].diagonal), diagonal_);
     }
   }
   link(load_couplings(view));
@@ -90,7 +90,7 @@ std::vector<CompressedCompliance::Ends> CompressedCompliance::load_couplings(con
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
         for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
           for (std::uint32_t k = 0; k < 9; ++k) {
-            const std::int16_t value = stored_value(couplings, layout::value_bits[layer], b, k);
+            const std::int16_t value = stored_value<3>(couplings, layout::value_bits[layer], b, k);
             block_.push_back(view.info->quantum[layer] * static_cast<float>(value));
           }
           ends.emplace_back(stored_row(couplings, b), view.level[level].domain_begin + j);

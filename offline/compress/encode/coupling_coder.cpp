@@ -69,10 +69,10 @@ void encode_couplings(const WaveletCompliance& compliance, const Encoding& encod
   for (std::size_t level = 0; level < compliance.couplings.size(); ++level) {
     const CouplingCandidates& from = compliance.couplings[level];
     LevelData& to = model.levels[level];
-    to.scales.clear();
+    to.scales = {};
     for (auto& layer : to.couplings) layer = {.begin = {0}, .index = {}, .value = {}};
     for (std::size_t j = 0; j + 1 < from.begin.size(); ++j, ++column) {
-      to.scales.push_back(compliance.scales[column].stored(encoding.quantum));
+      to.scales.push_back<3>(compliance.scales[column].stored(encoding.quantum));
       for (std::size_t b = from.begin[j]; b < from.begin[j + 1]; ++b) {
         if (static_cast<double>(from.norm[b]) < encoding.threshold) continue;
         Values values;

@@ -191,8 +191,8 @@ TEST_CASE("blocks that round to zero are not stored") {
 
 TEST_CASE("scales are stored as root and scaled diagonal") {
   const auto model = encoded(compliance(), {.threshold = 0.1, .quantum = 0.05});
-  REQUIRE(model.levels[2].scales.size() == columns);
-  const auto& scale = model.levels[2].scales[3];
+  REQUIRE(model.levels[2].scales.of<3>().size() == columns);
+  const auto& scale = model.levels[2].scales.of<3>()[3];
   const float root[6] = {1e-3F, 0, 0, 2e-3F, 0, 3e-3F}, diagonal[6] = {4, 0, 0, 4, 0, 4};
   for (int k = 0; k < 6; ++k) {
     CHECK(std::abs(scale.root[k] - root[k]) < 1e-9F);
@@ -223,7 +223,7 @@ TEST_CASE("stored scales have few digits and are as exact as the couplings besid
   conditional << 2.3, 0, -1e-9, 0, 1.7, -0.3, -1e-9, -0.3, 1.1;
   const CoefficientScale scale(diagonal, conditional, 0);
   constexpr double quantum = 0.01;
-  const layout::Scale stored = scale.stored(quantum);
+  const layout::Scale<3> stored = scale.stored(quantum);
   CHECK(is_multiple(stored.root, 19));  // the inverse root's norm is 1.5
   CHECK(is_multiple(stored.diagonal, 9));
   CHECK((symmetric_matrix(stored.root) - scale.root()).cwiseAbs().maxCoeff() < 0x1p-19);

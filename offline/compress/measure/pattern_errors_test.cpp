@@ -121,7 +121,7 @@ TEST_CASE("a model that leaves nothing out has next to no errors, one that is da
   CHECK(worst(errors, &AnswerError::total_force) < 1e-3);
 
   ModelData damaged = model_at(1e-5);
-  for (float& root : damaged.levels[1].scales[3].root) root *= 1.5F;
+  for (float& root : damaged.levels[1].scales.of<3>()[3].root) root *= 1.5F;
   const Model broken(damaged);
   const auto of_broken = broken.answered.all_errors(broken.compressed.finest());
   CHECK(worst(of_broken, &AnswerError::field) > 0.1);
@@ -283,7 +283,7 @@ TEST_CASE("total forces of two fingers are told apart, and are better known than
 TEST_CASE("a compliance that is not positive definite has infinite errors, stored as the largest float") {
   ModelData broken = model_at(0.001);
   for (LevelData& level : broken.levels) {
-    for (auto& scale : level.scales) {
+    for (auto& scale : level.scales.of<3>()) {
       for (float& element : scale.diagonal) element *= 0.05F;
     }
   }

@@ -72,10 +72,10 @@ std::size_t row_at(const CouplingsView& couplings, std::size_t block) {
 Eigen::MatrixXd stored_form(const ModelView& view) {
   const Eigen::Index size = at(view.domain_count);
   Eigen::MatrixXd form = Eigen::MatrixXd::Zero(size, size);
-  std::vector<layout::Scale> scales;
+  std::vector<layout::Scale<3>> scales;
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& from = view.level[level];
-    scales.insert(scales.end(), from.scales, from.scales + from.counts->domain_count);
+    scales.insert(scales.end(), from.scales_of<3>(), from.scales_of<3>() + from.counts->domain_count);
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       const CouplingsView& couplings = from.couplings[layer];
       for (std::size_t j = 0; j < couplings.columns; ++j) {

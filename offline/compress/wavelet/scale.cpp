@@ -37,11 +37,11 @@ CoefficientScale::CoefficientScale(const Eigen::Matrix3d& diagonal, const Eigen:
   diagonal_ = inverse_ * diagonal * inverse_;
 }
 
-layout::Scale CoefficientScale::stored(double quantum) const {
+layout::Scale<3> CoefficientScale::stored(double quantum) const {
   constexpr double root_share = 0x1p-18;   // of the least eigenvalue
   constexpr double diagonal_share = 0.25;  // of the quantum
   const double least = 1 / inverse_.norm();
-  layout::Scale scale{};
+  layout::Scale<3> scale{};
   store(rounded(root_, root_share * least), scale.root);
   store(rounded(0.5 * (diagonal_ + diagonal_.transpose()), diagonal_share * quantum), scale.diagonal);
   return scale;

@@ -21,7 +21,7 @@ class CoefficientScale {
 
   /// As the model file stores it: rounded, so that it takes fewer bytes to transmit, the root to round-off, the
   /// diagonal to what is little beside `quantum`, that of the couplings' values.
-  [[nodiscard]] layout::Scale stored(double quantum) const;
+  [[nodiscard]] layout::Scale<3> stored(double quantum) const;
 
  private:
   Eigen::Matrix3d root_, inverse_, diagonal_;

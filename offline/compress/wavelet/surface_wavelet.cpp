@@ -48,7 +48,7 @@ PredictionsData load_predictions(const LevelView& level) {
   PredictionsData data{.terms = level.predictions.terms, .index = {}, .weight = {}};
   for (std::size_t k = 0; k < std::size_t{data.terms} * level.counts->domain_count; ++k) {
     data.index.push_back(stored_source(level.predictions, k));
-    for (std::uint32_t e = 0; e < 9; ++e) data.weight.push_back(stored_weight(level.predictions, k, e));
+    for (std::uint32_t e = 0; e < 9; ++e) data.weight.push_back(stored_weight<3>(level.predictions, k, e));
   }
   return data;
 }
