@@ -148,7 +148,8 @@ TEST_CASE("verify: more than 65536 rows take 4-byte indices, and no others") {
   node.flags = layout::node_domain;
   level.nodes.insert(level.nodes.begin(), more, node);
   level.refinement.insert(level.refinement.begin(), more, level.refinement.front());
-  for (std::size_t i = 0; i < more; ++i) level.scales.push_back(level.scales.of<3>().front());
+  const layout::Scale<3> scale = level.scales.of<3>().front();
+  for (std::size_t i = 0; i < more; ++i) level.scales.push_back(scale);
   for (LevelData& constraint : data.levels) {
     constraint.representatives[1].insert(constraint.representatives[1].begin(), more, layout::none);
   }
