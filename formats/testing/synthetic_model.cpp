@@ -97,7 +97,8 @@ class Compression {
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
       auto& scales = model_.levels[q].scales;
       scales = scales_of(form, wavelet_.begin(q), wavelet_.end(q));
-      for (const layout::Scale<3>& scale : scales.of<3>()) inverse_.emplace_back(symmetric_matrix(scale.root).inverse());
+      for (const layout::Scale<3>& scale : scales.of<3>())
+        inverse_.emplace_back(symmetric_matrix(scale.root).inverse());
     }
     choose_quanta(form);
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) add_couplings(q, form);
