@@ -1,59 +1,48 @@
 // How deep the stack of a step goes, on every way the planner can take: below what docs/loop.md promises. Linked so
 // that library functions are looked up at the start: the linker's own stack is not the step's.
 #include <doctest/doctest.h>
-#include <pthread.h>
+#include <ucontext.h>
 
-#include <cstdlib>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <vector>
 
+#include "runtime/surface.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
 namespace {
 
-constexpr std::size_t promised = 1024;
-constexpr std::size_t stack_bytes = 1 << 20;
+constexpr std::size_t promised = 1536;
+constexpr std::size_t stack_bytes = 1 << 18;
 constexpr unsigned char paint = 0xa5;
 
-// a thread's stack, and what is called on it
-struct Painted {
-  unsigned char* lowest = nullptr;
-  std::function<void()> work;
-  std::size_t depth = 0;  // of the work and this call
+struct alignas(64) AlignedBlock {
+  std::byte bytes[64];
 };
 
-// paints what is below this frame, calls, and looks how far down it was written to
-[[gnu::noinline]] void measure(Painted& stack) {
-  auto* const frame = static_cast<unsigned char*>(__builtin_frame_address(0));
-  constexpr std::size_t own = 512;  // at least what this frame takes
-  for (volatile unsigned char* at = stack.lowest; at < frame - own; ++at) {
-    *at = paint;
-  }
-  stack.work();
-  const unsigned char* at = stack.lowest;
-  while (*at == paint) {
-    ++at;
-  }
-  stack.depth = static_cast<std::size_t>(frame - at);
+const std::function<void()>* work_on_stack = nullptr;
+void call_work() { (*work_on_stack)(); }
+
+// bytes of a stack of its own, painted to its last byte, that were written to
+std::size_t written_by(const std::function<void()>& work) {
+  std::vector<unsigned char> stack(stack_bytes, paint);
+  ucontext_t here{}, there{};
+  REQUIRE(getcontext(&there) == 0);
+  there.uc_stack.ss_sp = stack.data();
+  there.uc_stack.ss_size = stack.size();
+  there.uc_link = &here;
+  work_on_stack = &work;
+  makecontext(&there, call_work, 0);
+  REQUIRE(swapcontext(&here, &there) == 0);
+  const auto lowest = std::find_if(stack.begin(), stack.end(), [](unsigned char byte) { return byte != paint; });
+  return static_cast<std::size_t>(stack.end() - lowest);
 }
 
+// what a call takes beyond one that does nothing
 std::size_t depth_of(const std::function<void()>& work) {
-  const std::unique_ptr<void, decltype(&std::free)> memory(std::aligned_alloc(4096, stack_bytes), &std::free);
-  Painted stack{static_cast<unsigned char*>(memory.get()), work};
-  pthread_attr_t attributes;
-  REQUIRE(pthread_attr_init(&attributes) == 0);
-  REQUIRE(pthread_attr_setstack(&attributes, memory.get(), stack_bytes) == 0);
-  pthread_t thread{};
-  const auto run = [](void* of) -> void* {
-    measure(*static_cast<Painted*>(of));
-    return nullptr;
-  };
-  REQUIRE(pthread_create(&thread, &attributes, run, &stack) == 0);
-  pthread_join(thread, nullptr);
-  pthread_attr_destroy(&attributes);
-  return stack.depth;
+  return written_by(work) - written_by([] {});
 }
 
 [[gnu::noinline]] void write_bytes(std::size_t bytes) {
@@ -64,9 +53,12 @@ std::size_t depth_of(const std::function<void()>& work) {
 }
 
 TEST_CASE("the depth of a stack is measured") {
-  const std::size_t shallow = depth_of([] { write_bytes(1000); }), deep = depth_of([] { write_bytes(5000); });
-  CHECK(shallow >= 1000);
-  CHECK(deep == shallow + 4000);
+  // beside the bytes there are a frame and a return address or two
+  for (const std::size_t bytes : {200, 1000, 5000}) {
+    const std::size_t depth = depth_of([bytes] { write_bytes(bytes); });
+    CHECK(depth >= bytes);
+    CHECK(depth <= bytes + 100);
+  }
 }
 
 TEST_CASE("a step keeps below the promised depth, whatever it has to do") {
@@ -82,9 +74,9 @@ TEST_CASE("a step keeps below the promised depth, whatever it has to do") {
       }
       const Elastostatic::Response response{as_vec3(std::span(force).first(3 * count)), as_vec4(body.field())};
       Elastostatic::StepReport report;
-      const std::size_t whole = depth_of([&] { report = body.body().step(contacts, {work}, response); });
+      const std::size_t bytes = depth_of([&] { report = body.body().step(contacts, {work}, response); });
       CHECK(answered(report.status));
-      return whole - depth_of([] {});
+      return bytes;
     };
     // each set is coarser first, then fresh or made of the last one's factor, then cached
     std::size_t deepest = 0;
@@ -98,6 +90,29 @@ TEST_CASE("a step keeps below the promised depth, whatever it has to do") {
     MESSAGE("deepest stack of a step: ", deepest, " bytes");
     CHECK(deepest > 100);
     CHECK(deepest < promised);
+  }
+}
+
+TEST_CASE("a query of the surface keeps below 1 kB") {
+  const TestModel model({.levels = 4});
+  const Surface::Requirement need = Surface::required(model.model(), 3);
+  std::vector<AlignedBlock> memory(need.bytes / sizeof(AlignedBlock) + 1);
+  const Surface::Created created = Surface::create(model.model(), 3, std::as_writable_bytes(std::span(memory)));
+  REQUIRE(created);
+  const Surface& surface = created.surface;
+  std::vector<Vec4> normal(surface.node_count(3));
+  Surface::NearestNode node;
+  Surface::NearestPoint point;
+  for (const float x : {-1.0F, 0.0F, 0.09F}) {
+    const std::size_t bytes = depth_of([&] {
+      node = surface.nearest_node({x, 0.02F, -0.03F}, layout::node_touchable);
+      point = surface.nearest_point({x, 0.02F, -0.03F});
+      (void)surface.normals(3, {}, normal);
+    });
+    MESSAGE("deepest stack of a query: ", bytes, " bytes");
+    CHECK(node.node != layout::none);
+    CHECK(point.triangle != layout::none);
+    CHECK(bytes < 1024);
   }
 }
 
