@@ -50,7 +50,7 @@ int rank(const SectionBytes& section) {
 }
 
 std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t layer) {
-  return encode_couplings(take_layer(joined, layer), joined.columns, joined.rows, layout::value_bits[layer],
+  return encode_couplings(take_layer(joined, layer), {3, joined.columns, joined.rows, layout::value_bits[layer]},
                           "couplings");
 }
 

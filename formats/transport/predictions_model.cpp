@@ -61,7 +61,7 @@ bool PredictionsModel::fits(std::span<const std::byte> section) {
       (header.index_bytes != 2 && header.index_bytes != 4)) {
     return false;
   }
-  const layout::PredictionsExtent extent(header);
+  const layout::PredictionsExtent extent(header, 3);
   return header.index_offset == extent.index && header.weight_offset == extent.weight &&
          section.size() >= extent.weight_end;
 }
@@ -73,7 +73,7 @@ void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section) {
   } else {
     code_index<std::uint32_t>(coder, index_, header, section);
   }
-  std::uint64_t offset = layout::PredictionsExtent(header).weight;
+  std::uint64_t offset = layout::PredictionsExtent(header, 3).weight;
   for (std::uint32_t node = 0; node < header.nodes; ++node) {
     std::array<std::int64_t, elements> left{one, 0, 0, 0, one, 0, 0, 0, one};
     for (std::uint32_t k = 0; k < header.terms; ++k) {
@@ -87,7 +87,7 @@ void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section) {
 }
 
 PredictionsGaps gaps_of_predictions(std::span<std::byte> section) {
-  const layout::PredictionsExtent extent(header_of(section));
+  const layout::PredictionsExtent extent(header_of(section), 3);
   return {section.subspan(extent.index_end, extent.weight - extent.index_end), section.subspan(extent.weight_end)};
 }
 
