@@ -16,7 +16,7 @@ namespace greenloop {
 namespace {
 
 int element(const BaseColumns& base, std::uint32_t column, std::uint32_t row, std::uint32_t k) {
-  const std::byte* const tile = base.column(column) + BaseColumns::tile_bytes * (row / BaseColumns::width);
+  const std::byte* const tile = base.column<3>(column) + BaseColumns::tile_bytes<3> * (row / BaseColumns::width);
   return static_cast<std::int8_t>(tile[8 * k + row % BaseColumns::width]);
 }
 
@@ -53,7 +53,7 @@ TEST_CASE("columns of level 0 are whole where nearly all of their couplings exis
         }
       }
     }
-    for (std::uint32_t i = 0; i < BaseColumns::tile_bytes * base.tiles * base.columns; ++i) {
+    for (std::uint32_t i = 0; i < BaseColumns::tile_bytes<3> * base.tiles * base.columns; ++i) {
       elements += base.value[i] != std::byte{0} ? 1 : 0;
     }
     CHECK(found == elements);
@@ -71,22 +71,22 @@ TEST_CASE("bodies that are small, or whose level 0 is coupled to few coefficient
 TEST_CASE("the fastest sum of tiles has the bits of the one of every processor") {
   std::mt19937_64 random(3);
   for (std::uint32_t count = 0; count < 9; ++count) {
-    std::vector<std::byte> tiles(BaseColumns::tile_bytes * count + 16);
+    std::vector<std::byte> tiles(BaseColumns::tile_bytes<3> * count + 16);
     for (std::byte& value : tiles) {
       value = static_cast<std::byte>(random() % 255 - 127);
     }
-    AlignedBytes plain_memory(sizeof(TileSums) * 9), fast_memory(sizeof(TileSums) * 9);
-    auto* const plain = reinterpret_cast<TileSums*>(plain_memory.data());
-    auto* const fast = reinterpret_cast<TileSums*>(fast_memory.data());
+    AlignedBytes plain_memory(sizeof(TileSums<3>) * 9), fast_memory(sizeof(TileSums<3>) * 9);
+    auto* const plain = reinterpret_cast<TileSums<3>*>(plain_memory.data());
+    auto* const fast = reinterpret_cast<TileSums<3>*>(fast_memory.data());
     for (int round = 0; round < 20; ++round) {
       const auto number = [&] {
         return static_cast<float>(static_cast<double>(random() >> 11) * 0x1p-53 - 0.5) * 1e-3F;
       };
       const Float4 force = {number(), number(), number(), 0.0F};
-      add_tiles(tiles.data(), count, force, plain);
-      fastest_add_tiles()(tiles.data(), count, force, fast);
+      add_tiles<3>(tiles.data(), count, force, plain);
+      fastest_add_tiles<3>()(tiles.data(), count, force, fast);
     }
-    CHECK(std::memcmp(plain, fast, sizeof(TileSums) * 9) == 0);
+    CHECK(std::memcmp(plain, fast, sizeof(TileSums<3>) * 9) == 0);
     bool moved = false;
     for (std::uint32_t t = 0; t < count; ++t) {
       moved = moved || plain[t].of[2][1][3] != 0;
@@ -96,11 +96,11 @@ TEST_CASE("the fastest sum of tiles has the bits of the one of every processor")
 }
 
 TEST_CASE("every element of a tile moves its own coefficient and component") {
-  for (const AddTiles add : {AddTiles{add_tiles}, fastest_add_tiles()}) {
-    for (std::uint32_t at = 0; at < BaseColumns::tile_bytes; ++at) {
-      std::vector<std::byte> tile(BaseColumns::tile_bytes + 16);
+  for (const AddTiles<3> add : {AddTiles<3>{add_tiles<3>}, fastest_add_tiles<3>()}) {
+    for (std::uint32_t at = 0; at < BaseColumns::tile_bytes<3>; ++at) {
+      std::vector<std::byte> tile(BaseColumns::tile_bytes<3> + 16);
       tile[at] = std::byte{0xfb};  // -5
-      alignas(32) TileSums sums{};
+      alignas(32) TileSums<3> sums{};
       add(tile.data(), 1, Float4{1.0F, 2.0F, 4.0F, 0.0F}, &sums);
       const std::uint32_t k = at / 8;
       for (std::uint32_t r = 0; r < 3; ++r) {

@@ -77,7 +77,8 @@ void check_whole(const TouchedSet& touched, const Eigen::MatrixXd& exact, const 
   Body& body = touched.body;
   const std::uint32_t stride = body.cache.stride();
   std::vector<Float4> matrix(std::size_t{stride} * stride / 4);
-  assemble_capacitance(body.refinement, touched.set, body.touched, body.capacitance, body.force, stride, matrix.data());
+  assemble_capacitance<3>(body.refinement, touched.set, body.touched, body.capacitance, body.force, stride,
+                          matrix.data());
   const auto* entry = reinterpret_cast<const float*>(matrix.data());
   for (std::uint32_t j = 0; j < touched.set.count; ++j) {
     CHECK(row_error(exact, places, j, [&](std::uint32_t r, std::uint32_t k) {
@@ -95,7 +96,7 @@ void check_rows(const TouchedSet& touched, const Eigen::MatrixXd& exact, const s
   partial.set = touched.set;
   partial.computed = rows;
   partial.panel = has_panel(counts.room, counts.slots, rows);
-  begin_capacitance(body.refinement, body.touched, body.capacitance, body.force, partial);
+  begin_capacitance<3>(body.refinement, body.touched, body.capacitance, body.force, partial);
   CHECK(partial.slots == counts.slots);
   CHECK(partial.own_visits <= counts.visits);
   std::uint64_t work = 0;

@@ -82,8 +82,8 @@ TEST_CASE("the fastest sum of blocks has the bits of the one of every processor,
           const Blocks blocks = any_blocks(layer, count, index_bytes, random);
           const Float4 force = {any_force(random), any_force(random), any_force(random), 0.0F};
           const BlockRange range{&blocks.view, 0, static_cast<std::uint32_t>(count)};
-          portable_block_sums().add[layer](range, force, plain.value);
-          fastest_block_sums().add[layer](range, force, fastest.value);
+          portable_block_sums<3>().add[layer](range, force, plain.value);
+          fastest_block_sums<3>().add[layer](range, force, fastest.value);
         }
         CHECK(plain == fastest);
       }
@@ -92,7 +92,7 @@ TEST_CASE("the fastest sum of blocks has the bits of the one of every processor,
 }
 
 TEST_CASE("every value of a block counts, in quanta, and only its own row moves") {
-  for (const BlockSums& sums : {portable_block_sums(), fastest_block_sums()}) {
+  for (const BlockSums<3>& sums : {portable_block_sums<3>(), fastest_block_sums<3>()}) {
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       for (std::size_t b = 0; b < 5; ++b) {
         for (std::size_t k = 0; k < 9; ++k) {

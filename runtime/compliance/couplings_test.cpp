@@ -29,10 +29,10 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
         slot[i] = i / 3;
       }
       std::vector<BlockPlace> places(couplings.rows + 1);
-      std::vector<Block> blocks(couplings.rows + 1);
+      std::vector<Block<3>> blocks(couplings.rows + 1);
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
         const std::uint32_t count =
-            load_slotted(couplings, layer, j, slot.data(), couplings.rows, places.data(), blocks.data());
+            load_slotted<3>(couplings, layer, j, slot.data(), couplings.rows, places.data(), blocks.data());
         std::uint32_t n = 0;
         for (std::uint32_t b = written.begin[j]; b < written.begin[j + 1]; ++b) {
           if (written.index[b] % 3 != 0) {
@@ -43,7 +43,7 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
           for (std::uint32_t k = 0; k < 9; ++k) {
             const int value = written.value[9 * std::size_t{b} + k];
             CHECK(stored_value<3>(couplings, layout::value_bits[layer], b, k) == value);
-            const float scaled = block_factor(data.info, layer) * blocks[n].column[k / 3][k % 3];
+            const float scaled = block_factor<3>(data.info, layer) * blocks[n].column[k / 3][k % 3];
             CHECK(scaled == data.info.quantum[layer] * static_cast<float>(value));
           }
           ++n;

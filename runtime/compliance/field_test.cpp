@@ -119,8 +119,8 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
         const ColumnForces columns = forces.on(c);
         clear(body.touched);
         touch(body.refinement, columns.column, columns.count, body.touched);
-        compute_field(body.field_model(), columns, body.touched, {view.levels - 1, field_level}, body.field_scratch(),
-                      x.data());
+        compute_field<3>(body.field_model(), columns, body.touched, {view.levels - 1, field_level},
+                         body.field_scratch(), x.data());
         CHECK(all_zero(body.field_sums.of_blocks, BaseColumns::width * tiles_of(view.domain_count)));
         CHECK(all_zero(body.field_sums.of_tiles == nullptr ? nullptr : body.field_sums.of_tiles[0].of[0],
                        6 * body.base.tiles));
@@ -134,8 +134,8 @@ TEST_CASE("a field cut off at a level keeps its averages there, interpolates bey
           }
         }
         std::vector<Float4> coarse(nodes_up_to(view, field_level), splat(1e30F));
-        compute_field(body.field_model(), columns, body.touched, {field_level, field_level}, body.field_scratch(),
-                      coarse.data());
+        compute_field<3>(body.field_model(), columns, body.touched, {field_level, field_level}, body.field_scratch(),
+                         coarse.data());
         CHECK(std::memcmp(coarse.data(), x.data(), sizeof(Float4) * coarse.size()) == 0);
         const Eigen::VectorXd whole = reference.field(c) * forces.dense;
         const Eigen::VectorXd averages = reference.averages(field_level, whole);
@@ -158,7 +158,7 @@ TEST_CASE("forces up to the limit cannot overflow the field") {
       const float force[] = {third, -third, third};
       clear(body.touched);
       touch(body.refinement, &column, 1, body.touched);
-      compute_field(body.field_model(), {1, &column, force}, body.touched, {3, 3}, body.field_scratch(), x.data());
+      compute_field<3>(body.field_model(), {1, &column, force}, body.touched, {3, 3}, body.field_scratch(), x.data());
       CHECK(std::all_of(x.begin(), x.end(),
                         [](Float4 v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }));
     }
@@ -180,8 +180,8 @@ TEST_CASE("what is read of a body has the whole field where only a part is read"
     const ColumnForces columns = forces.on(view.levels - 1);
     touch(body.refinement, columns.column, columns.count, body.touched);
     std::vector<Float4> x(view.node_count);
-    compute_field(body.field_model(), columns, body.touched, {view.levels - 1, view.levels - 1}, body.field_scratch(),
-                  x.data());
+    compute_field<3>(body.field_model(), columns, body.touched, {view.levels - 1, view.levels - 1},
+                     body.field_scratch(), x.data());
     const Eigen::VectorXd expected = reference.field(view.levels - 1) * forces.dense;
     for (std::uint32_t place = 0; place < view.domain_count; ++place) {
       const LevelView& level = view.level[body.refinement.level[place]];
@@ -214,7 +214,7 @@ TEST_CASE("forces on columns of several levels move what each of them moves") {
   }
   touch(body.refinement, column, 4, body.touched);
   std::vector<Float4> x(view.node_count);
-  compute_field(body.field_model(), {4, column, force}, body.touched, {4, 4}, body.field_scratch(), x.data());
+  compute_field<3>(body.field_model(), {4, column, force}, body.touched, {4, 4}, body.field_scratch(), x.data());
   CHECK(averages_error(body, expected, x) <= 1e-5 * expected.cwiseAbs().maxCoeff());
 }
 

@@ -29,7 +29,7 @@ TEST_CASE("the mirrored couplings are the stored ones, transposed, each once, ro
     const TestModel model({.levels = 4, .wavelet = kind});
     const ModelView& view = model.view();
     const PlacedBody placed(view);
-    MirroredCouplingsMaker maker;
+    MirroredCouplingsMaker<3> maker;
     Arena counting;
     maker.carve(counting, view, {});
     AlignedBytes memory(static_cast<std::size_t>(counting.bytes()));

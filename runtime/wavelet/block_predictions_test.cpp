@@ -51,7 +51,7 @@ TEST_CASE("nodes are predicted from their terms, other nodes are left alone, on 
     CAPTURE(terms);
     Level level(terms);
     auto x = level.x;
-    predict_blocks(level.view, level.sources.data(), x.data());
+    predict_blocks<3>(level.view, level.sources.data(), x.data());
     CHECK(std::memcmp(x.data(), level.x.data(), coarse * sizeof(Float4)) == 0);
     CHECK(std::memcmp(&x[coarse + odd], &level.x[coarse + odd], 2 * sizeof(Float4)) == 0);
     for (std::uint32_t i = 0; i < odd; ++i) {
@@ -73,7 +73,7 @@ TEST_CASE("nodes are predicted from their terms, other nodes are left alone, on 
       CHECK(float{x[coarse + i][3]} == 0);
     }
     auto fastest = level.x;
-    fastest_predict_blocks()(level.view, level.sources.data(), fastest.data());
+    fastest_predict_blocks<3>()(level.view, level.sources.data(), fastest.data());
     CHECK(std::memcmp(fastest.data(), x.data(), x.size() * sizeof(Float4)) == 0);
   }
 }

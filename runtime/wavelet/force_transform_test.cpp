@@ -66,8 +66,9 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
             f(Eigen::Index{3} * place + r) = forces.back();
           }
         }
-        transform_forces(body.refinement, {static_cast<std::uint32_t>(columns.size()), columns.data(), forces.data()},
-                         body.touched, body.force);
+        transform_forces<3>(body.refinement,
+                            {static_cast<std::uint32_t>(columns.size()), columns.data(), forces.data()}, body.touched,
+                            body.force);
         const auto dense = dense_coefficients(view, inverse, c, f);
         std::vector<int> times(view.domain_count);
         for (std::uint32_t q = 0; q < view.levels; ++q) {
@@ -85,7 +86,7 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
           CHECK((times[i / 3] == 1 || dense[i] == 0));
           CHECK(float{body.force[i / 3][3]} == 0);
         }
-        clear_forces(body.touched, body.force);
+        clear_forces<3>(body.touched, body.force);
         clear(body.touched);
         CHECK(std::none_of(body.touched.mark, body.touched.mark + view.domain_count, [](bool m) { return m; }));
         CHECK(std::all_of(body.force, body.force + view.domain_count,

@@ -33,7 +33,7 @@ struct Coefficients {
   // by file index; the coefficients are checked to be zero again
   std::vector<Float4> inverse(const PlacedBody& placed, std::uint32_t field_level) {
     std::vector<Float4> x(view.node_count, splat(1e30F));
-    inverse_transform(view, placed.body->offsets, {view.levels - 1, field_level}, value.data(), x.data());
+    inverse_transform<3>(view, placed.body->offsets, {view.levels - 1, field_level}, value.data(), x.data());
     CHECK(std::all_of(value.begin(), value.begin() + domain_up_to(view, field_level),
                       [](Float4 v) { return v[0] == 0 && v[1] == 0 && v[2] == 0 && v[3] == 0; }));
     return x;
@@ -106,7 +106,7 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
 TEST_CASE("a body predicts with blocks in the fastest form") {
   const TestModel model({.levels = 3, .wavelet = layout::Wavelet::equilibrated});
   const PlacedBody placed(model.view());
-  CHECK((placed.body->offsets.predict_blocks == fastest_predict_blocks()));
+  CHECK((placed.body->offsets.predict_blocks == fastest_predict_blocks<3>()));
 }
 
 TEST_CASE("details above the field level are interpolated") {
@@ -115,7 +115,7 @@ TEST_CASE("details above the field level are interpolated") {
   const PlacedBody placed(view);
   Coefficients coarse(view);
   for (std::uint32_t i = 0; i < view.level[0].counts->domain_count; ++i) {
-    coarse.add(i, splat3(1.0F + static_cast<float>(i)));
+    coarse.add(i, components(splat(1.0F + static_cast<float>(i))));
   }
   const std::vector<Float4> field = coarse.inverse(placed, 0);
   for (std::uint32_t q = 1; q < view.levels; ++q) {
