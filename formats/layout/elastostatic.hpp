@@ -1,6 +1,9 @@
 #pragma once
 
-// The sections of an elastostatic model. In this order, after Info and Provenance, for q = 0 .. levels-1:
+// The sections of an elastostatic model, and of a scalar one, which has the very same with blocks of 1x1 instead of
+// 3x3: N = Info::components is what a node has of numbers. What is said here of displacements and forces, in m and N,
+// holds for a scalar problem's quantity and its source in their units. In this order, after Info and Provenance, for q
+// = 0 .. levels-1:
 //
 //   Level(q)                                         counts and measured errors of the model cut off after level q
 //   Nodes(q)                                         NodeRecord [node_count(q)]: M(q), domain nodes first
@@ -10,7 +13,7 @@
 //   Predictions(q)                                   only q > 0, Equilibrated: PredictionsHeader and its arrays
 //   Representatives(c, q) for c = first..q           u32 [node_count(q)]: node of K(c) that stands for a node
 //   Representatives(q, r) for r = 0..q-1             u32 [node_count(r)]
-//   Scales(q)                                        Scale [domain_count(q)]
+//   Scales(q)                                        Scale<N> [domain_count(q)]
 //   Couplings(q, layer) for each layer               CouplingsHeader and its arrays
 //   Patterns(q) if q >= first                        PatternRecord[], by kind, then contacts; none: not measured
 //
@@ -72,11 +75,11 @@ constexpr bool is_butterfly(Wavelet wavelet) {
 struct Info {
   std::uint32_t problem;       ///< Problem
   std::uint32_t wavelet;       ///< Wavelet
-  std::uint32_t components;    ///< 3: displacements and forces are vectors
+  std::uint32_t components;    ///< N = components_of(problem)
   std::uint32_t levels;        ///< mesh levels of the complete model, L + 1
-  double young;                ///< Pa
-  double poisson;              ///< -
-  double threshold;            ///< scaled blocks below this Frobenius norm over root 3 were dropped
+  double young;                ///< Pa; 0 in a scalar model
+  double poisson;              ///< -; 0 in a scalar model
+  double threshold;            ///< scaled blocks below this Frobenius norm over root N were dropped
   double store_asymmetry;      ///< largest relative asymmetry of the exact compliance
   double lambda_min;           ///< m/N: certified below the least eigenvalue of U; 0: no certificate
   float box_min[3];            ///< m
@@ -101,7 +104,7 @@ struct Level {
   std::uint32_t domain_count;         ///< domain nodes of M(q): the first ones
   std::uint32_t base_triangle_count;  ///< q = 0 only, else 0
   float cut_error;             ///< field_error at coarsest_constraint_level without the details of levels after q
-  std::uint64_t kept_blocks;   ///< 3x3 blocks stored in levels 0..q: scales and couplings
+  std::uint64_t kept_blocks;   ///< NxN blocks stored in levels 0..q: scales and couplings
   std::uint64_t dense_blocks;  ///< domain nodes of K(q), squared
   float rms_error;             ///< ||U^ - U||_F / ||U||_F
   float worst_column_error;    ///< max_j ||U^_j - U_j||_inf / ||U_j||_inf, block-wise Frobenius
@@ -153,10 +156,10 @@ static_assert(sizeof(StencilRecord) == 24);
 
 inline constexpr float wing_weight = 0.125F, outer_weight = -0.0625F;
 
-/// Predictions with 3x3 weights: x_m = d_m + sum over k of P_mk x_k, for the domain nodes m of M(q), from as many
+/// Predictions with NxN weights: x_m = d_m + sum over k of P_mk x_k, for the domain nodes m of M(q), from as many
 /// domain nodes k of K(q-1) each. Arrays at 64-byte multiples in the section, with n = nodes:
 ///   index   u16|u32 [n * terms]   the nodes k, by their place among all domain nodes; weights of the same node add
-///   weight  i16 [9 * n * terms]   P_mk in units of prediction_unit, then >= 16 zero bytes; element 3 c + r of a block:
+///   weight  i16 [N N n * terms]   P_mk in units of prediction_unit, then >= 16 zero bytes; element N c + r of a block:
 ///                                 displacement r of m per displacement c of k; the most negative value does not occur
 struct PredictionsHeader {
   std::uint32_t nodes;         ///< domain nodes of M(q)
@@ -177,11 +180,11 @@ inline constexpr float prediction_unit = 0x1p-12F;
 struct PredictionsExtent {
   std::uint64_t index, index_end, weight, weight_end;
 
-  explicit constexpr PredictionsExtent(const PredictionsHeader& header) : index(sizeof(header)) {
+  constexpr PredictionsExtent(const PredictionsHeader& header, std::uint32_t components) : index(sizeof(header)) {
     const std::uint64_t blocks = std::uint64_t{header.nodes} * header.terms;
     index_end = index + blocks * header.index_bytes;
     weight = aligned(index_end);
-    weight_end = weight + blocks * 9 * sizeof(std::int16_t);
+    weight_end = weight + blocks * block_bytes(components, 16);
   }
 };
 
@@ -239,14 +242,14 @@ struct Scale {
 };
 static_assert(sizeof(Scale<3>) == 48 && sizeof(Scale<1>) == 8);
 
-/// Sparse 3x3 blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
+/// Sparse NxN blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
 ///   begin  u32 [n + 1]     first block of each column
 ///   index  u16|u32 [m]     row, increasing within a column
-///   value  [m]             blocks, then >= 16 zero bytes; element k = 3 c + r of a block: scaled displacement r of the
+///   value  [m]             blocks, then >= 16 zero bytes; element k = N c + r of a block: scaled displacement r of the
 ///                          row per scaled force c of the column, in quanta of the layer
-///            4 bits        5 bytes a block: element k is nibble k, low nibble first, -7..7; the tenth nibble is 0
-///            8 bits        9 bytes a block
-///            16 bits       18 bytes a block; the most negative value does not occur, nor in 8 bits
+///            4 bits        element k is nibble k, low nibble first, -7..7; the nibble behind the last is 0
+///            8 bits        an i8 an element
+///            16 bits       an i16 an element; the most negative value does not occur, nor in 8 bits
 /// Columns are the coefficients of the level, by their place among the domain nodes of M(q); rows are coefficients that
 /// lie before the column's, by their place among all domain nodes: the block of the other half is the transpose. Every
 /// array starts at the first multiple of 64 after the one before it. A section without blocks has no columns.

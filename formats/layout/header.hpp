@@ -22,7 +22,7 @@ namespace greenloop::layout {
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
 inline constexpr std::uint16_t version_major = 4;
-inline constexpr std::uint16_t version_minor = 2;
+inline constexpr std::uint16_t version_minor = 3;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
 inline constexpr std::uint32_t none = 0xffffffff;  ///< no node
@@ -56,8 +56,19 @@ struct SectionEntry {
 static_assert(sizeof(SectionEntry) == 32);
 
 /// What a model answers. A reader refuses a problem that it does not know.
-enum class Problem : std::uint32_t { elastostatic = 1 };
-inline constexpr std::uint32_t problems = 1;  ///< numbered from 1
+enum class Problem : std::uint32_t {
+  elastostatic = 1,
+  scalar = 2,  ///< a quantity of one number a node, as a temperature or a potential
+};
+
+/// The minor version that brought a problem.
+constexpr std::uint16_t first_minor(Problem problem) { return problem == Problem::scalar ? 3 : 0; }
+
+/// How many problems, numbered from 1, a minor version has.
+constexpr std::uint32_t problems_of(std::uint16_t minor) { return minor < first_minor(Problem::scalar) ? 1 : 2; }
+
+/// Numbers at a node, N: a load and what it causes there are vectors of so many.
+constexpr std::uint32_t components_of(Problem problem) { return problem == Problem::scalar ? 1 : 3; }
 
 /// How Info begins, whatever the problem; the rest is the problem's own.
 struct InfoStart {

@@ -28,7 +28,7 @@
   ROW(base_triangles, 5, "BaseTriangles", 0, std::uint32_t[3], words)           \
   ROW(refinement, 6, "Refinement", 1, RefinementRecord, refinement)             \
   ROW(representatives, 8, "Representatives", 2, std::uint32_t, representatives) \
-  ROW(scales, 10, "Scales", 1, Scale<3>, scales)                                \
+  ROW(scales, 10, "Scales", 1, float, scales)                                   \
   ROW(couplings, 11, "Couplings", 2, std::byte, couplings)                      \
   ROW(stencils, 12, "Stencils", 1, StencilRecord, words)                        \
   ROW(patterns, 13, "Patterns", 1, PatternRecord, words)                        \

@@ -23,7 +23,7 @@ struct PredictionsView {
   std::uint32_t terms = 0;
   std::uint32_t index_bytes = 0;
   const void* index = nullptr;        ///< u16 or u32 by index_bytes; [domain nodes * terms]
-  const std::byte* weight = nullptr;  ///< 18 bytes a term; null without Equilibrated wavelets
+  const std::byte* weight = nullptr;  ///< i16 [N N] a term; null without Equilibrated wavelets
 };
 
 /// One level of the mesh, in place.
@@ -46,7 +46,7 @@ struct LevelView {
   }
 };
 
-/// An elastostatic model, in place.
+/// An elastostatic or scalar model, in place.
 struct ElastostaticView {
   const layout::Info* info = nullptr;
   std::uint32_t levels = 0;        ///< levels present

@@ -27,8 +27,6 @@ using layout::SectionEntry;
 using layout::SectionKind;
 using Bytes = std::vector<std::byte>;
 
-constexpr std::size_t numbers_of_scale = sizeof(layout::Scale<3>) / sizeof(float);
-
 void require(bool right, const std::string& what) {
   if (!right) throw std::invalid_argument("model to be written: " + what);
 }
@@ -67,21 +65,23 @@ Bytes narrowed(const std::vector<From>& values, const std::string& what) {
   return bytes;
 }
 
-// two elements a byte, the low nibble first; ten nibbles a block, the last one zero
-Bytes nibbles(const std::vector<std::int16_t>& values, const std::string& what) {
-  Bytes bytes(values.size() / 9 * 5);
+// two elements a byte, the low nibble first; the nibble behind a block's last element is zero
+Bytes nibbles(const std::vector<std::int16_t>& values, std::uint32_t components, const std::string& what) {
+  const std::size_t elements = std::size_t{components} * components;
+  const std::size_t block_bytes = layout::block_bytes(components, 4);
+  Bytes bytes(values.size() / elements * block_bytes);
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] < -7 || values[i] > 7) refuse("{}[{}] = {} does not fit in 4 bits", what, i, values[i]);
-    const std::size_t element = i % 9;
-    bytes[i / 9 * 5 + element / 2] |= static_cast<std::byte>((values[i] & 15) << (4 * (element % 2)));
+    const std::size_t element = i % elements;
+    bytes[i / elements * block_bytes + element / 2] |= static_cast<std::byte>((values[i] & 15) << (4 * (element % 2)));
   }
   return bytes;
 }
 
-Bytes encode_values(const std::vector<std::int16_t>& values, std::uint32_t bits, const std::string& what) {
-  switch (bits) {
+Bytes encode_values(const std::vector<std::int16_t>& values, const CouplingsForm& form, const std::string& what) {
+  switch (form.value_bits) {
     case 4:
-      return nibbles(values, what);
+      return nibbles(values, form.components, what);
     case 8:
       return narrowed<std::int8_t>(values, what);
     default:
@@ -128,6 +128,7 @@ class SectionList {
 
  private:
   [[nodiscard]] std::uint32_t levels() const { return static_cast<std::uint32_t>(model_.levels.size()); }
+  [[nodiscard]] std::uint32_t components() const { return model_.info.components; }
 
   void add(SectionKind kind, std::uint32_t a, std::uint32_t b, Bytes bytes) {
     SectionEntry entry{};
@@ -159,12 +160,12 @@ class SectionList {
     if (q > 0) check("refinement", level.refinement.size(), level.nodes.size());
     check("stencils", level.stencils.size(), q > 0 && layout::is_butterfly(wavelet) ? domain_count(q) : 0);
     check("predictions.index", level.predictions.index.size(), terms);
-    check("predictions.weight", level.predictions.weight.size(), 9 * terms);
+    check("predictions.weight", level.predictions.weight.size(), std::size_t{components()} * components() * terms);
     check("representatives", level.representatives.size(), constrained ? levels() : 0);
     for (std::size_t r = 0; r < level.representatives.size(); ++r) {
       check(fmt::format("representatives[{}]", r), level.representatives[r].size(), model_.levels[r].nodes.size());
     }
-    check("scales", level.scales.numbers.size(), std::size_t{numbers_of_scale} * domain_count(q));
+    check("scales", level.scales.numbers.size(), std::size_t{components()} * (components() + 1) * domain_count(q));
     if (!constrained) check("patterns", level.patterns.size(), 0);
   }
 
@@ -200,7 +201,7 @@ class SectionList {
   }
   Bytes couplings_bytes(std::uint32_t q, std::uint32_t layer) {
     const CouplingsData& data = model_.levels[q].couplings[layer];
-    Bytes bytes = encode_couplings(data, domain_count(q), domain_of_mesh(q), layout::value_bits[layer],
+    Bytes bytes = encode_couplings(data, {components(), domain_count(q), domain_of_mesh(q), layout::value_bits[layer]},
                                    section_name(SectionKind::couplings, q, layer));
     kept_blocks_ += data.begin.back();
     return bytes;
@@ -253,6 +254,14 @@ class SectionList {
   std::uint64_t kept_blocks_ = 0;  // in the sections so far
 };
 
+// of what the sections hold
+std::uint16_t least_minor(const ModelData& model) {
+  const bool cuts = std::any_of(model.levels.begin(), model.levels.end(),
+                                [](const LevelData& level) { return level.counts.cut_error != 0; });
+  return std::max(cuts ? layout::first_minor_of_cuts : std::uint16_t{0},
+                  layout::first_minor(static_cast<layout::Problem>(model.info.problem)));
+}
+
 ModelView require_valid(const AlignedBytes& file) {
   ModelView view;
   const VerifyResult result = verify(file.span(), view);
@@ -268,21 +277,20 @@ void require_constraint_level(const layout::Info& info, std::uint32_t q) {
 
 }  // namespace
 
-std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t columns, std::uint32_t rows,
-                                        std::uint32_t value_bits, const std::string& name) {
-  require_size(name + ".begin", data.begin.size(), columns + std::size_t{1});
+std::vector<std::byte> encode_couplings(const CouplingsData& data, const CouplingsForm& form, const std::string& name) {
+  require_size(name + ".begin", data.begin.size(), form.columns + std::size_t{1});
   const std::size_t blocks = data.begin.back();
   require_size(name + ".index", data.index.size(), blocks);
-  require_size(name + ".value", data.value.size(), 9 * blocks);
+  require_size(name + ".value", data.value.size(), blocks * form.components * form.components);
 
   CouplingsHeader header{};
-  header.columns = blocks > 0 ? columns : 0;
-  header.rows = rows;
-  header.index_bytes = index_bytes_of(rows);
+  header.columns = blocks > 0 ? form.columns : 0;
+  header.rows = form.rows;
+  header.index_bytes = index_bytes_of(form.rows);
   header.block_count = blocks;
 
   Bytes bytes;
-  bytes.reserve(sizeof(CouplingsHeader) + 4 * (columns + std::size_t{1}) + 40 * blocks);
+  bytes.reserve(sizeof(CouplingsHeader) + 4 * (form.columns + std::size_t{1}) + 40 * blocks);
   bytes.resize(sizeof(CouplingsHeader));
   header.begin_offset = bytes.size();
   append(bytes, std::as_bytes(std::span(data.begin).first(header.columns + std::size_t{1})));
@@ -291,7 +299,7 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
   append(bytes, encode_index(data.index, header.index_bytes, name + ".index"));
   pad_to_alignment(bytes);
   header.value_offset = bytes.size();
-  append(bytes, encode_values(data.value, value_bits, name + ".value"));
+  append(bytes, encode_values(data.value, form, name + ".value"));
   bytes.resize(bytes.size() + layout::tail_bytes);
   std::memcpy(bytes.data(), &header, sizeof(header));
   return bytes;
@@ -300,10 +308,10 @@ std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t
 ModelFile encoded_file(const ModelData& model) {
   require(!model.levels.empty() && model.levels.size() <= layout::max_levels,
           fmt::format("{} levels, expected 1 to {}", model.levels.size(), layout::max_levels));
-  const bool cuts = std::any_of(model.levels.begin(), model.levels.end(),
-                                [](const LevelData& level) { return level.counts.cut_error != 0; });
+  require(model.info.components == 1 || model.info.components == 3,
+          fmt::format("info.components is {}, expected 1 or 3", model.info.components));
   ModelFile file{AlignedBytes(file_of(SectionList(model).take(), static_cast<std::uint32_t>(model.levels.size()),
-                                      cuts ? layout::first_minor_of_cuts : std::uint16_t{0})),
+                                      least_minor(model))),
                  {}};
   file.view = require_valid(file.bytes);
   return file;
@@ -320,7 +328,7 @@ std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint
   const ModelView view = require_valid(whole);
   require(q < view.header->levels,
           fmt::format("cut after level {}, but the file ends with level {}", q, view.header->levels - 1));
-  if (view.problem == layout::Problem::elastostatic) require_constraint_level(*view.info, q);
+  require_constraint_level(*view.info, q);
 
   const auto table = section_entries(view);
   std::byte* const table_bytes = model.data() + sizeof(layout::Header);

@@ -17,14 +17,14 @@ namespace greenloop {
 struct CouplingsData {
   std::vector<std::uint32_t> begin;  ///< columns + 1
   std::vector<std::uint32_t> index;  ///< rows; stored in 2 bytes where they fit
-  std::vector<std::int16_t> value;   ///< 9 per block, by columns
+  std::vector<std::int16_t> value;   ///< N x N per block, by columns; N: the model's components
 };
 
 /// Predictions of one level before encoding; see layout::PredictionsHeader.
 struct PredictionsData {
   std::uint32_t terms = 0;           ///< of every domain node
   std::vector<std::uint32_t> index;  ///< [domain nodes * terms]
-  std::vector<std::int16_t> weight;  ///< 9 per term, by columns
+  std::vector<std::int16_t> weight;  ///< N x N per term, by columns
 };
 
 /// Scales of one level before encoding: layout::Scale<N> of each domain node, N: the model's components.
@@ -69,16 +69,23 @@ struct ModelData {
   std::vector<layout::VertexRecord> vertices;  ///< of the author's surface; empty: no VertexMap
 };
 
-/// The bytes of a model file: deterministic, complete, checksummed. Throws std::invalid_argument naming the field that
-/// does not fit. Filled in from the vectors, whatever stands there: Info::levels, finest_constraint_level and the box;
-/// Level's node, domain, triangle, kept and dense counts. The result has passed verify.
+/// The bytes of a model file: deterministic, complete, checksummed; of Info::components 1 or 3. Throws
+/// std::invalid_argument naming the field that does not fit. Filled in from the vectors, whatever stands there:
+/// Info::levels, finest_constraint_level and the box; Level's node, domain, triangle, kept and dense counts. The result
+/// has passed verify.
 [[nodiscard]] std::vector<std::byte> encode(const ModelData& model);
 
-/// The bytes of one section of couplings, without its entry. `columns`: of the level, even if there is no block;
-/// `rows`: domain nodes of K(q). `name` stands in messages. Throws std::invalid_argument naming the field that does not
+/// The form of one section of couplings.
+struct CouplingsForm {
+  std::uint32_t components;  ///< N: 1 or 3
+  std::uint32_t columns;     ///< of the level, even if there is no block
+  std::uint32_t rows;        ///< domain nodes of K(q)
+  std::uint32_t value_bits;  ///< the layer's
+};
+
+/// Its bytes, without its entry. `name` stands in messages. Throws std::invalid_argument naming the field that does not
 /// fit.
-[[nodiscard]] std::vector<std::byte> encode_couplings(const CouplingsData& data, std::uint32_t columns,
-                                                      std::uint32_t rows, std::uint32_t value_bits,
+[[nodiscard]] std::vector<std::byte> encode_couplings(const CouplingsData& data, const CouplingsForm& form,
                                                       const std::string& name);
 
 /// The same model cut off after level q: a prefix with its header rewritten. Throws std::invalid_argument if q is not

@@ -9,32 +9,15 @@ namespace {
 
 using layout::CouplingsHeader;
 
-constexpr std::uint64_t values_per_block = 9;
-
-constexpr std::uint64_t bytes_per_block(std::uint32_t value_bits) {
-  return value_bits == 4 ? 5 : values_per_block * value_bits / 8;
-}
-
-// Where the arrays must stand. No overflow: columns and block_count are below 2^32, the other factors at most 18.
-struct Extent {
-  std::uint64_t begin_end, index, index_end, value, value_end;
-
-  Extent(const CouplingsHeader& header, std::uint32_t value_bits)
-      : begin_end(sizeof(CouplingsHeader) + (std::uint64_t{header.columns} + 1) * sizeof(std::uint32_t)),
-        index(layout::aligned(begin_end)),
-        index_end(index + header.block_count * header.index_bytes),
-        value(layout::aligned(index_end)),
-        value_end(value + header.block_count * bytes_per_block(value_bits)) {}
-};
-
 // What the place of a section says about it.
 struct Expected {
-  std::uint32_t columns, rows, value_bits;
+  std::uint32_t columns, rows, value_bits, components;
 
   Expected(const Section& section, const ElastostaticView& view)
       : columns(view.level[section.a].counts->domain_count),
         rows(domain_of_mesh(view, section.a)),
-        value_bits(layout::value_bits[section.b]) {}
+        value_bits(layout::value_bits[section.b]),
+        components(view.info->components) {}
 
   // the blocks there can be
   [[nodiscard]] std::uint64_t all_blocks() const {
@@ -42,6 +25,20 @@ struct Expected {
     return columns == 0 ? 0 : columns * before + std::uint64_t{columns} * (columns - 1) / 2;
   }
   [[nodiscard]] std::uint32_t rows_of(std::uint32_t column) const { return rows - columns + column; }
+  [[nodiscard]] std::uint64_t values_per_block() const { return std::uint64_t{components} * components; }
+  [[nodiscard]] std::uint64_t bytes_per_block() const { return layout::block_bytes(components, value_bits); }
+};
+
+// Where the arrays must stand. No overflow: columns and block_count are below 2^32, the other factors at most 18.
+struct Extent {
+  std::uint64_t begin_end, index, index_end, value, value_end;
+
+  Extent(const CouplingsHeader& header, const Expected& expected)
+      : begin_end(sizeof(CouplingsHeader) + (std::uint64_t{header.columns} + 1) * sizeof(std::uint32_t)),
+        index(layout::aligned(begin_end)),
+        index_end(index + header.block_count * header.index_bytes),
+        value(layout::aligned(index_end)),
+        value_end(value + header.block_count * expected.bytes_per_block()) {}
 };
 
 bool verify_header(SectionCheck& check, const CouplingsHeader& header, const Expected& expected) {
@@ -102,23 +99,24 @@ bool verify_index(SectionCheck& check, const CouplingsHeader& header, const Expe
 
 // the most negative value has no counterpart, so that negation never overflows
 template <class Value>
-bool verify_values(SectionCheck& check, const CouplingsHeader& header, const Value* value) {
-  const std::uint64_t count = values_per_block * header.block_count;
+bool verify_values(SectionCheck& check, std::uint64_t count, const Value* value) {
   constexpr Value forbidden = std::numeric_limits<Value>::min();
   const Value* found = std::find(value, value + count, forbidden);
   return check.require(found == value + count, VerifyRule::out_of_range, "value",
                        static_cast<std::uint64_t>(found - value), forbidden, forbidden + 1);
 }
 
-bool verify_nibbles(SectionCheck& check, const CouplingsHeader& header, const std::byte* value) {
-  for (std::uint64_t b = 0; b < header.block_count; ++b, value += bytes_per_block(4)) {
-    for (std::uint64_t k = 0; k < values_per_block; ++k) {
+// the elements of a block are odd in number: the last byte's high half is none
+bool verify_nibbles(SectionCheck& check, const CouplingsHeader& header, const Expected& expected,
+                    const std::byte* value) {
+  const std::uint64_t elements = expected.values_per_block(), bytes = expected.bytes_per_block();
+  for (std::uint64_t b = 0; b < header.block_count; ++b, value += bytes) {
+    for (std::uint64_t k = 0; k < elements; ++k) {
       const auto nibble = std::to_integer<std::uint32_t>(value[k / 2]) >> (4 * (k % 2)) & 15U;
-      if (!check.require(nibble != 8, VerifyRule::out_of_range, "value", values_per_block * b + k, -8, -7))
-        return false;
+      if (!check.require(nibble != 8, VerifyRule::out_of_range, "value", elements * b + k, -8, -7)) return false;
     }
-    const auto tenth = std::to_integer<std::uint32_t>(value[4]) >> 4U;
-    if (!check.require(tenth == 0, VerifyRule::padding_not_zero, "value", values_per_block * (b + 1) - 1, tenth, 0)) {
+    const auto behind = std::to_integer<std::uint32_t>(value[bytes - 1]) >> 4U;
+    if (!check.require(behind == 0, VerifyRule::padding_not_zero, "value", elements * (b + 1) - 1, behind, 0)) {
       return false;
     }
   }
@@ -136,13 +134,14 @@ bool verify_blocks(SectionCheck& check, const CouplingsView& view, const Couplin
       !verify_index(check, header, expected, view.begin, static_cast<const std::uint32_t*>(view.index))) {
     return false;
   }
+  const std::uint64_t values = expected.values_per_block() * header.block_count;
   switch (expected.value_bits) {
     case 4:
-      return verify_nibbles(check, header, view.value);
+      return verify_nibbles(check, header, expected, view.value);
     case 8:
-      return verify_values(check, header, reinterpret_cast<const std::int8_t*>(view.value));
+      return verify_values(check, values, reinterpret_cast<const std::int8_t*>(view.value));
     default:
-      return verify_values(check, header, reinterpret_cast<const std::int16_t*>(view.value));
+      return verify_values(check, values, reinterpret_cast<const std::int16_t*>(view.value));
   }
 }
 
@@ -159,7 +158,7 @@ bool verify_couplings(const Section& section, VerifyContext& context) {
           VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
     return false;
   }
-  const Extent extent(header, expected.value_bits);
+  const Extent extent(header, expected);
   if (!verify_extent(check, header, extent) || !verify_gaps(check, section, extent)) return false;
 
   const CouplingsView view{header.columns,

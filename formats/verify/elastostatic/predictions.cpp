@@ -37,9 +37,9 @@ bool verify_index(SectionCheck& check, const PredictionsHeader& header, const In
 }
 
 // the most negative value has no counterpart
-bool verify_weights(SectionCheck& check, const PredictionsHeader& header, const std::int16_t* weight) {
+bool verify_weights(SectionCheck& check, std::uint64_t count, const std::int16_t* weight) {
   constexpr std::int16_t forbidden = std::numeric_limits<std::int16_t>::min();
-  const std::int16_t* const end = weight + 9 * blocks(header);
+  const std::int16_t* const end = weight + count;
   const std::int16_t* const found = std::find(weight, end, forbidden);
   return check.require(found == end, VerifyRule::out_of_range, "weight", static_cast<std::uint64_t>(found - weight),
                        forbidden, forbidden + 1);
@@ -57,14 +57,16 @@ bool verify_predictions(const Section& section, VerifyContext& context) {
                      VerifyRule::reserved_not_zero, "reserved", 0, 1, 0)) {
     return false;
   }
-  const layout::PredictionsExtent extent(header);
+  const std::uint32_t components = context.view.info->components;
+  const layout::PredictionsExtent extent(header, components);
   if (!verify_extent(check, section, header, extent)) return false;
   const std::byte* const index = section.data + extent.index;
   const bool indices_right = header.index_bytes == 2
                                  ? verify_index(check, header, reinterpret_cast<const std::uint16_t*>(index))
                                  : verify_index(check, header, reinterpret_cast<const std::uint32_t*>(index));
   const std::byte* const weight = section.data + extent.weight;
-  if (!indices_right || !verify_weights(check, header, reinterpret_cast<const std::int16_t*>(weight))) return false;
+  const std::uint64_t weights = blocks(header) * components * components;
+  if (!indices_right || !verify_weights(check, weights, reinterpret_cast<const std::int16_t*>(weight))) return false;
   level.predictions = {header.terms, header.index_bytes, index, weight};
   return true;
 }

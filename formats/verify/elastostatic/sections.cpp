@@ -22,6 +22,15 @@ const NodeRecord& node_at(const ElastostaticView& view, std::uint32_t index) {
   return view.level[q].nodes[index - view.level[q].node_begin];
 }
 
+// of the material; a scalar problem has none
+bool verify_material(SectionCheck& check, const layout::Info& info) {
+  if (static_cast<layout::Problem>(info.problem) == layout::Problem::scalar) {
+    return check.require_equal("young", 0, info.young, 0) && check.require_equal("poisson", 0, info.poisson, 0);
+  }
+  return check.require_above("young", 0, info.young, 0) && check.require_above("poisson", 0, info.poisson, -1) &&
+         check.require(info.poisson < 0.5, VerifyRule::out_of_range, "poisson", 0, info.poisson, 0.5);
+}
+
 bool verify_quanta(SectionCheck& check, const layout::Info& info) {
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     if (!check.require_at_least("quantum", layer, info.quantum[layer], 0) ||
@@ -49,14 +58,13 @@ bool verify_info(const Section& section, VerifyContext& context) {
   if (!check.require_count(sizeof(layout::Info))) return false;
   const auto& info = *section.as<layout::Info>();
   const std::uint32_t present = context.levels;
+  const std::uint32_t components = layout::components_of(static_cast<layout::Problem>(info.problem));
   context.view.info = &info;
   return check.require_enum("wavelet", info.wavelet, static_cast<std::uint32_t>(layout::Wavelet::equilibrated)) &&
-         check.require_equal("components", 0, info.components, 3) &&
+         check.require_equal("components", 0, info.components, components) &&
          check.require_at_most("levels", 0, info.levels, layout::max_levels) &&
          check.require(info.levels >= present, VerifyRule::inconsistent, "levels", 0, info.levels, present) &&
-         check.require_above("young", 0, info.young, 0) && check.require_above("poisson", 0, info.poisson, -1) &&
-         check.require(info.poisson < 0.5, VerifyRule::out_of_range, "poisson", 0, info.poisson, 0.5) &&
-         check.require_at_least("threshold", 0, info.threshold, 0) &&
+         verify_material(check, info) && check.require_at_least("threshold", 0, info.threshold, 0) &&
          check.require_at_least("store_asymmetry", 0, info.store_asymmetry, 0) &&
          check.require_at_least("lambda_min", 0, info.lambda_min, 0) && verify_box(check, info) &&
          check.require_above("rate", 0, info.rate, 0) &&
@@ -288,6 +296,10 @@ bool verify_representatives(const Section& section, VerifyContext& context) {
 
 namespace {
 
+bool verify_positive_definite(SectionCheck& check, const char* field, const float (&one)[1], std::uint32_t i) {
+  return check.require_above(field, i, one[0], 0);
+}
+
 // Sylvester's criterion; the products of floats are exact or nearly so in double
 bool verify_positive_definite(SectionCheck& check, const char* field, const float (&six)[6], std::uint32_t i) {
   for (const float value : six) {
@@ -304,21 +316,30 @@ bool verify_positive_definite(SectionCheck& check, const char* field, const floa
   return true;
 }
 
-}  // namespace
-
-bool verify_scales(const Section& section, VerifyContext& context) {
-  SectionCheck check(section, context.result);
-  LevelView& level = context.view.level[section.a];
-  const std::uint32_t count = level.counts->domain_count;
-  const auto* scales = section.as<layout::Scale<3>>();
-  if (!check.require_count(count)) return false;
+template <unsigned N>
+bool verify_scales_of(const Section& section, std::uint32_t count, SectionCheck& check) {
+  const auto* scales = section.as<layout::Scale<N>>();
+  if (!check.require_count(std::uint64_t{count} * (sizeof *scales / sizeof(float)))) return false;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!verify_positive_definite(check, "root", scales[i].root, i) ||
         !verify_positive_definite(check, "diagonal", scales[i].diagonal, i)) {
       return false;
     }
   }
-  level.scales = scales;
+  return true;
+}
+
+}  // namespace
+
+bool verify_scales(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  LevelView& level = context.view.level[section.a];
+  const std::uint32_t count = level.counts->domain_count;
+  if (!(context.view.info->components == 1 ? verify_scales_of<1>(section, count, check)
+                                           : verify_scales_of<3>(section, count, check))) {
+    return false;
+  }
+  level.scales = section.data;
   context.kept_blocks += count;
   return true;
 }

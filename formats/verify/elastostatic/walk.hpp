@@ -4,8 +4,8 @@
 
 namespace greenloop::elastostatic {
 
-/// Verifies the sections of an elastostatic model, of which Info has been taken from the table, and fills `view`.
-/// Returns whether they are right and otherwise says in `result` what is not. Work: linear in the file.
+/// Verifies the sections of an elastostatic or scalar model, of which Info has been taken from the table, and fills
+/// `view`. Returns whether they are right and otherwise says in `result` what is not. Work: linear in the file.
 bool verify_sections(const Section& info, SectionTable& table, ModelView& view, VerifyResult& result);
 
 }  // namespace greenloop::elastostatic
