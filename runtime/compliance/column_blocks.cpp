@@ -189,7 +189,8 @@ template <unsigned N>
 BlockSums<N> portable_block_sums() noexcept {
   static_assert(layout::layers == 4 && layout::value_bits[0] == 16 && layout::value_bits[1] == 16 &&
                 layout::value_bits[2] == 8 && layout::value_bits[3] == 4);
-  return {{add_blocks<N, 16>, add_blocks<N, 16>, add_blocks<N, 8>, add_blocks<N, 4>}};
+  static constexpr BlockSums<N> sums = {{add_blocks<N, 16>, add_blocks<N, 16>, add_blocks<N, 8>, add_blocks<N, 4>}};
+  return sums;
 }
 
 template <>
