@@ -33,8 +33,7 @@ inline std::uint32_t stored_row(const CouplingsView& view, std::uint32_t block) 
 
 /// Element k of a block of N x N, in quanta; value_bits: the layer's.
 template <unsigned N>
-std::int16_t stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t block,
-                                 std::uint32_t k) {
+std::int16_t stored_value(const CouplingsView& view, std::uint32_t value_bits, std::uint32_t block, std::uint32_t k) {
   if (value_bits == 4) {
     const int byte = std::to_integer<int>(view.value[layout::block_bytes(N, 4) * block + k / 2]);
     const int nibble = k % 2 == 0 ? byte & 15 : byte >> 4;

@@ -195,6 +195,17 @@ TEST_CASE("no refining work stands for no bound of it") {
   CHECK(worst(1) < worst(0));
 }
 
+TEST_CASE("a scalar model opens and says its problem; an elastostatic one says its own") {
+  const AlignedBytes scalar(encode(synthetic_model({.components = 1, .levels = 2})));
+  const AlignedBytes elastostatic(encode(synthetic_model({.levels = 2})));
+  greenloop_model model;
+  REQUIRE(greenloop_open(scalar.data(), scalar.size(), &model).rule == GREENLOOP_RULE_OK);
+  CHECK(greenloop_model_problem(&model) == GREENLOOP_PROBLEM_SCALAR);
+  CHECK(greenloop_node_count(&model) == 18);
+  REQUIRE(greenloop_open(elastostatic.data(), elastostatic.size(), &model).rule == GREENLOOP_RULE_OK);
+  CHECK(greenloop_model_problem(&model) == GREENLOOP_PROBLEM_ELASTOSTATIC);
+}
+
 TEST_CASE("every code has a text of its own") {
   std::set<std::string> texts;
   for (int rule = GREENLOOP_RULE_OK; rule <= GREENLOOP_RULE_INCONSISTENT; ++rule) {

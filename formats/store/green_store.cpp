@@ -10,17 +10,25 @@
 namespace greenloop {
 namespace {
 
-constexpr const char* kDisplacement = "/green/displacement";
 constexpr const char* kDone = "/green/done";
 
 Hdf5Shape displacement_shape(const GreenStoreContents& contents) {
-  return {contents.column_node.size(), 3, contents.row_node.size(), 3};
+  const auto components = static_cast<hsize_t>(contents.components);
+  return {contents.column_node.size(), components, contents.row_node.size(), components};
+}
+
+std::string text(const Hdf5Shape& shape) {
+  std::string text;
+  for (const auto extent : shape) text += (text.empty() ? "" : ", ") + std::to_string(extent);
+  return "[" + text + "]";
 }
 
 void reserve_columns(Hdf5File& file, const GreenStoreContents& contents) {
   file.reserve<double>(kDisplacement, displacement_shape(contents));
-  file.write_text(kDisplacement, "unit", "m/N");
-  file.write_text(kDisplacement, "axes", "column, force component, row, displacement component");
+  file.write_text(kDisplacement, "unit", contents.unit);
+  file.write_text(kDisplacement, "axes",
+                  contents.components == 3 ? "column, force component, row, displacement component"
+                                           : "column, load component, row, answer component");
   file.write(kDone, {contents.column_node.size()}, std::vector<unsigned char>(contents.column_node.size(), 0));
 }
 
@@ -64,10 +72,10 @@ GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
   const bool writable = access == Access::kReadWrite;
   auto hdf5 = Hdf5File::open(path, writable);
   auto contents = read_contents(hdf5);
-  require_unit(hdf5, kDisplacement, "m/N");
+  require_unit(hdf5, kDisplacement, contents.unit);
   if (hdf5.shape(kDisplacement) != displacement_shape(contents)) {
-    hdf5.fail(kDisplacement, "its shape must be [" + std::to_string(contents.column_node.size()) + ", 3, " +
-                                 std::to_string(contents.row_node.size()) + ", 3] (column, force, row, displacement)");
+    hdf5.fail(kDisplacement,
+              "its shape must be " + text(displacement_shape(contents)) + " (column, force, row, displacement)");
   }
   Hdf5Shape shape;
   auto done = hdf5.read<unsigned char>(kDone, shape);
@@ -77,6 +85,13 @@ GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
 
 const std::filesystem::path& GreenStore::path() const { return file_->hdf5.path(); }
 const GreenStoreContents& GreenStore::contents() const { return file_->contents; }
+
+void GreenStore::require_components(int components) const {
+  if (contents().components == components) return;
+  file_->hdf5.fail(kDisplacement, "its columns have " + std::to_string(contents().components) + " numbers a node, in " +
+                                      contents().unit + "; " + std::to_string(components) + " are taken here");
+}
+
 int GreenStore::row_count() const { return static_cast<int>(file_->contents.row_node.size()); }
 int GreenStore::column_count() const { return static_cast<int>(file_->contents.column_node.size()); }
 
@@ -96,21 +111,23 @@ std::vector<int> GreenStore::missing_columns() const {
 void GreenStore::write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement) {
   auto& hdf5 = file_->hdf5;
   if (!file_->writable) hdf5.fail(kDisplacement, "the store was opened read-only");
-  if (displacement.rows() != Eigen::Index{3} * row_count() || displacement.cols() % 3 != 0) {
+  const int components = contents().components;
+  if (displacement.rows() != Eigen::Index{components} * row_count() || displacement.cols() % components != 0) {
     hdf5.fail(kDisplacement, "a block of " + std::to_string(displacement.rows()) + " x " +
-                                 std::to_string(displacement.cols()) + " does not fit; 3 rows per row node (" +
-                                 std::to_string(3 * row_count()) + ") and 3 columns per column node are wanted");
+                                 std::to_string(displacement.cols()) + " does not fit; " + std::to_string(components) +
+                                 " rows per row node (" + std::to_string(components * row_count()) + ") and " +
+                                 std::to_string(components) + " columns per column node are wanted");
   }
-  const int count = static_cast<int>(displacement.cols() / 3);
+  const int count = static_cast<int>(displacement.cols() / components);
   file_->require_columns(first, count);
   if (!displacement.allFinite()) {
     hdf5.fail(kDisplacement, "columns from " + std::to_string(first) + " hold values that are not finite");
   }
   const auto start = static_cast<hsize_t>(first), length = static_cast<hsize_t>(count);
-  const auto rows = static_cast<hsize_t>(row_count());
+  const auto rows = static_cast<hsize_t>(row_count()), width = static_cast<hsize_t>(components);
   const bool contiguous = displacement.outerStride() == displacement.rows();
   const Eigen::MatrixXd copy = contiguous ? Eigen::MatrixXd() : Eigen::MatrixXd(displacement);
-  hdf5.write_part(kDisplacement, {start, 0, 0, 0}, {length, 3, rows, 3},
+  hdf5.write_part(kDisplacement, {start, 0, 0, 0}, {length, width, rows, width},
                   contiguous ? displacement.data() : copy.data());
   hdf5.flush();
   std::fill_n(file_->done.begin() + first, count, static_cast<unsigned char>(1));
@@ -132,9 +149,11 @@ Eigen::MatrixXd GreenStore::read_block(int first_row, int rows, int first_column
     hdf5.fail(kDisplacement,
               "rows from " + std::to_string(first_row) + " are outside 0 .. " + std::to_string(row_count() - 1));
   }
-  Eigen::MatrixXd block(3 * rows, 3 * columns);
+  const int components = contents().components;
+  const auto width = static_cast<hsize_t>(components);
+  Eigen::MatrixXd block(components * rows, components * columns);
   hdf5.read_part(kDisplacement, {static_cast<hsize_t>(first_column), 0, static_cast<hsize_t>(first_row), 0},
-                 {static_cast<hsize_t>(columns), 3, static_cast<hsize_t>(rows), 3}, block.data());
+                 {static_cast<hsize_t>(columns), width, static_cast<hsize_t>(rows), width}, block.data());
   if (!block.allFinite()) {
     hdf5.fail(kDisplacement, "columns from " + std::to_string(first_column) +
                                  " hold values that are not finite; solve or measure them again");

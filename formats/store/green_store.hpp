@@ -19,22 +19,25 @@ struct GreenStoreContents {
   std::vector<double> area;          ///< n lumped areas, m^2, > 0
   std::vector<std::uint32_t> flags;  ///< n sums of layout::NodeFlag
   std::vector<int> row_node;         ///< surface vertices whose displacement is stored, strictly increasing
-  std::vector<int> column_node;      ///< surface vertices that carry unit forces, strictly increasing
+  std::vector<int> column_node;      ///< surface vertices that carry unit loads, strictly increasing
+  int components = 3;                ///< N numbers of a load and of its answer at a node: 3, or 1 of a scalar problem
+  std::string unit = "m/N";          ///< answer per load; m/N with 3 components
 
   TetrahedralMesh volume;                                      ///< m; empty when the columns come from elsewhere
   std::vector<std::uint8_t> volume_fixed;                      ///< v, nonzero = fixed
   Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;  ///< n x v weights: surface from volume displacement
 
-  double young = 0.0;       ///< Pa
-  double poisson = 0.0;     ///< dimensionless
+  double young = 0.0;       ///< Pa; 0 of a scalar problem
+  double poisson = 0.0;     ///< dimensionless; 0 of a scalar problem
   std::string provenance;   ///< JSON text
   std::string fingerprint;  ///< hexadecimal hash of all that determines the columns
 };
 
-/// Green's functions in force form, U = displacement [m] per unit nodal force [N], in an HDF5 file whose layout is
-/// described in docs/store.md. Columns may arrive in any order and are marked done only after they are in the file,
-/// so a process killed while writing leaves a store that opens and knows what it lacks. Offline only; one writer.
-/// Every error is a std::runtime_error naming file, dataset and remedy.
+/// Green's functions in force form, U = displacement [m] per unit nodal force [N], or of a scalar problem its answer
+/// per unit nodal load in the unit of the contents, in an HDF5 file whose layout is described in docs/store.md. Columns
+/// may arrive in any order and are marked done only after they are in the file, so a process killed while writing
+/// leaves a store that opens and knows what it lacks. Offline only; one writer. Every error is a std::runtime_error
+/// naming file, dataset and remedy.
 class GreenStore {
  public:
   enum class Access { kReadOnly, kReadWrite };
@@ -53,17 +56,20 @@ class GreenStore {
   [[nodiscard]] const std::filesystem::path& path() const;
   [[nodiscard]] const GreenStoreContents& contents() const;
   [[nodiscard]] int row_count() const;     ///< R
-  [[nodiscard]] int column_count() const;  ///< C; each stands for three unit forces
+  [[nodiscard]] int column_count() const;  ///< C; each stands for N unit loads
+
+  /// Throws unless the store is of so many components: for who takes no other.
+  void require_components(int components) const;
 
   [[nodiscard]] bool is_done(int column) const;
   [[nodiscard]] std::vector<int> missing_columns() const;
 
-  /// Writes columns first .. first + k - 1 and marks them done. `displacement` is 3R x 3k, m/N: row 3r + i is axis i at
-  /// row node r, column 3c + j the unit force along axis j at column node first + c. Refuses values that are not
-  /// finite.
+  /// Writes columns first .. first + k - 1 and marks them done. `displacement` is N R x N k, in the contents' unit: row
+  /// N r + i is component i at row node r, column N c + j the unit load of component j at column node first + c.
+  /// Refuses values that are not finite.
   void write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement);
 
-  /// Columns first .. first + count - 1 as 3R x 3 count, laid out as in write_columns; all must be done.
+  /// Columns first .. first + count - 1 as N R x N count, laid out as in write_columns; all must be done.
   [[nodiscard]] Eigen::MatrixXd read_columns(int first, int count) const;
 
   /// The same, of the row nodes first_row .. first_row + row_count - 1 only.

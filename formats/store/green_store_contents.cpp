@@ -101,6 +101,38 @@ void require_valid_volume(const GreenStoreContents& contents) {
                 volume.vertices.size());
 }
 
+void require_valid_elastic(const GreenStoreContents& contents) {
+  if (contents.components != 3) {
+    reject("there are " + std::to_string(contents.components) + " components; 3 are wanted, or 1 of a scalar problem");
+  }
+  if (contents.unit != "m/N") reject("the unit of 3 components is m/N, not '" + contents.unit + "'");
+  if (!(contents.young > 0.0) || !std::isfinite(contents.young)) reject("young must be positive, in Pa");
+  if (!(contents.poisson > -1.0 && contents.poisson < 0.5)) reject("poisson must lie between -1 and 0.5");
+}
+
+void require_valid_scalar(const GreenStoreContents& contents) {
+  if (contents.unit.empty()) reject("the unit of a scalar problem's columns is empty; name it, as in K/W");
+  if (contents.young != 0.0 || contents.poisson != 0.0) reject("young and poisson of a scalar problem must be 0");
+}
+
+// by the shape of the columns: what is of neither is refused as a store of 3
+int stored_components(const Hdf5File& file) {
+  const Hdf5Shape shape = file.shape(kDisplacement);
+  return shape.size() == 4 && shape[1] == 1 && shape[3] == 1 ? 1 : 3;
+}
+
+void write_material(Hdf5File& file, const GreenStoreContents& contents) {
+  file.write_number("/", "young", contents.young);
+  file.write_text("/", "young_unit", "Pa");
+  file.write_number("/", "poisson", contents.poisson);
+}
+
+void read_material(const Hdf5File& file, GreenStoreContents& contents) {
+  contents.young = file.read_number("/", "young");
+  if (file.read_text("/", "young_unit") != "Pa") file.fail("/", "young_unit must be 'Pa'");
+  contents.poisson = file.read_number("/", "poisson");
+}
+
 std::vector<double> flat(const std::vector<Eigen::Vector3d>& points) {
   std::vector<double> values;
   values.reserve(3 * points.size());
@@ -228,16 +260,13 @@ void require_valid(const GreenStoreContents& contents) {
   require_valid_volume(contents);
   require_nodes("/green/row_node", contents.row_node, contents.surface.positions.size());
   require_nodes("/green/column_node", contents.column_node, contents.surface.positions.size());
-  if (!(contents.young > 0.0) || !std::isfinite(contents.young)) reject("young must be positive, in Pa");
-  if (!(contents.poisson > -1.0 && contents.poisson < 0.5)) reject("poisson must lie between -1 and 0.5");
+  contents.components == 1 ? require_valid_scalar(contents) : require_valid_elastic(contents);
 }
 
 void write_contents(Hdf5File& file, const GreenStoreContents& contents) {
   file.write_text("/", "format", "greenloop store");
   file.write_number("/", "format_version", kGreenStoreVersion);
-  file.write_number("/", "young", contents.young);
-  file.write_text("/", "young_unit", "Pa");
-  file.write_number("/", "poisson", contents.poisson);
+  if (contents.components == 3) write_material(file, contents);
   file.write_text("/", "provenance", contents.provenance);
   file.write_text("/", "fingerprint", contents.fingerprint);
   for (const char* group : {"/surface", "/green", "/volume"}) file.make_group(group);
@@ -268,9 +297,12 @@ GreenStoreContents read_contents(const Hdf5File& file) {
                        "; rebuild the store with this version of Greenloop");
   }
   GreenStoreContents contents;
-  contents.young = file.read_number("/", "young");
-  if (file.read_text("/", "young_unit") != "Pa") file.fail("/", "young_unit must be 'Pa'");
-  contents.poisson = file.read_number("/", "poisson");
+  contents.components = stored_components(file);
+  if (contents.components == 3) {
+    read_material(file, contents);
+  } else {
+    contents.unit = file.read_text(kDisplacement, "unit");
+  }
   contents.provenance = file.read_text("/", "provenance");
   contents.fingerprint = file.read_text("/", "fingerprint");
   contents.surface = read_surface(file);

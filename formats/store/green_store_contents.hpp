@@ -6,6 +6,7 @@
 namespace greenloop {
 
 inline constexpr int kGreenStoreVersion = 1;
+inline constexpr const char* kDisplacement = "/green/displacement";
 
 /// Throws std::invalid_argument naming the first field that contradicts another or is out of range.
 void require_valid(const GreenStoreContents& contents);
@@ -13,7 +14,8 @@ void require_valid(const GreenStoreContents& contents);
 /// Writes everything but /green/displacement and /green/done; see docs/store.md.
 void write_contents(Hdf5File& file, const GreenStoreContents& contents);
 
-/// The reverse, with shapes, units, finiteness and cross-references checked.
+/// The reverse, with shapes, units, finiteness and cross-references checked. How many components there are is said by
+/// the shape of /green/displacement.
 [[nodiscard]] GreenStoreContents read_contents(const Hdf5File& file);
 
 /// Throws unless the dataset's attribute `unit` is `unit`.

@@ -65,11 +65,20 @@ GreenStoreContents small_contents(int columns) {
   return contents;
 }
 
+/// The same surface; one number a node.
+GreenStoreContents scalar_contents(int columns) {
+  GreenStoreContents contents = small_contents(columns);
+  contents.components = 1;
+  contents.unit = "K/W";
+  contents.young = contents.poisson = 0;
+  return contents;
+}
+
 /// Recognisable values for column `column`.
-MatrixXd column_values(int column, int rows) {
-  MatrixXd values(3 * rows, 3);
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3 * rows; ++r) values(r, c) = column + 0.1 * c + 1e-4 * r;
+MatrixXd column_values(int column, int rows, int components = 3) {
+  MatrixXd values(components * rows, components);
+  for (int c = 0; c < components; ++c) {
+    for (int r = 0; r < components * rows; ++r) values(r, c) = column + 0.1 * c + 1e-4 * r;
   }
   return values;
 }
@@ -110,6 +119,32 @@ TEST_CASE("a store gives back what was put into it") {
   CHECK_THROWS_WITH((void)store.read_columns(6, 2), doctest::Contains("outside"));
 }
 
+TEST_CASE("a scalar store gives back what was put into it: a number a node, in its own unit, without a material") {
+  const TemporaryFile file("scalar.h5");
+  {
+    auto store = GreenStore::create(file.path, scalar_contents(7));
+    store.write_columns(2, column_values(2, 17, 1));
+    MatrixXd wide(17, 2);
+    wide << column_values(4, 17, 1), column_values(5, 17, 1);
+    store.write_columns(4, wide);
+  }
+  {
+    const auto hdf5 = Hdf5File::open(file.path, false);
+    CHECK(hdf5.shape("/green/displacement") == Hdf5Shape{7, 1, 17, 1});
+    CHECK_THROWS_WITH((void)hdf5.read_number("/", "young"), doctest::Contains("missing"));
+  }
+  const auto store = GreenStore::open(file.path, Access::kReadOnly);
+  CHECK(store.contents().components == 1);
+  CHECK(store.contents().unit == "K/W");
+  CHECK(store.contents().young == 0);
+  CHECK(store.contents().volume.tetrahedra == small_contents(7).volume.tetrahedra);
+  CHECK(store.missing_columns() == std::vector<int>{0, 1, 3, 6});
+  CHECK(store.read_columns(4, 2).col(1) == column_values(5, 17, 1));
+  CHECK(store.read_block(3, 4, 5, 1) == column_values(5, 17, 1).middleRows(3, 4));
+  store.require_components(1);
+  CHECK_THROWS_WITH(store.require_components(3), doctest::Contains("1 numbers a node, in K/W; 3 are taken here"));
+}
+
 TEST_CASE("a part of a larger matrix can be written without a gap") {
   const TemporaryFile file("stride.h5");
   auto store = GreenStore::create(file.path, small_contents(3));
@@ -139,6 +174,11 @@ TEST_CASE("what is not finite, does not fit or may not be written is refused") {
     CHECK_THROWS_WITH(store.write_columns(3, column_values(0, 17)), doctest::Contains("outside"));
     CHECK(store.missing_columns().size() == 3);
   }
+  {
+    auto scalar = GreenStore::create(file.path, scalar_contents(3));
+    CHECK_THROWS_WITH(scalar.write_columns(0, column_values(0, 17)), doctest::Contains("1 rows per row node (17)"));
+    CHECK_THROWS_WITH(scalar.write_columns(2, MatrixXd::Ones(17, 2)), doctest::Contains("outside"));
+  }
   auto read_only = GreenStore::open(file.path, Access::kReadOnly);
   CHECK_THROWS_WITH(read_only.write_columns(0, column_values(0, 17)), doctest::Contains("read-only"));
 }
@@ -165,6 +205,15 @@ TEST_CASE("contents that contradict each other are refused by name") {
   refuse([](auto& c) { c.volume_fixed.clear(); }, "/volume/fixed");
   refuse([](auto& c) { c.young = -1.0; }, "young");
   refuse([](auto& c) { c.poisson = 0.5; }, "poisson");
+  refuse([](auto& c) { c.unit = "K/W"; }, "m/N, not 'K/W'");
+  refuse([](auto& c) { c.components = 2; }, "2 components");
+  refuse([](auto& c) { c.components = 1; }, "young and poisson of a scalar problem must be 0");
+  refuse(
+      [](auto& c) {
+        c = scalar_contents(3);
+        c.unit.clear();
+      },
+      "the unit of a scalar problem");
 }
 
 /// Replaces a dataset by one of another shape or unit.
@@ -209,6 +258,9 @@ TEST_CASE("a store made elsewhere is checked: missing datasets, wrong shapes, un
   refuse("/green/displacement", {}, 0, "", "missing");
   refuse("/green/displacement", {3, 3, 18, 3}, 0, "m/N", "shape must be [3, 3, 17, 3]");
   refuse("/green/displacement", {3, 3, 17, 3}, 0, "m", "convert it to 'm/N'");
+  refuse("/green/displacement", {3, 1, 17, 3}, 0, "m/N", "shape must be [3, 3, 17, 3]");
+  refuse("/green/displacement", {3, 1, 16, 1}, 0, "K/W", "shape must be [3, 1, 17, 1]");
+  refuse("/green/displacement", {3, 1, 17, 1}, 0, "", "unit");
   refuse("/green/done", {}, 0, "", "missing");
   refuse("/volume/interpolation/weight", {17}, 1, "", "needs 18 entries");
 }
@@ -238,7 +290,7 @@ TEST_CASE("files that are no stores are refused") {
   auto store = GreenStore::open(path, Access::kReadWrite);
   const int rows = store.row_count();
   for (const int column : store.missing_columns()) {
-    store.write_columns(column, column_values(column, rows));
+    store.write_columns(column, column_values(column, rows, store.contents().components));
     const char written = 1;
     if (write(pipe_end, &written, 1) != 1) _exit(1);
   }
@@ -261,24 +313,29 @@ void kill_after_columns(const std::filesystem::path& path, int columns) {
   close(ends[1]);
 }
 
-TEST_CASE("a writer killed at any time leaves a store that opens, with true columns, and is resumed") {
+void check_killed_and_resumed(const GreenStoreContents& contents) {
   const TemporaryFile file("killed.h5");
-  constexpr int kColumns = 18;
-  { auto store = GreenStore::create(file.path, small_contents(kColumns)); }
+  const int components = contents.components, columns_in_all = static_cast<int>(contents.column_node.size());
+  { auto store = GreenStore::create(file.path, contents); }
   int before = 0;
   for (const int columns : {1, 4, 2, 3, 1}) {
     kill_after_columns(file.path, columns);
     const auto store = GreenStore::open(file.path, Access::kReadOnly);
-    const int done = kColumns - static_cast<int>(store.missing_columns().size());
-    CHECK(done >= std::min(before + columns, kColumns));
-    for (int c = 0; c < done; ++c) CHECK(store.read_columns(c, 1) == column_values(c, 17));
+    const int done = columns_in_all - static_cast<int>(store.missing_columns().size());
+    CHECK(done >= std::min(before + columns, columns_in_all));
+    for (int c = 0; c < done; ++c) CHECK(store.read_columns(c, 1) == column_values(c, 17, components));
     before = done;
-    if (done == kColumns) break;
+    if (done == columns_in_all) break;
   }
   auto store = GreenStore::open(file.path, Access::kReadWrite);
-  for (const int c : store.missing_columns()) store.write_columns(c, column_values(c, 17));
+  for (const int c : store.missing_columns()) store.write_columns(c, column_values(c, 17, components));
   CHECK(store.missing_columns().empty());
-  for (int c = 0; c < kColumns; ++c) CHECK(store.read_columns(c, 1) == column_values(c, 17));
+  for (int c = 0; c < columns_in_all; ++c) CHECK(store.read_columns(c, 1) == column_values(c, 17, components));
+}
+
+TEST_CASE("a writer killed at any time leaves a store that opens, with true columns, and is resumed") {
+  check_killed_and_resumed(small_contents(18));
+  check_killed_and_resumed(scalar_contents(18));
 }
 
 }  // namespace

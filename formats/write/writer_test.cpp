@@ -187,6 +187,28 @@ TEST_CASE("writer: refuses vectors that do not fit each other, by name") {
   }
 }
 
+TEST_CASE("writer: refuses numbers of a scalar model that are not one a node or block, and values beyond their bits") {
+  const auto refused = [](auto change) {
+    return refusal([&] {
+      ModelData data =
+          synthetic_model({.components = 1, .levels = 3, .wavelet = layout::Wavelet::equilibrated, .epsilon = 0.001});
+      change(data);
+      (void)encode(data);
+    });
+  };
+  CHECK(refused([](ModelData&) {}).empty());
+  CHECK(names(refused([](ModelData& data) { data.info.components = 2; }), "info.components is 2, expected 1 or 3"));
+  CHECK(names(refused([](ModelData& data) { data.info.components = 3; }), "levels[0].scales has"));
+  CHECK(names(refused([](ModelData& data) { data.levels[2].scales.numbers.push_back(1); }), "levels[2].scales has"));
+  CHECK(names(refused([](ModelData& data) { data.levels[1].predictions.weight.pop_back(); }),
+              "levels[1].predictions.weight"));
+  CHECK(
+      names(refused([](ModelData& data) { data.levels[2].couplings[3].value.push_back(0); }), "Couplings(2, 3).value"));
+  CHECK(names(refused([](ModelData& data) { data.levels[2].couplings[3].value[1] = 8; }),
+              "Couplings(2, 3).value[1] = 8 does not fit in 4 bits"));
+  CHECK(names(refused([](ModelData& data) { data.info.young = 1; }), "Info, field `young`"));
+}
+
 TEST_CASE("writer: refuses values and rows that do not fit their bits") {
   const auto refused = [](std::size_t layer, auto change) {
     return encode_refusal([&](ModelData& data) { change(data.levels[2].couplings[layer]); });

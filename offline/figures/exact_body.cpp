@@ -8,6 +8,7 @@ namespace greenloop::offline {
 
 ExactBody open_body(const std::filesystem::path& path) {
   const auto store = std::make_shared<const GreenStore>(GreenStore::open(path, GreenStore::Access::kReadOnly));
+  store->require_components(3);
   const auto& contents = store->contents();
   if (contents.row_node != contents.column_node) {
     throw std::runtime_error(path.string() + ": has rows without a column; give a store that `greenloop build` wrote");

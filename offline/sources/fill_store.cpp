@@ -35,9 +35,12 @@ void require_fit(const GreenStore& store, const ColumnSource& source) {
     throw std::runtime_error(store.path().string() + ": /green/displacement: " + what);
   };
   const auto& contents = store.contents();
-  if (source.components() != 3 || source.unit() != "m/N") {
-    refuse("a store holds 3x3 blocks in m/N; the source's have " + std::to_string(source.components()) +
-           " components and are in " + std::string(source.unit()));
+  if (source.components() != contents.components || source.unit() != contents.unit) {
+    const auto said = [](int components, std::string_view unit) {
+      return std::to_string(components) + " components and are in " + std::string(unit);
+    };
+    refuse("the store's columns have " + said(contents.components, contents.unit) + "; the source's have " +
+           said(source.components(), source.unit()));
   }
   if (source.rows().interior != 0) {
     refuse("a store holds rows of surface nodes only; the source has " + std::to_string(source.rows().interior) +

@@ -8,6 +8,7 @@
 
 #include "formats/layout.hpp"
 #include "formats/testing/temporary_folder.hpp"
+#include "offline/sources/reciprocity.hpp"
 #include "offline/volume/testing/shapes.hpp"
 
 namespace greenloop::offline {
@@ -40,14 +41,17 @@ class NumberedColumns final : public ColumnSource {
   [[nodiscard]] std::size_t columns_at_once() const override { return 2; }
   [[nodiscard]] Eigen::MatrixXd read(std::span<const int> columns) override {
     asked.emplace_back(columns.begin(), columns.end());
-    Eigen::MatrixXd block(3 * row_set.size(), 3 * columns.size());
+    if (asked.size() > blocks_before_failure) throw std::runtime_error("killed");
+    const auto n = static_cast<Eigen::Index>(component_count), rows = static_cast<Eigen::Index>(row_set.size());
+    Eigen::MatrixXd block(n * rows, n * static_cast<Eigen::Index>(columns.size()));
     for (std::size_t k = 0; k < columns.size(); ++k) {
-      block.middleCols<3>(static_cast<Eigen::Index>(3 * k)).setConstant(1.0 + columns[k]);
+      block.middleCols(n * static_cast<Eigen::Index>(k), n).setConstant(1.0 + columns[k]);
     }
     return block;
   }
 
   int component_count = 3;
+  std::size_t blocks_before_failure = 100;
   std::string_view unit_name = "m/N";
   RowSet row_set;
   std::vector<int> nodes;
@@ -68,6 +72,55 @@ TEST_CASE("a store is filled with the columns it lacks, in blocks of neighbours"
   const Eigen::MatrixXd columns = store.read_columns(0, 5);
   for (int c = 0; c < 5; ++c) CHECK(columns.middleCols<3>(3 * c).isConstant(c == 1 ? -1.0 : 1.0 + c));
   CHECK(fill_store(store, source).columns == 0);
+}
+
+TEST_CASE("a scalar store is filled from a source of its unit, where one that failed left off; others are refused") {
+  const TemporaryFolder folder("greenloop-fill");
+  auto contents = measured_body();
+  contents.components = 1;
+  contents.unit = "K/W";
+  contents.young = contents.poisson = 0;
+  const auto path = folder.path() / "scalar.h5";
+  NumberedColumns source(contents);
+  source.component_count = 1;
+  source.unit_name = "K/W";
+  {
+    auto store = GreenStore::create(path, contents);
+    source.blocks_before_failure = 1;
+    CHECK_THROWS_WITH(fill_store(store, source), "killed");
+  }
+  source.blocks_before_failure = 100;
+  source.asked.clear();
+  auto store = GreenStore::open(path, GreenStore::Access::kReadWrite);
+  CHECK(store.missing_columns() == std::vector<int>{2, 3, 4});
+  CHECK(fill_store(store, source).columns == 3);
+  CHECK(source.asked == std::vector<std::vector<int>>{{2, 3}, {4}});
+  const Eigen::MatrixXd columns = store.read_columns(0, 5);
+  CHECK(columns.rows() == 12);
+  for (int c = 0; c < 5; ++c) CHECK(columns.col(c).isConstant(1.0 + c));
+
+  NumberedColumns vectors(contents);
+  CHECK_THROWS_WITH_AS(fill_store(store, vectors),
+                       doctest::Contains("the store's columns have 1 components and are in K/W; the source's have 3 "
+                                         "components and are in m/N"),
+                       std::runtime_error);
+  source.unit_name = "V/A";
+  CHECK_THROWS_WITH_AS(fill_store(store, source), doctest::Contains("in V/A"), std::runtime_error);
+}
+
+TEST_CASE("how far scalar columns are from symmetric is found as that of blocks is") {
+  const TemporaryFolder folder("greenloop-fill");
+  auto contents = measured_body();
+  contents.components = 1;
+  contents.unit = "K/W";
+  contents.young = contents.poisson = 0;
+  contents.column_node = {2, 3, 5};
+  auto store = GreenStore::create(folder.path() / "scalar.h5", contents);
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(12, 3);
+  columns(2, 0) = 4;
+  columns(5, 0) = 1.5;  // 0.5 more than the load and answer exchanged, between diagonals of 4 and 1
+  store.write_columns(0, columns);
+  CHECK(largest_asymmetry(store) == doctest::Approx(0.25));
 }
 
 TEST_CASE("a source of other blocks, units, rows or columns than the store's is refused") {

@@ -23,7 +23,9 @@ std::vector<SharedNode> shared_nodes(const GreenStoreContents& contents) {
   return shared;
 }
 
-/// Rows of the shared nodes [rows], columns of the shared nodes [columns], read in one piece.
+/// Rows of the shared nodes [rows], columns of the shared nodes [columns], read in one piece. N: the store's
+/// components.
+template <int N>
 class Tile {
  public:
   Tile(const GreenStore& store, const SharedNode* rows, const SharedNode* rows_end, const SharedNode* columns,
@@ -32,9 +34,9 @@ class Tile {
         first_column_(columns->column),
         block_(store.read_block(first_row_, (rows_end - 1)->row - first_row_ + 1, first_column_,
                                 (columns_end - 1)->column - first_column_ + 1)) {}
-  [[nodiscard]] Eigen::Matrix3d at(const SharedNode& row, const SharedNode& column) const {
-    return block_.block<3, 3>(Eigen::Index{3} * (row.row - first_row_),
-                              Eigen::Index{3} * (column.column - first_column_));
+  [[nodiscard]] Eigen::Matrix<double, N, N> at(const SharedNode& row, const SharedNode& column) const {
+    return block_.template block<N, N>(Eigen::Index{N} * (row.row - first_row_),
+                                       Eigen::Index{N} * (column.column - first_column_));
   }
 
  private:
@@ -42,23 +44,22 @@ class Tile {
   Eigen::MatrixXd block_;
 };
 
-}  // namespace
-
-double largest_asymmetry(const GreenStore& store) {
+template <int N>
+double largest_asymmetry_of(const GreenStore& store) {
   constexpr std::size_t kTile = 512;
   const auto shared = shared_nodes(store.contents());
   const auto end_of = [&](std::size_t begin) { return shared.data() + std::min(begin + kTile, shared.size()); };
   std::vector<double> scale(shared.size());
   double largest = 0.0;
   for (std::size_t a = 0; a < shared.size(); a += kTile) {
-    const Tile diagonal(store, &shared[a], end_of(a), &shared[a], end_of(a));
+    const Tile<N> diagonal(store, &shared[a], end_of(a), &shared[a], end_of(a));
     for (const auto* i = &shared[a]; i != end_of(a); ++i)
       scale[i - shared.data()] = std::sqrt(diagonal.at(*i, *i).norm());
   }
   for (std::size_t a = 0; a < shared.size(); a += kTile) {
     for (std::size_t b = a; b < shared.size(); b += kTile) {
-      const Tile upper(store, &shared[a], end_of(a), &shared[b], end_of(b));
-      const Tile lower(store, &shared[b], end_of(b), &shared[a], end_of(a));
+      const Tile<N> upper(store, &shared[a], end_of(a), &shared[b], end_of(b));
+      const Tile<N> lower(store, &shared[b], end_of(b), &shared[a], end_of(a));
       for (const auto* i = &shared[a]; i != end_of(a); ++i) {
         for (const auto* j = &shared[b]; j != end_of(b); ++j) {
           const double difference = (upper.at(*i, *j) - lower.at(*j, *i).transpose()).norm();
@@ -68,6 +69,12 @@ double largest_asymmetry(const GreenStore& store) {
     }
   }
   return largest;
+}
+
+}  // namespace
+
+double largest_asymmetry(const GreenStore& store) {
+  return store.contents().components == 1 ? largest_asymmetry_of<1>(store) : largest_asymmetry_of<3>(store);
 }
 
 }  // namespace greenloop::offline

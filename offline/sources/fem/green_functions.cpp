@@ -16,6 +16,7 @@ constexpr double kMostAsymmetry = 1e-8;
 
 void require_solvable(const GreenStore& store) {
   const auto& contents = store.contents();
+  store.require_components(3);
   if (contents.volume.vertices.empty()) {
     throw std::runtime_error(store.path().string() +
                              ": /volume: there is no volume to solve; only a store with tetrahedra can be completed");
