@@ -43,11 +43,9 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
-  constexpr std::uint64_t coefficient_work = 60;  // its scale, and where its blocks stand
-  constexpr std::uint64_t scale_work = 14;
   const std::uint64_t details = model.rows[levels.details];
-  return 4 * set.columns + model.prediction.force_work * set.visits + coefficient_work * set.coefficients +
-         block_work<3> * blocks + scale_work * details +
+  return 4 * set.columns + model.prediction.force_work * set.visits + coefficient_work<3> * set.coefficients +
+         block_work<3> * blocks + scale_work<3> * details +
          inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details,
                                 model.prediction) +
          4 * set.contacts;
