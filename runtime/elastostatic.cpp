@@ -88,13 +88,12 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 [[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
                                    const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
+  compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].value;
     if (body.planned.level_of(i) + 1 == body.counts.levels && contacts[i].node < body.counts.nodes[levels.nodes]) {
-      x[contacts[i].node] =
-          Float4{without_denormals(held[0]), without_denormals(held[1]), without_denormals(held[2]), 0.0F};
+      x[contacts[i].node] = Float4{without_tiny(held[0]), without_tiny(held[1]), without_tiny(held[2]), 0.0F};
     }
   }
 }

@@ -482,5 +482,13 @@ TEST_CASE("create refuses a refinement whose points hang on more than three coar
   CHECK(Elastostatic::required(model.model(), {}).bytes == 0);
 }
 
+TEST_CASE("a scalar model is not supported") {
+  const TestModel model({.components = 1, .levels = 2});
+  AlignedBytes memory(1 << 20);
+  const auto created = Elastostatic::create(model.model(), {}, {memory.data(), memory.size()});
+  CHECK(created.error == CreateError::unsupported_model);
+  CHECK(Elastostatic::required(model.model(), {}).bytes == 0);
+}
+
 }  // namespace
 }  // namespace greenloop

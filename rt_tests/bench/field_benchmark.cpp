@@ -84,8 +84,8 @@ class FieldSums {
       const auto count = static_cast<std::uint32_t>(set.column.size());
       clear(body.touched);
       touch(body.refinement, set.column.data(), count, body.touched);
-      compute_field(body.field_model(), {count, set.column.data(), set.force.data()}, body.touched, {level_, level_},
-                    body.field_scratch(), x_.data());
+      compute_field<3>(body.field_model(), {count, set.column.data(), set.force.data()}, body.touched, {level_, level_},
+                       body.field_scratch(), x_.data());
     }
   }
 

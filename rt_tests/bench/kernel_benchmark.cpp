@@ -99,10 +99,10 @@ TransformFigures measure_transform(const Model& model, const GreenStore& store, 
   std::vector<Float4> x(view.node_count);
   Body& body = patch.body;
   const std::vector<float> forces(patch.order(), 1e-3F);
-  transform_forces(body.refinement, {body.planned.columns, body.planned.column, forces.data()}, body.touched,
-                   body.force);
-  sum_couplings(body.field_model(), body.touched, view.domain_count, body.force, body.field_sums);
-  scale_sums(view, view.domain_count, body.field_sums);
+  transform_forces<3>(body.refinement, {body.planned.columns, body.planned.column, forces.data()}, body.touched,
+                      body.force);
+  sum_couplings<3>(body.field_model(), body.touched, view.domain_count, body.force, body.field_sums);
+  scale_sums<3>(view, view.domain_count, body.field_sums);
   const std::vector<Float4> sums(body.field_sums.of_blocks, body.field_sums.of_blocks + view.domain_count);
   std::vector<Float4> value(view.domain_count);
   std::vector<double> transform, dense, ratio;
@@ -112,7 +112,7 @@ TransformFigures measure_transform(const Model& model, const GreenStore& store, 
     for (std::size_t i = 0; i < at_once; ++i) {
       value = sums;
       sum += time_of(1, [&] {
-        inverse_transform(view, body.offsets, {patch.level, patch.level}, value.data(), x.data());
+        inverse_transform<3>(view, body.offsets, {patch.level, patch.level}, value.data(), x.data());
       });
     }
     transform.push_back(sum / static_cast<double>(at_once));

@@ -93,7 +93,7 @@ class RooflineRun {
     const Body& body = patch.body;
     std::vector<Float4> x(view_->node_count);
     const auto sum = [&] {
-      sum_couplings(body.field_model(), body.touched, view_->domain_count, body.force, body.field_sums);
+      sum_couplings<3>(body.field_model(), body.touched, view_->domain_count, body.force, body.field_sums);
     };
     const auto moved = static_cast<double>(view_->domain_count);
     RooflinePoint columns{.kernel = "field couplings",
@@ -116,7 +116,8 @@ class RooflineRun {
           for (std::size_t i = 0; i < at_once; ++i) {
             sum();
             us += time_once([&] {
-              inverse_transform(*view_, body.offsets, {patch.level, patch.level}, body.field_sums.of_blocks, x.data());
+              inverse_transform<3>(*view_, body.offsets, {patch.level, patch.level}, body.field_sums.of_blocks,
+                                   x.data());
             });
           }
           return us / at_once;
@@ -164,7 +165,7 @@ class RooflineRun {
     return prediction_.blocks ? 18.0 * prediction_.length + 3 : prediction_.length > 2 ? 33 : 6;
   }
   [[nodiscard]] double prediction_bytes() const {
-    constexpr double of_block = sizeof(std::uint32_t) + StoredBlock<16>::bytes;
+    constexpr double of_block = sizeof(std::uint32_t) + StoredBlock<3, 16>::bytes;
     return prediction_.blocks ? of_block * prediction_.length : double{sizeof(ParentOffsets)};
   }
 
@@ -196,7 +197,7 @@ class RooflineRun {
       for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
         const std::uint32_t coefficient = body.touched.list[q][k];
         bytes += sizeof(layout::Scale<3>);
-        bytes += coefficient < body.base.columns ? BaseColumns::tile_bytes * body.base.tiles : 0;
+        bytes += coefficient < body.base.columns ? BaseColumns::tile_bytes<3> * body.base.tiles : 0;
         for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
           add_column(view_->level[q].couplings[layer], layer, coefficient - view_->level[q].domain_begin);
           add_column(body.mirrored.layer[layer], layer, coefficient);
@@ -232,7 +233,7 @@ class RooflineRun {
   [[nodiscard]] std::uint64_t weight_operations() const { return prediction_.blocks ? 27 : 9; }
 
   // of scaling a block between two slots and adding it in both directions
-  [[nodiscard]] std::uint64_t block_operations(const PartialCapacitance& batch, const CapacitanceScratch& scratch,
+  [[nodiscard]] std::uint64_t block_operations(const PartialCapacitance& batch, const CapacitanceScratch<3>& scratch,
                                                std::uint32_t slot, std::uint32_t other) const {
     if (batch.panel) {
       return 54 + 18;
@@ -242,7 +243,7 @@ class RooflineRun {
     return std::min(slot, other) < batch.own ? 54 + weight_operations() * (rows(slot) + rows(other)) : 0;
   }
 
-  std::uint64_t couplings_operations(const PartialCapacitance& batch, const CapacitanceScratch& scratch,
+  std::uint64_t couplings_operations(const PartialCapacitance& batch, const CapacitanceScratch<3>& scratch,
                                      const Body& body) const {
     std::uint64_t operations = 0;
     for (std::uint32_t slot = 0; slot < batch.slots; ++slot) {
@@ -261,7 +262,7 @@ class RooflineRun {
   // of scaling and adding blocks and of all steps of T^-1, batch by batch as assemble_capacitance does
   double capacitance_flops(Patch& patch) const {
     Body& body = patch.body;
-    CapacitanceScratch& scratch = body.capacitance;
+    CapacitanceScratch<3>& scratch = body.capacitance;
     const std::uint64_t slots = body.touched.coefficients();
     const std::uint32_t columns = body.planned.columns;
     const bool panel = has_panel(scratch.room, slots, columns);
@@ -272,7 +273,7 @@ class RooflineRun {
       batch.panel = panel;
       batch.computed = static_cast<std::uint32_t>(std::min<std::uint64_t>(width, columns - first));
       batch.set = {static_cast<std::uint32_t>(first) + batch.computed, body.planned.column};
-      begin_capacitance(body.refinement, body.touched, scratch, body.force, batch);
+      begin_capacitance<3>(body.refinement, body.touched, scratch, body.force, batch);
       const SparseInverse& inverse = scratch.inverse;
       const std::uint64_t terms = inverse.steps > 0 ? inverse.step[inverse.steps - 1].end : 0;
       operations += couplings_operations(batch, scratch, body);

@@ -83,15 +83,15 @@ TEST_CASE("kernels take the same instructions whatever the numbers") {
   touch(body.refinement, &column, 1, body.touched);
   const auto field = counts([&](float value) {
     const float force[] = {value, value, value};
-    compute_field(body.field_model(), {1, &column, force}, body.touched, {1, 1}, body.field_scratch(), x.data());
+    compute_field<3>(body.field_model(), {1, &column, force}, body.touched, {1, 1}, body.field_scratch(), x.data());
   });
   CHECK(all_equal(field));
   CHECK(field[0] > 100);
 
   const auto transformed = counts([&](float value) {
     const float force[] = {value, value, value};
-    transform_forces(body.refinement, {1, &column, force}, body.touched, body.force);
-    clear_forces(body.touched, body.force);
+    transform_forces<3>(body.refinement, {1, &column, force}, body.touched, body.force);
+    clear_forces<3>(body.touched, body.force);
   });
   CHECK(all_equal(transformed));
 

@@ -84,7 +84,7 @@ void time_kernels(const TestModel& model) {
   const std::vector<float> force(3 * contacts.size(), 1e-3F);
   const ColumnForces forces{body.planned.columns, body.planned.column, force.data()};
   const double field = median_nanoseconds(20, [&](int) {
-    compute_field(body.field_model(), forces, body.touched, {c, c}, body.field_scratch(), x.data());
+    compute_field<3>(body.field_model(), forces, body.touched, {c, c}, body.field_scratch(), x.data());
   });
   std::vector<Float4> matrix(144 * 16);
   const double capacitance = median_nanoseconds(2, [&](int) {
@@ -92,7 +92,7 @@ void time_kernels(const TestModel& model) {
                          body.force, 48, matrix.data());
   });
   const double transform = median_nanoseconds(20, [&](int) {
-    inverse_transform(view, body.offsets, {c, c}, body.field_sums.of_blocks, x.data());
+    inverse_transform<3>(view, body.offsets, {c, c}, body.field_sums.of_blocks, x.data());
   });
   std::printf("%u nodes, %u in the domain; 16 contacts touch %llu coefficients, %.0f blocks of the field\n",
               view.node_count, view.domain_count, static_cast<unsigned long long>(counts.coefficients), blocks);

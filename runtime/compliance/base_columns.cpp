@@ -56,11 +56,11 @@ bool share_blocks(const ModelView& view) {
 
 // a row of blocks in one operation, each lane as add_tiles has it
 [[gnu::target("avx2")]] void add_tiles_avx2(const std::byte* tiles, std::uint32_t count, Float4 force,
-                                            TileSums* sums) noexcept {
+                                            TileSums<3>* sums) noexcept {
   const __m256 f0 = _mm256_set1_ps(force[0]);
   const __m256 f1 = _mm256_set1_ps(force[1]);
   const __m256 f2 = _mm256_set1_ps(force[2]);
-  for (std::uint32_t t = 0; t < count; ++t, tiles += BaseColumns::tile_bytes) {
+  for (std::uint32_t t = 0; t < count; ++t, tiles += BaseColumns::tile_bytes<3>) {
     for (std::size_t r = 0; r < 3; ++r) {
       auto* const sum = reinterpret_cast<float*>(sums[t].of[r]);
       const __m256 moved = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(load_eight(tiles + 8 * r), f0),
@@ -72,48 +72,74 @@ bool share_blocks(const ModelView& view) {
 }
 #endif
 
+// row r of blocks, by element(k) of each, times a force
+
+template <class Element, class Number>
+auto row_product(Element element, std::size_t r, const Number (&force)[3]) {
+  return (element(r) * force[0] + element(r + 3) * force[1]) + element(r + 6) * force[2];
+}
+
+template <class Element, class Number>
+auto row_product(Element element, std::size_t r, const Number (&force)[1]) {
+  return element(r) * force[0];
+}
+
 }  // namespace
 
 #if defined(__SSE2__) || defined(__ARM_NEON)
-void add_tiles(const std::byte* tiles, std::uint32_t count, Float4 force, TileSums* sums) noexcept {
-  const Float4 f0 = splat(force[0] * StoredBlock<8>::widening);
-  const Float4 f1 = splat(force[1] * StoredBlock<8>::widening);
-  const Float4 f2 = splat(force[2] * StoredBlock<8>::widening);
-  for (std::uint32_t t = 0; t < count; ++t, tiles += BaseColumns::tile_bytes) {
-    for (std::size_t r = 0; r < 3; ++r) {
+template <unsigned N>
+void add_tiles(const std::byte* tiles, std::uint32_t count, Vector<N> force, TileSums<N>* sums) noexcept {
+  Float4 factor[N];
+  for (std::size_t c = 0; c < N; ++c) {
+    factor[c] = splat(component(force, c) * detail::byte_widening);
+  }
+  for (std::uint32_t t = 0; t < count; ++t, tiles += BaseColumns::tile_bytes<N>) {
+    for (std::size_t r = 0; r < N; ++r) {
       for (std::size_t half = 0; half < 2; ++half) {
         const auto element = [&](std::size_t k) { return detail::load_bytes(tiles + 8 * k + 4 * half); };
-        sums[t].of[r][half] += (element(r) * f0 + element(r + 3) * f1) + element(r + 6) * f2;
+        sums[t].of[r][half] += row_product(element, r, factor);
       }
     }
   }
 }
 #else
-void add_tiles(const std::byte* tiles, std::uint32_t count, Float4 force, TileSums* sums) noexcept {
+template <unsigned N>
+void add_tiles(const std::byte* tiles, std::uint32_t count, Vector<N> force, TileSums<N>* sums) noexcept {
   const auto* value = reinterpret_cast<const std::int8_t*>(tiles);
   auto* sum = reinterpret_cast<float*>(sums);
-  const float f0 = force[0];
-  const float f1 = force[1];
-  const float f2 = force[2];
-  for (std::uint32_t t = 0; t < count; ++t, value += BaseColumns::tile_bytes) {
-    for (std::uint32_t k = 0; k < 3 * BaseColumns::width; ++k, ++sum) {
-      *sum += (static_cast<float>(value[k]) * f0 + static_cast<float>(value[k + 24]) * f1) +
-              static_cast<float>(value[k + 48]) * f2;
+  float factor[N];
+  for (std::size_t c = 0; c < N; ++c) {
+    factor[c] = component(force, c);
+  }
+  for (std::uint32_t t = 0; t < count; ++t, value += BaseColumns::tile_bytes<N>) {
+    for (std::uint32_t k = 0; k < N * BaseColumns::width; ++k, ++sum) {
+      const auto element = [&](std::size_t c) { return static_cast<float>(value[k + 8 * c]); };
+      *sum += row_product(element, 0, factor);
     }
   }
 }
 #endif
 
-AddTiles fastest_add_tiles() noexcept {
+template void add_tiles<1>(const std::byte*, std::uint32_t, Vector<1>, TileSums<1>*) noexcept;
+template void add_tiles<3>(const std::byte*, std::uint32_t, Vector<3>, TileSums<3>*) noexcept;
+
+template <>
+AddTiles<1> fastest_add_tiles<1>() noexcept {
+  return add_tiles<1>;
+}
+
+template <>
+AddTiles<3> fastest_add_tiles<3>() noexcept {
 #if defined(__x86_64__)
   if (has_avx2()) {
     return add_tiles_avx2;
   }
 #endif
-  return add_tiles;
+  return add_tiles<3>;
 }
 
-void BaseColumnsMaker::carve(Arena& arena, const ModelView& view) noexcept {
+template <unsigned N>
+void BaseColumnsMaker<N>::carve(Arena& arena, const ModelView& view) noexcept {
   made_ = {};
   made_.holds[eight_bits] = true;
   made_.holds[four_bits] = view.info->quantum[four_bits] == view.info->quantum[eight_bits] && !share_blocks(view);
@@ -129,23 +155,27 @@ void BaseColumnsMaker::carve(Arena& arena, const ModelView& view) noexcept {
   }
   made_.columns = columns;
   made_.tiles = tiles_of(view.domain_count);
-  value_ = arena.take_zeroed<std::byte>(BaseColumns::tile_bytes * made_.tiles * columns);
+  value_ = arena.take_zeroed<std::byte>(BaseColumns::tile_bytes<N> * made_.tiles * columns);
 }
 
-BaseColumns BaseColumnsMaker::make(const ModelView& view) noexcept {
+template <unsigned N>
+BaseColumns BaseColumnsMaker<N>::make(const ModelView& view) noexcept {
   visit_base(view, made_.holds,
              [&](const CouplingsView& couplings, std::uint32_t layer, std::uint32_t row, std::uint32_t column,
                  std::uint32_t position) {
                std::byte* const tile =
-                   value_ + BaseColumns::tile_bytes * (std::size_t{made_.tiles} * row + column / BaseColumns::width);
-               for (std::uint32_t k = 0; k < 9; ++k) {  // transposed
-                 std::byte& element = tile[8 * (3 * (k % 3) + k / 3) + column % BaseColumns::width];
-                 const int value = stored_value<3>(couplings, layout::value_bits[layer], position, k);
+                   value_ + BaseColumns::tile_bytes<N> * (std::size_t{made_.tiles} * row + column / BaseColumns::width);
+               for (std::uint32_t k = 0; k < N * N; ++k) {  // transposed
+                 std::byte& element = tile[8 * (N * (k % N) + k / N) + column % BaseColumns::width];
+                 const int value = stored_value<N>(couplings, layout::value_bits[layer], position, k);
                  element = static_cast<std::byte>(static_cast<std::int8_t>(element) + value);
                }
              });
   made_.value = value_;
   return made_;
 }
+
+template class BaseColumnsMaker<1>;
+template class BaseColumnsMaker<3>;
 
 }  // namespace greenloop

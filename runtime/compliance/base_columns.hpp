@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
-#include "runtime/algebra/float4.hpp"
+#include "runtime/algebra/block.hpp"
 #include "runtime/memory/arena.hpp"
 
 namespace greenloop {
@@ -15,33 +15,48 @@ namespace greenloop {
 struct BaseColumns {
   static constexpr std::uint32_t quantum_layer = 2;  ///< whose quantum they have: that of 8 bits
   static constexpr std::uint32_t width = 8;          ///< coefficients of a tile, of consecutive places
-  static constexpr std::size_t tile_bytes = 72;      ///< element k of its blocks is the 8 bytes from 8 k on
+
+  /// Of a tile of N x N blocks, whose elements k are the 8 bytes from 8 k on.
+  template <unsigned N>
+  static constexpr std::size_t tile_bytes = std::size_t{width} * N* N;
 
   std::uint32_t columns = 0;         ///< level 0's, or none
   std::uint32_t tiles = 0;           ///< of a column
   bool holds[layout::layers] = {};   ///< its layers
-  const std::byte* value = nullptr;  ///< [columns * tiles * tile_bytes]
+  const std::byte* value = nullptr;  ///< [columns * tiles * tile_bytes<N>]
 
-  [[nodiscard]] const std::byte* column(std::uint32_t c) const { return value + tile_bytes * tiles * c; }
+  template <unsigned N>
+  [[nodiscard]] const std::byte* column(std::uint32_t c) const {
+    return value + tile_bytes<N> * tiles * c;
+  }
 };
 
-/// Sums of a tile's displacements: x, y and z of its first four coefficients and of the others.
+/// Sums of a tile's displacements: each component of its first four coefficients and of the others.
+template <unsigned N>
 struct TileSums {
-  Float4 of[3][2];
+  Float4 of[N][2];
 };
 
-/// Work units of a tile in a sum.
-inline constexpr std::uint64_t tile_work = 36;
+/// Work units of a tile in a sum, whose values are side by side.
+template <unsigned N>
+inline constexpr std::uint64_t tile_work = std::uint64_t{BaseColumns::width} * N* N / 2;
 
 /// sums += tiles * force, for `count` of each. force: times the layers' quantum; its fourth lane is not looked at. All
 /// of these give the same bits. For the loop; work: tile_work units per tile.
-using AddTiles = void (*)(const std::byte* tiles, std::uint32_t count, Float4 force, TileSums* sums) noexcept;
+template <unsigned N>
+using AddTiles = void (*)(const std::byte* tiles, std::uint32_t count, Vector<N> force, TileSums<N>* sums) noexcept;
 
 /// On every processor.
-void add_tiles(const std::byte* tiles, std::uint32_t count, Float4 force, TileSums* sums) noexcept;
+template <unsigned N>
+void add_tiles(const std::byte* tiles, std::uint32_t count, Vector<N> force, TileSums<N>* sums) noexcept;
 
 /// The fastest on this processor. Start-up.
-[[nodiscard]] AddTiles fastest_add_tiles() noexcept;
+template <unsigned N>
+[[nodiscard]] AddTiles<N> fastest_add_tiles() noexcept;
+template <>
+[[nodiscard]] AddTiles<1> fastest_add_tiles<1>() noexcept;
+template <>
+[[nodiscard]] AddTiles<3> fastest_add_tiles<3>() noexcept;
 
 /// Tiles that hold the first `coefficients`.
 constexpr std::uint32_t tiles_of(std::uint32_t coefficients) {
@@ -49,6 +64,7 @@ constexpr std::uint32_t tiles_of(std::uint32_t coefficients) {
 }
 
 /// Where they are made.
+template <unsigned N>
 class BaseColumnsMaker {
  public:
   /// Arrays out of `arena`; null while it counts. Start-up; linear in the blocks.

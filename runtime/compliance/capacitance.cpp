@@ -4,52 +4,42 @@
 #include <cstring>
 
 #include "runtime/algebra/merge_sort.hpp"
+#include "runtime/algebra/stored_block.hpp"
 
 namespace greenloop {
 namespace {
-
-Block scaled(Float4 factor, const Block& block) {
-  return {{factor * block.column[0], factor * block.column[1], factor * block.column[2]}};
-}
-
-void add(Float4 weight, const Block& block, Block& sum) {
-  sum.column[0] += weight * block.column[0];
-  sum.column[1] += weight * block.column[1];
-  sum.column[2] += weight * block.column[2];
-}
-
-void add(const Block& block, Block& sum) {
-  sum.column[0] += block.column[0];
-  sum.column[1] += block.column[1];
-  sum.column[2] += block.column[2];
-}
 
 // the first column whose row is computed
 std::uint32_t first_computed(const PartialCapacitance& partial) { return partial.set.count - partial.computed; }
 
 // rows 2 p and 2 p + 1 of sums, by slots
-BlockPair* sum_pair(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t p) {
+template <unsigned N>
+BlockPair<N>* sum_pair(const CapacitanceScratch<N>& scratch, const PartialCapacitance& partial, std::uint32_t p) {
   return scratch.sum + std::size_t{p} * partial.slots;
 }
 
-Block& sum_at(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t t,
-              std::uint32_t slot) {
+template <unsigned N>
+Block<N>& sum_at(const CapacitanceScratch<N>& scratch, const PartialCapacitance& partial, std::uint32_t t,
+                 std::uint32_t slot) {
   return sum_pair(scratch, partial, t / 2)[slot].row[t % 2];
 }
 
 // displacements of coefficients 2 p and 2 p + 1 per force on those of the computed rows
-BlockPair* panel_pair(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t p) {
+template <unsigned N>
+BlockPair<N>* panel_pair(const CapacitanceScratch<N>& scratch, const PartialCapacitance& partial, std::uint32_t p) {
   return sum_pair(scratch, partial, (partial.computed + 1) / 2) + std::size_t{p} * partial.own;
 }
 
-Block& panel_at(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t slot,
-                std::uint32_t own) {
+template <unsigned N>
+Block<N>& panel_at(const CapacitanceScratch<N>& scratch, const PartialCapacitance& partial, std::uint32_t slot,
+                   std::uint32_t own) {
   return panel_pair(scratch, partial, slot / 2)[own].row[slot % 2];
 }
 
 // gives the touched coefficients that have none slots from `slots` on; returns the number of slots
+template <unsigned N>
 std::uint32_t assign_slots(const ModelView& view, const Touched& touched, std::uint32_t slots,
-                           CapacitanceScratch& scratch) {
+                           CapacitanceScratch<N>& scratch) {
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
@@ -57,7 +47,7 @@ std::uint32_t assign_slots(const ModelView& view, const Touched& touched, std::u
       if (scratch.slot[coefficient] == layout::none) {
         scratch.slot[coefficient] = slots;
         scratch.coefficient[slots] = coefficient;
-        scratch.root[slots++] = symmetric_block(level.scales_of<3>()[coefficient - level.domain_begin].root);
+        scratch.root[slots++] = symmetric_block(level.scales_of<N>()[coefficient - level.domain_begin].root);
       }
     }
   }
@@ -66,8 +56,9 @@ std::uint32_t assign_slots(const ModelView& view, const Touched& touched, std::u
 
 // gives the coarser ones of some columns slots from `slots` on, and finds where the values of all come to stand;
 // returns the number of slots
+template <unsigned N>
 std::uint32_t assign_answers(const PartialCapacitance& partial, std::uint32_t first, std::uint32_t end,
-                             std::uint32_t finest, std::uint32_t slots, CapacitanceScratch& scratch) {
+                             std::uint32_t finest, std::uint32_t slots, CapacitanceScratch<N>& scratch) {
   for (std::uint32_t i = first; i < end; ++i) {
     const std::uint32_t column = partial.set.column[i];
     const bool coarser = column_level(column) < finest;
@@ -80,32 +71,34 @@ std::uint32_t assign_answers(const PartialCapacitance& partial, std::uint32_t fi
 }
 
 // sums of slot `to` += the weights of slot `from` times a block; returns their number
-template <bool blocks>
-std::uint32_t add_block(const Block& block, std::uint32_t from, std::uint32_t to, const CapacitanceScratch& scratch) {
-  const Functionals& functionals = scratch.functionals;
+template <bool blocks, unsigned N>
+std::uint32_t add_block(const Block<N>& block, std::uint32_t from, std::uint32_t to,
+                        const CapacitanceScratch<N>& scratch) {
+  const Functionals<N>& functionals = scratch.functionals;
   const std::uint32_t begin = functionals.slot_begin[from];
   const std::uint32_t end = functionals.slot_begin[from + 1];
-  auto* sums = reinterpret_cast<Block*>(scratch.sum + to);
+  auto* sums = reinterpret_cast<Block<N>*>(scratch.sum + to);
   if constexpr (blocks) {
-    add_by_blocks(functionals, from, block, sums);
+    add_by_blocks<N>(functionals, from, block, sums);
   } else {
     for (std::uint32_t k = begin; k < end; ++k) {
       const SlotRow at = functionals.row[k];
-      add(splat(at.weight), block, sums[at.first]);
+      add(at.weight, block, sums[at.first]);
     }
   }
   return end - begin;
 }
 
-void set_diagonal(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch) {
+template <unsigned N>
+void set_diagonal(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch<N>& scratch) {
   for (std::uint32_t s = 0; s < partial.own; ++s) {
     const std::uint32_t coefficient = scratch.coefficient[s];
     if (coefficient == layout::none) {
       continue;
     }
     const LevelView& level = refinement.view->level[refinement.level[coefficient]];
-    const Block scale = symmetric_block(level.scales_of<3>()[coefficient - level.domain_begin].diagonal);
-    const Block diagonal = product(scratch.root[s], product(scale, scratch.root[s]));
+    const Block<N> scale = symmetric_block(level.scales_of<N>()[coefficient - level.domain_begin].diagonal);
+    const Block<N> diagonal = product(scratch.root[s], product(scale, scratch.root[s]));
     if (partial.panel) {
       panel_at(scratch, partial, s, s) = transposed(diagonal);
     } else if (refinement.prediction.blocks) {
@@ -117,23 +110,25 @@ void set_diagonal(const Refinement& refinement, const PartialCapacitance& partia
 }
 
 // blocks of the column of a slot, scaled on both sides
+template <unsigned N>
 struct LoadedColumn {
   std::uint32_t slot;
   std::uint32_t count;
-  Block root;  // of the slot, times the layer's factor
+  Block<N> root;  // of the slot, times the layer's factor
 };
 
-Block loaded_block(const LoadedColumn& column, std::uint32_t n, const CapacitanceScratch& scratch) {
+template <unsigned N>
+Block<N> loaded_block(const LoadedColumn<N>& column, std::uint32_t n, const CapacitanceScratch<N>& scratch) {
   return product(scratch.root[scratch.places[n].target], product(scratch.blocks[n], column.root));
 }
 
 // in both directions; returns the number of sums
-template <bool blocks>
-std::uint64_t add_to_sums(const LoadedColumn& column, const CapacitanceScratch& scratch) {
+template <bool blocks, unsigned N>
+std::uint64_t add_to_sums(const LoadedColumn<N>& column, const CapacitanceScratch<N>& scratch) {
   std::uint64_t added = 0;
   for (std::uint32_t n = 0; n < column.count; ++n) {
     const std::uint32_t row = scratch.places[n].target;
-    const Block block = loaded_block(column, n, scratch);
+    const Block<N> block = loaded_block(column, n, scratch);
     added += add_block<blocks>(block, row, column.slot, scratch);
     added += add_block<blocks>(transposed(block), column.slot, row, scratch);
   }
@@ -141,13 +136,15 @@ std::uint64_t add_to_sums(const LoadedColumn& column, const CapacitanceScratch& 
 }
 
 // in both directions
-void add_to_panel(const PartialCapacitance& partial, const LoadedColumn& column, const CapacitanceScratch& scratch) {
-  BlockPair* const panel = panel_pair(scratch, partial, 0);
+template <unsigned N>
+void add_to_panel(const PartialCapacitance& partial, const LoadedColumn<N>& column,
+                  const CapacitanceScratch<N>& scratch) {
+  BlockPair<N>* const panel = panel_pair(scratch, partial, 0);
   const std::size_t own = partial.own;
-  BlockPair* const of_slot = panel + column.slot / 2 * own;
+  BlockPair<N>* const of_slot = panel + column.slot / 2 * own;
   for (std::uint32_t n = 0; n < column.count; ++n) {
     const std::uint32_t row = scratch.places[n].target;
-    const Block block = loaded_block(column, n, scratch);
+    const Block<N> block = loaded_block(column, n, scratch);
     if (row < own) {
       add(transposed(block), of_slot[row].row[column.slot % 2]);
     }
@@ -159,69 +156,74 @@ void add_to_panel(const PartialCapacitance& partial, const LoadedColumn& column,
 
 // every block that a layer stores in the column of a slot and in a row with one, if the computed rows have either; in
 // both directions; returns the work units
+template <unsigned N>
 std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitance& partial,
-                            CapacitanceScratch& scratch) {
+                            CapacitanceScratch<N>& scratch) {
   const std::uint32_t slot = partial.next;
   const std::uint32_t coefficient = scratch.coefficient[slot];
   const LevelView& level = refinement.view->level[refinement.level[coefficient]];
   const CouplingsView& couplings = level.couplings[partial.layer];
   const std::uint32_t column = coefficient - level.domain_begin;
-  LoadedColumn loaded;
+  LoadedColumn<N> loaded;
   loaded.slot = slot;
   loaded.count = load_slotted(couplings, partial.layer, column, scratch.slot,
                               slot < partial.own ? partial.slots : partial.own, scratch.places, scratch.blocks);
-  loaded.root = scaled(splat(block_factor(*refinement.view->info, partial.layer)), scratch.root[slot]);
+  loaded.root = scaled(block_factor<N>(*refinement.view->info, partial.layer), scratch.root[slot]);
   std::uint64_t added = 0;
   if (partial.panel) {
     add_to_panel(partial, loaded, scratch);
   } else {
     added = refinement.prediction.blocks ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
   }
-  return 4 * std::uint64_t{column_length(couplings, column)} + 84 * std::uint64_t{loaded.count} +
+  return 4 * std::uint64_t{column_length(couplings, column)} + scaled_block_work(N) * loaded.count +
          refinement.prediction.weight_work * added;
 }
 
 // bound of what add_couplings returns
+template <unsigned N>
 std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCapacitance& partial,
-                                  const CapacitanceScratch& scratch) {
+                                  const CapacitanceScratch<N>& scratch) {
   const std::uint32_t coefficient = scratch.coefficient[partial.next];
   const LevelView& level = refinement.view->level[refinement.level[coefficient]];
   const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
   const std::uint64_t of_block = 2 * std::uint64_t{refinement.prediction.weight_work} * partial.computed;
-  return length * (partial.panel ? 88 : 88 + of_block);
+  const std::uint64_t scaled = 4 + scaled_block_work(N);
+  return length * (partial.panel ? scaled : scaled + of_block);
 }
 
 // the sum of a step's terms alone: details are smaller than what they are added to
-BlockPair sum_numbers(const SparseInverse::Term* term, const SparseInverse::Term* end, const BlockPair* x) {
-  BlockPair sum{};
+template <unsigned N>
+BlockPair<N> sum_numbers(const SparseInverse::Term* term, const SparseInverse::Term* end, const BlockPair<N>* x) {
+  BlockPair<N> sum{};
   for (; term != end; ++term) {
-    const Float4 weight = splat(term->weight);
-    add(weight, x[term->source].row[0], sum.row[0]);
-    add(weight, x[term->source].row[1], sum.row[1]);
+    add(term->weight, x[term->source].row[0], sum.row[0]);
+    add(term->weight, x[term->source].row[1], sum.row[1]);
   }
   return sum;
 }
 
-BlockPair sum_blocks(const SparseInverse::Term* term, const SparseInverse::Term* end, const std::byte* stored,
-                     const BlockPair* x) {
-  BlockPair sum{};
-  for (; term != end; ++term, stored += StoredBlock<16>::bytes) {
-    const BlockSplats weight = splats(transposed(StoredBlock<16>::load(stored)));
+template <unsigned N>
+BlockPair<N> sum_blocks(const SparseInverse::Term* term, const SparseInverse::Term* end, const std::byte* stored,
+                        const BlockPair<N>* x) {
+  BlockPair<N> sum{};
+  for (; term != end; ++term, stored += StoredBlock<N, 16>::bytes) {
+    const BlockSplats<N> weight = splats(transposed(StoredBlock<N, 16>::load(stored)));
     add(product(x[term->source].row[0], weight), sum.row[0]);
     add(product(x[term->source].row[1], weight), sum.row[1]);
   }
-  return {{scaled(splat(weight_unit), sum.row[0]), scaled(splat(weight_unit), sum.row[1])}};
+  return {{scaled(weight_unit<N>, sum.row[0]), scaled(weight_unit<N>, sum.row[1])}};
 }
 
 // T^-1 of two rows of coefficients, the first steps; x: what the rows are displaced by per force on each slot, so that
 // blocks apply from the right, transposed
-void reconstruct(const SparseInverse& inverse, std::uint32_t steps, BlockPair* x) {
+template <unsigned N>
+void reconstruct(const SparseInverse& inverse, std::uint32_t steps, BlockPair<N>* x) {
   const SparseInverse::Term* term = inverse.term;
   for (std::uint32_t k = 0; k < steps; ++k) {
     const auto& [target, last] = inverse.step[k];
     const SparseInverse::Term* const end = inverse.term + last;
     const std::byte* const block = inverse.block == nullptr ? nullptr : inverse.block[k];
-    const BlockPair sum = block == nullptr ? sum_numbers(term, end, x) : sum_blocks(term, end, block, x);
+    const BlockPair<N> sum = block == nullptr ? sum_numbers(term, end, x) : sum_blocks(term, end, block, x);
     add(sum.row[0], x[target].row[0]);
     add(sum.row[1], x[target].row[1]);
     term = end;
@@ -229,11 +231,12 @@ void reconstruct(const SparseInverse& inverse, std::uint32_t steps, BlockPair* x
 }
 
 // the couplings of two coefficients with those of the computed rows become sums of these
-void transform_panel(const PartialCapacitance& partial, std::uint32_t pair, CapacitanceScratch& scratch) {
-  BlockPair* x = panel_pair(scratch, partial, pair);
+template <unsigned N>
+void transform_panel(const PartialCapacitance& partial, std::uint32_t pair, CapacitanceScratch<N>& scratch) {
+  BlockPair<N>* x = panel_pair(scratch, partial, pair);
   reconstruct(scratch.inverse, scratch.inverse.steps, x);
   for (std::uint32_t t = 0; t < partial.computed; ++t) {
-    const BlockPair& own = x[scratch.answer[first_computed(partial) + t]];
+    const BlockPair<N>& own = x[scratch.answer[first_computed(partial) + t]];
     for (std::uint32_t s = 2 * pair; s < partial.slots && s < 2 * pair + 2; ++s) {
       sum_at(scratch, partial, t, s) = transposed(own.row[s % 2]);
     }
@@ -241,7 +244,8 @@ void transform_panel(const PartialCapacitance& partial, std::uint32_t pair, Capa
 }
 
 // two rows of sums become rows of the matrix, up to the diagonal
-void transform_sums(const PartialCapacitance& partial, std::uint32_t pair, CapacitanceScratch& scratch) {
+template <unsigned N>
+void transform_sums(const PartialCapacitance& partial, std::uint32_t pair, CapacitanceScratch<N>& scratch) {
   const std::uint32_t end = first_computed(partial) + 2 * pair + 2;
   std::uint32_t steps = 0;
   for (std::uint32_t i = 0; i < partial.set.count && i < end; ++i) {
@@ -252,136 +256,41 @@ void transform_sums(const PartialCapacitance& partial, std::uint32_t pair, Capac
 }
 
 // calls visit(i, block (t, i)) of the matrix for the columns up to the diagonal
-template <class Visit>
-void visit_row(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t t, Visit visit) {
+template <unsigned N, class Visit>
+void visit_row(const CapacitanceScratch<N>& scratch, const PartialCapacitance& partial, std::uint32_t t, Visit visit) {
   for (std::uint32_t i = 0; i <= first_computed(partial) + t; ++i) {
     visit(i, sum_at(scratch, partial, t, scratch.answer[i]));
   }
 }
 
-std::uint64_t panel_pair_work(const Prediction& prediction, std::uint64_t own_visits, std::uint64_t rows) {
-  return prediction.pair_work * own_visits + 6 * rows;
-}
-
-std::uint64_t sum_pair_work(const Prediction& prediction, std::uint64_t set_visits) {
-  return prediction.pair_work * set_visits;
-}
-
-// three rows or columns of a matrix, `stride` floats apart, each with three entries
-void store(const Block& block, std::size_t stride, float* a) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    std::memcpy(a + c * stride, &block.column[c], 3 * sizeof(float));
+// N rows or columns of a matrix, `stride` floats apart, each with N entries
+template <unsigned N>
+void store(const Block<N>& block, std::size_t stride, float* a) {
+  for (std::size_t c = 0; c < N; ++c) {
+    std::memcpy(a + c * stride, &block.column[c], N * sizeof(float));
   }
-}
-
-std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
-
-// of touching the computed rows alone; the steps of T^-1 have no more terms
-std::uint64_t own_visits(const CapacitanceCounts& counts) { return smaller(counts.set_visits, counts.visits); }
-
-bool panel_of(const CapacitanceCounts& counts) { return has_panel(counts.room, counts.slots, counts.rows); }
-
-// most slots of a set that has a panel
-std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
-  std::uint64_t slots = counts.slots;
-  while (slots * slots > 2 * counts.room) {
-    slots = (slots + 2 * counts.room / slots) / 2;  // Newton's iteration falls to the root
-  }
-  return slots;
-}
-
-// what every batch of rows begins with
-std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
-  return 4 * own_visits(counts) + 2 * counts.set_visits + 60 * counts.slots + merge_sort_work(counts.rows);
-}
-
-std::uint64_t functionals_work(const CapacitanceCounts& counts) {
-  const std::uint64_t transforms = counts.prediction.blocks ? 3 : 1;
-  const std::uint64_t visit_work = 2 + transforms * counts.prediction.force_work;
-  return visit_work * counts.visits + 16 * transforms * counts.coefficients + counts.rows * counts.slots;
-}
-
-std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
-  return pairs(slots) * panel_pair_work(counts.prediction, own_visits(counts), counts.rows);
 }
 
 }  // namespace
 
-void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept {
-  const LevelView& level = view.level[q];
-  for (const CouplingsView& couplings : level.couplings) {
-    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
-      const std::uint32_t column = level.domain_begin + j;
-      degree[column] += column_length(couplings, j);
-      visit_rows(couplings, j, 0, column, [degree](std::uint32_t row, std::uint32_t) { ++degree[row]; });
-    }
-  }
-}
-
-ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const std::uint32_t* degree,
-                       Touched& touched) noexcept {
-  touch(refinement, &column, 1, touched);
-  ColumnCost cost;
-  cost.visits = static_cast<std::uint32_t>(touched.visits);
-  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-    cost.coefficients += touched.count[q];
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      cost.blocks += degree[touched.list[q][k]];
-    }
-  }
-  clear(touched);
-  return cost;
-}
-
-std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept {
-  const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
-  const std::uint64_t panel = panel_of(counts) || counts.bounds ? slots * slots : 0;
-  const std::uint64_t functionals = panel_of(counts) ? 0 : functionals_work(counts);
-  return begin_batch_work(counts) + (panel > functionals ? panel : functionals);
-}
-
-std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept {
-  const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
-  return 88 * counts.stored + pairs(counts.rows) * sum_pair_work(counts.prediction, counts.set_visits) +
-         (panel_of(counts) ? 0 : counts.prediction.weight_work * counts.blocks) +
-         (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
-}
-
-std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept {
-  if (counts.rows == 0) {
-    return 0;
-  }
-  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
-  const std::uint64_t batches = panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
-  const std::uint64_t more = batches > 1 ? batches - 1 : 0;
-  return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
-         more * (begin_batch_work(counts) + 88 * counts.stored) + counts.rows * store_capacitance_work(counts.columns);
-}
-
-std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept {
-  auto slots = static_cast<std::uint32_t>(touched.coefficients());
-  for (std::uint32_t i = 0; i < set.count; ++i) {
-    slots += column_level(set.column[i]) < touched.finest ? 1 : 0;
-  }
-  return slots;
-}
-
+template <unsigned N>
 void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
-                          CapacitanceScratch& scratch, Float4* force, std::uint32_t stride, Float4* a) noexcept {
+                          CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride, Float4* a) noexcept {
   const std::uint32_t slots = count_slots(set, touched);
   const bool panel = has_panel(scratch.room, slots, set.count);
   const std::uint64_t width = panel ? set.count : batch_width(scratch.room, slots);
   for (std::uint32_t first = 0; first < set.count;) {
     PartialCapacitance batch;
     batch.panel = panel;
-    batch.computed = static_cast<std::uint32_t>(smaller(set.count - first, width));
+    batch.computed = static_cast<std::uint32_t>(set.count - first < width ? set.count - first : width);
     batch.set = {first + batch.computed, set.column};
     begin_capacitance(refinement, touched, scratch, force, batch);
     add_capacitance_blocks(refinement, touched, scratch, ~std::uint64_t{0}, batch);
     for (std::uint32_t t = 0; t < batch.computed; ++t) {
-      float* rows = reinterpret_cast<float*>(a) + std::size_t{3} * (first + t);
-      visit_row(scratch, batch, t,
-                [&](std::uint32_t i, const Block& block) { store(block, stride, rows + std::size_t{3} * i * stride); });
+      float* rows = reinterpret_cast<float*>(a) + std::size_t{N} * (first + t);
+      visit_row(scratch, batch, t, [&](std::uint32_t i, const Block<N>& block) {
+        store(block, stride, rows + std::size_t{N} * i * stride);
+      });
     }
     release_capacitance(batch, scratch);
     first += batch.computed;
@@ -391,23 +300,26 @@ void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, co
 namespace {
 
 // touches what the computed rows reach
-void touch_computed(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch& scratch) {
+template <unsigned N>
+void touch_computed(const Refinement& refinement, const PartialCapacitance& partial, CapacitanceScratch<N>& scratch) {
   std::memcpy(scratch.sorted, partial.set.column + first_computed(partial), sizeof(std::uint32_t) * partial.computed);
   merge_sort(partial.computed, scratch.sorted, scratch.sorting, [](std::uint32_t a, std::uint32_t b) { return a < b; });
   touch(refinement, scratch.sorted, partial.computed, scratch.touched);
 }
 
 // the steps of T^-1 for what the columns from `first` on touch; values of coarser columns are copied between levels
+template <unsigned N>
 void list_steps(const Refinement& refinement, const PartialCapacitance& partial, std::uint32_t first,
-                const Touched& touched, CapacitanceScratch& scratch) {
+                const Touched& touched, CapacitanceScratch<N>& scratch) {
   const InverseAnswers answers{partial.set.count - first, partial.set.column + first, scratch.answer + first};
   list_inverse(refinement, touched, scratch.slot, answers, scratch.inverse);
 }
 
 }  // namespace
 
-void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch, Float4* force,
-                       PartialCapacitance& partial) noexcept {
+template <unsigned N>
+void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch<N>& scratch,
+                       Vector<N>* force, PartialCapacitance& partial) noexcept {
   touch_computed(refinement, partial, scratch);
   const std::uint32_t first = first_computed(partial);
   const std::uint32_t finest = touched.finest;
@@ -424,19 +336,21 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
   }
   clear(scratch.touched);
   if (partial.panel) {
-    std::memset(panel_pair(scratch, partial, 0), 0, sizeof(BlockPair) * pairs(partial.slots) * partial.own);
+    std::memset(panel_pair(scratch, partial, 0), 0, sizeof(BlockPair<N>) * pairs(partial.slots) * partial.own);
     if (partial.computed % 2 == 1) {
-      std::memset(sum_pair(scratch, partial, partial.computed / 2), 0, sizeof(BlockPair) * partial.slots);
+      std::memset(sum_pair(scratch, partial, partial.computed / 2), 0, sizeof(BlockPair<N>) * partial.slots);
     }
   } else {
-    std::memset(scratch.sum, 0, sizeof(BlockPair) * pairs(partial.computed) * partial.slots);
+    std::memset(scratch.sum, 0, sizeof(BlockPair<N>) * pairs(partial.computed) * partial.slots);
     const SlottedColumns computed{partial.computed, partial.set.column + first, partial.slots, scratch.slot};
-    list_functionals(refinement, computed, scratch.touched, force, scratch.functionals);
+    list_functionals<N>(refinement, computed, scratch.touched, force, scratch.functionals);
   }
 }
 
-std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched, CapacitanceScratch& scratch,
-                                     std::uint64_t allowance, PartialCapacitance& partial) noexcept {
+template <unsigned N>
+std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched,
+                                     CapacitanceScratch<N>& scratch, std::uint64_t allowance,
+                                     PartialCapacitance& partial) noexcept {
   std::uint64_t work = 0;
   while (partial.next < partial.slots) {
     const bool has_blocks = scratch.coefficient[partial.next] != layout::none;
@@ -470,19 +384,40 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
   return work;
 }
 
-void store_capacitance_row(const CapacitanceScratch& scratch, const PartialCapacitance& partial, std::uint32_t t,
+template <unsigned N>
+void store_capacitance_row(const CapacitanceScratch<N>& scratch, const PartialCapacitance& partial, std::uint32_t t,
                            std::uint32_t stride, Float4* row) noexcept {
-  visit_row(scratch, partial, t, [&](std::uint32_t i, const Block& block) {
-    store(transposed(block), stride, reinterpret_cast<float*>(row) + std::size_t{3} * i);
+  visit_row(scratch, partial, t, [&](std::uint32_t i, const Block<N>& block) {
+    store(transposed(block), stride, reinterpret_cast<float*>(row) + std::size_t{N} * i);
   });
 }
 
-void release_capacitance(const PartialCapacitance& partial, CapacitanceScratch& scratch) noexcept {
+template <unsigned N>
+void release_capacitance(const PartialCapacitance& partial, CapacitanceScratch<N>& scratch) noexcept {
   for (std::uint32_t s = 0; s < partial.slots; ++s) {
     if (scratch.coefficient[s] != layout::none) {
       scratch.slot[scratch.coefficient[s]] = layout::none;
     }
   }
 }
+
+template void assemble_capacitance<1>(const Refinement&, const ColumnSet&, const Touched&, CapacitanceScratch<1>&,
+                                      Vector<1>*, std::uint32_t, Float4*) noexcept;
+template void begin_capacitance<1>(const Refinement&, const Touched&, CapacitanceScratch<1>&, Vector<1>*,
+                                   PartialCapacitance&) noexcept;
+template std::uint64_t add_capacitance_blocks<1>(const Refinement&, const Touched&, CapacitanceScratch<1>&,
+                                                 std::uint64_t, PartialCapacitance&) noexcept;
+template void store_capacitance_row<1>(const CapacitanceScratch<1>&, const PartialCapacitance&, std::uint32_t,
+                                       std::uint32_t, Float4*) noexcept;
+template void release_capacitance<1>(const PartialCapacitance&, CapacitanceScratch<1>&) noexcept;
+template void assemble_capacitance<3>(const Refinement&, const ColumnSet&, const Touched&, CapacitanceScratch<3>&,
+                                      Vector<3>*, std::uint32_t, Float4*) noexcept;
+template void begin_capacitance<3>(const Refinement&, const Touched&, CapacitanceScratch<3>&, Vector<3>*,
+                                   PartialCapacitance&) noexcept;
+template std::uint64_t add_capacitance_blocks<3>(const Refinement&, const Touched&, CapacitanceScratch<3>&,
+                                                 std::uint64_t, PartialCapacitance&) noexcept;
+template void store_capacitance_row<3>(const CapacitanceScratch<3>&, const PartialCapacitance&, std::uint32_t,
+                                       std::uint32_t, Float4*) noexcept;
+template void release_capacitance<3>(const PartialCapacitance&, CapacitanceScratch<3>&) noexcept;
 
 }  // namespace greenloop

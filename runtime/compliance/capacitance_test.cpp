@@ -9,7 +9,7 @@
 
 #include "formats/testing/dense_wavelet.hpp"
 #include "runtime/algebra/cholesky.hpp"
-#include "runtime/testing/placed_body.hpp"
+#include "runtime/testing/rooms.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -33,38 +33,38 @@ std::vector<std::uint32_t> choose_places(const ModelView& view, std::uint32_t c,
   return places;
 }
 
-// what a set of places takes, in a body
+// a set of places of one level, touched
+template <unsigned N>
 struct TouchedSet {
-  TouchedSet(Body& of, std::uint32_t c, const std::vector<std::uint32_t>& places) : body(of) {
+  TouchedSet(Rooms<N>& of, std::uint32_t c, const std::vector<std::uint32_t>& places) : rooms(of) {
     for (const std::uint32_t place : places) {
       column.push_back(make_column(c, place));
     }
     set = {static_cast<std::uint32_t>(column.size()), column.data()};
-    clear(body.touched);
-    touch(body.refinement, set.column, set.count, body.touched);
+    rooms.touch_set(set);
   }
 
   [[nodiscard]] CapacitanceCounts counts(std::uint32_t rows) const {
     SetCounts counts;
     counts.columns = set.count;
-    count_factor({rows, set.column + (set.count - rows)}, body.touched, body.cost, body.stored, counts);
-    CapacitanceCounts result = capacitance_counts(body.counts, counts);
+    count_factor({rows, set.column + (set.count - rows)}, rooms.touched, rooms.cost, rooms.stored.data(), counts);
+    CapacitanceCounts result = capacitance_counts(rooms.counts, counts);
     result.rows = rows;
     return result;
   }
 
-  Body& body;
+  Rooms<N>& rooms;
   std::vector<std::uint32_t> column;
   ColumnSet set{};
 };
 
 // worst difference over the largest entry of row node `j`, up to the diagonal; entry(r, k): of its row r and column k
-template <class Entry>
+template <unsigned N, class Entry>
 double row_error(const Eigen::MatrixXd& exact, const std::vector<std::uint32_t>& places, std::uint32_t j, Entry entry) {
   double worst = 0;
-  for (std::uint32_t k = 0; k < 3 * (j + 1); ++k) {
-    for (std::uint32_t r = 0; r < 3; ++r) {
-      const double wanted = exact(Eigen::Index{3} * places[j] + r, Eigen::Index{3} * places[k / 3] + k % 3);
+  for (std::uint32_t k = 0; k < N * (j + 1); ++k) {
+    for (std::uint32_t r = 0; r < N; ++r) {
+      const double wanted = exact(Eigen::Index{N} * places[j] + r, Eigen::Index{N} * places[k / N] + k % N);
       worst = std::max(worst, std::abs(double{entry(r, k)} - wanted));
     }
   }
@@ -73,73 +73,78 @@ double row_error(const Eigen::MatrixXd& exact, const std::vector<std::uint32_t>&
 
 constexpr double rounding = 2e-6;
 
-void check_whole(const TouchedSet& touched, const Eigen::MatrixXd& exact, const std::vector<std::uint32_t>& places) {
-  Body& body = touched.body;
-  const std::uint32_t stride = body.cache.stride();
+template <unsigned N>
+void check_whole(const TouchedSet<N>& touched, const Eigen::MatrixXd& exact, const std::vector<std::uint32_t>& places) {
+  Rooms<N>& rooms = touched.rooms;
+  const std::uint32_t stride = rooms.cache.stride();
   std::vector<Float4> matrix(std::size_t{stride} * stride / 4);
-  assemble_capacitance(body.refinement, touched.set, body.touched, body.capacitance, body.force, stride, matrix.data());
+  assemble_capacitance<N>(rooms.refinement, touched.set, rooms.touched, rooms.capacitance, rooms.force, stride,
+                          matrix.data());
   const auto* entry = reinterpret_cast<const float*>(matrix.data());
   for (std::uint32_t j = 0; j < touched.set.count; ++j) {
-    CHECK(row_error(exact, places, j, [&](std::uint32_t r, std::uint32_t k) {
-            return entry[std::size_t{k} * stride + 3 * j + r];
+    CHECK(row_error<N>(exact, places, j, [&](std::uint32_t r, std::uint32_t k) {
+            return entry[std::size_t{k} * stride + N * j + r];
           }) <= rounding);
   }
 }
 
 // in pieces of at least `allowance`
-void check_rows(const TouchedSet& touched, const Eigen::MatrixXd& exact, const std::vector<std::uint32_t>& places,
+template <unsigned N>
+void check_rows(const TouchedSet<N>& touched, const Eigen::MatrixXd& exact, const std::vector<std::uint32_t>& places,
                 std::uint32_t rows, std::uint64_t allowance) {
-  Body& body = touched.body;
+  Rooms<N>& rooms = touched.rooms;
   const CapacitanceCounts counts = touched.counts(rows);
   PartialCapacitance partial;
   partial.set = touched.set;
   partial.computed = rows;
   partial.panel = has_panel(counts.room, counts.slots, rows);
-  begin_capacitance(body.refinement, body.touched, body.capacitance, body.force, partial);
+  begin_capacitance<N>(rooms.refinement, rooms.touched, rooms.capacitance, rooms.force, partial);
   CHECK(partial.slots == counts.slots);
   CHECK(partial.own_visits <= counts.visits);
   std::uint64_t work = 0;
   while (partial.has_blocks_left()) {
     const std::uint64_t spent =
-        add_capacitance_blocks(body.refinement, body.touched, body.capacitance, allowance, partial);
+        add_capacitance_blocks(rooms.refinement, rooms.touched, rooms.capacitance, allowance, partial);
     REQUIRE(spent <= allowance);
     work += spent;
     allowance = spent > 0 ? allowance : 2 * allowance;
   }
   CHECK(work <= add_capacitance_blocks_work(counts));
-  const std::uint32_t stride = body.cache.stride();
-  std::vector<Float4> row(std::size_t{3} * stride / 4);
+  const std::uint32_t stride = rooms.cache.stride();
+  std::vector<Float4> row(std::size_t{N} * stride / 4);
   const auto* entry = reinterpret_cast<const float*>(row.data());
   for (std::uint32_t t = 0; t < rows; ++t) {
-    store_capacitance_row(body.capacitance, partial, t, stride, row.data());
-    CHECK(row_error(exact, places, touched.set.count - rows + t,
-                    [&](std::uint32_t r, std::uint32_t k) { return entry[std::size_t{r} * stride + k]; }) <= rounding);
+    store_capacitance_row(rooms.capacitance, partial, t, stride, row.data());
+    CHECK(row_error<N>(exact, places, touched.set.count - rows + t, [&](std::uint32_t r, std::uint32_t k) {
+            return entry[std::size_t{r} * stride + k];
+          }) <= rounding);
   }
-  release_capacitance(partial, body.capacitance);
-  CHECK(std::all_of(body.capacitance.slot, body.capacitance.slot + body.view->domain_count,
+  release_capacitance(partial, rooms.capacitance);
+  CHECK(std::all_of(rooms.capacitance.slot, rooms.capacitance.slot + rooms.view.domain_count,
                     [](std::uint32_t slot) { return slot == layout::none; }));
 }
 
-TEST_CASE("the capacitance matrix is T^-1 S T^-T of the stored couplings, whole and by its last rows") {
+TEST_CASE_TEMPLATE("the capacitance matrix is T^-1 S T^-T of the stored couplings, whole and by its last rows",
+                   Components, One, Three) {
+  constexpr unsigned N = Components::value;
   for (const layout::Wavelet kind : layout::wavelets) {
     CAPTURE(static_cast<std::uint32_t>(kind));
-    const ModelData data = synthetic_model({.levels = 5, .wavelet = kind, .touchable_above = 0.5});
+    const ModelData data = synthetic_model({.components = N, .levels = 5, .wavelet = kind, .touchable_above = 0.5});
     const TestModel model(encode(data));
-    const PlacedBody placed(model.view(), most);
-    Body& body = *placed.body;
+    Rooms<N> rooms(model.view(), most);
     std::mt19937_64 random(7);
     int with_panel = 0;
     int with_functionals = 0;
-    for (std::uint32_t c = 0; c < body.view->levels; ++c) {
+    for (std::uint32_t c = 0; c < rooms.view.levels; ++c) {
       const Eigen::MatrixXd exact = decoded_compliance(data, c);
       for (const std::uint32_t count : {1U, 2U, 7U, most}) {
         for (const bool scattered : {false, true}) {
-          const auto places = choose_places(*body.view, c, count, scattered, random);
-          const TouchedSet touched(body, c, places);
+          const auto places = choose_places(rooms.view, c, count, scattered, random);
+          const TouchedSet<N> touched(rooms, c, places);
           check_whole(touched, exact, places);
           for (const std::uint32_t rows : {1U, 3U, 16U}) {
             const std::uint32_t last = std::min(rows, touched.set.count);
-            const bool panel = has_panel(body.capacitance.room, count_slots(touched.set, body.touched), last);
+            const bool panel = has_panel(rooms.capacitance.room, count_slots(touched.set, rooms.touched), last);
             ++(panel ? with_panel : with_functionals);
             check_rows(touched, exact, places, last, rows == 3 ? 1 : any_budget);
           }
@@ -154,8 +159,13 @@ TEST_CASE("the capacitance matrix is T^-1 S T^-T of the stored couplings, whole 
 TEST_CASE("what bounds the work of any set bounds that of each, with a panel and without") {
   Prediction prediction;
   SUBCASE("numbers") {}
+  SUBCASE("numbers, scalar") { prediction = prediction_of(TestModel({.components = 1, .levels = 2}).view()); }
   SUBCASE("blocks") {
     prediction = prediction_of(TestModel({.levels = 2, .wavelet = layout::Wavelet::equilibrated}).view());
+  }
+  SUBCASE("blocks, scalar") {
+    prediction =
+        prediction_of(TestModel({.components = 1, .levels = 2, .wavelet = layout::Wavelet::equilibrated}).view());
   }
   CapacitanceCounts bounds{.prediction = prediction,
                            .columns = 40,

@@ -7,24 +7,25 @@
 #endif
 
 #include "runtime/algebra/processor.hpp"
+#include "runtime/algebra/stored_block.hpp"
 
 namespace greenloop {
 namespace {
 
-#if defined(__SSE2__) || defined(__ARM_NEON)
 // stored blocks of `bits` a value times one force
-template <unsigned bits>
+template <unsigned N, unsigned bits>
 class Product {
  public:
-  explicit Product(Float4 force) : force_{splat3(force[0]), splat3(force[1]), splat3(force[2])} {}
+  explicit Product(Vector<N> force) : force_(component_splats(force)) {}
 
-  void add(const std::byte* value, Float4& sum) const { sum += product(StoredBlock<bits>::load(value), force_); }
+  void add(const std::byte* value, Vector<N>& sum) const { sum += product(StoredBlock<N, bits>::load(value), force_); }
 
  private:
-  Float4 force_[3];
+  Splats<N> force_;
 };
-#else
-// the elements of a stored block, in quanta
+
+#if !defined(__SSE2__) && !defined(__ARM_NEON)
+// the elements of a stored 3x3 block, in quanta
 template <unsigned bits>
 class Elements {
  public:
@@ -57,11 +58,11 @@ class Elements {
 
 // the same on a processor without vectors: three lanes; the powers of two of the stored values are in the force
 template <unsigned bits>
-class Product {
+class Product<3, bits> {
  public:
   explicit Product(Float4 force)
-      : force_{force[0] / StoredBlock<bits>::widening, force[1] / StoredBlock<bits>::widening,
-               force[2] / StoredBlock<bits>::widening} {}
+      : force_{force[0] / StoredBlock<3, bits>::widening, force[1] / StoredBlock<3, bits>::widening,
+               force[2] / StoredBlock<3, bits>::widening} {}
 
   void add(const std::byte* value, Float4& sum) const {
     const Elements<bits> at(value);
@@ -76,22 +77,24 @@ class Product {
 };
 #endif
 
-template <unsigned bits, class Index>
-void add_each(const CouplingsView& couplings, std::uint32_t begin, std::uint32_t end, Float4 force, Float4* sums) {
-  const Product<bits> product_with_force(force);
+template <unsigned N, unsigned bits, class Index>
+void add_each(const CouplingsView& couplings, std::uint32_t begin, std::uint32_t end, Vector<N> force,
+              Vector<N>* sums) {
+  constexpr std::size_t bytes = StoredBlock<N, bits>::bytes;
+  const Product<N, bits> product_with_force(force);
   const auto* const row = static_cast<const Index*>(couplings.index);
-  const std::byte* value = couplings.value + StoredBlock<bits>::bytes * std::size_t{begin};
-  for (std::uint32_t at = begin; at < end; ++at, value += StoredBlock<bits>::bytes) {
+  const std::byte* value = couplings.value + bytes * std::size_t{begin};
+  for (std::uint32_t at = begin; at < end; ++at, value += bytes) {
     product_with_force.add(value, sums[row[at]]);
   }
 }
 
-template <unsigned bits>
-void add_blocks(const BlockRange& range, Float4 force, Float4* sums) noexcept {
+template <unsigned N, unsigned bits>
+void add_blocks(const BlockRange& range, Vector<N> force, Vector<N>* sums) noexcept {
   if (range.couplings->index_bytes == 2) {
-    add_each<bits, std::uint16_t>(*range.couplings, range.begin, range.end, force, sums);
+    add_each<N, bits, std::uint16_t>(*range.couplings, range.begin, range.end, force, sums);
   } else {
-    add_each<bits, std::uint32_t>(*range.couplings, range.begin, range.end, force, sums);
+    add_each<N, bits, std::uint32_t>(*range.couplings, range.begin, range.end, force, sums);
   }
 }
 
@@ -146,7 +149,7 @@ class TwoColumns {
 template <unsigned bits, class Index>
 [[gnu::target("avx2")]] void add_pairs(const CouplingsView& couplings, std::uint32_t begin, std::uint32_t end,
                                        Float4 force, Float4* sums) {
-  constexpr std::size_t bytes = StoredBlock<bits>::bytes;
+  constexpr std::size_t bytes = StoredBlock<3, bits>::bytes;
   static constexpr Spread<bits> spread;
   const TwoColumns<bits> first(spread, 0);
   const TwoColumns<bits> second(spread, 1);
@@ -167,7 +170,7 @@ template <unsigned bits, class Index>
     add_to(sums[row[at + 1]], _mm256_extractf128_ps(moved, 1));
   }
   _mm256_zeroupper();  // gcc 12 leaves it out before a call in the end, and all that follows would be slow
-  add_each<bits, Index>(couplings, at, end, force, sums);
+  add_each<3, bits, Index>(couplings, at, end, force, sums);
 }
 
 template <unsigned bits>
@@ -182,19 +185,30 @@ template <unsigned bits>
 
 }  // namespace
 
-BlockSums portable_block_sums() noexcept {
+template <unsigned N>
+BlockSums<N> portable_block_sums() noexcept {
   static_assert(layout::layers == 4 && layout::value_bits[0] == 16 && layout::value_bits[1] == 16 &&
                 layout::value_bits[2] == 8 && layout::value_bits[3] == 4);
-  return {{add_blocks<16>, add_blocks<16>, add_blocks<8>, add_blocks<4>}};
+  static constexpr BlockSums<N> sums = {{add_blocks<N, 16>, add_blocks<N, 16>, add_blocks<N, 8>, add_blocks<N, 4>}};
+  return sums;
 }
 
-BlockSums fastest_block_sums() noexcept {
+template <>
+BlockSums<1> fastest_block_sums<1>() noexcept {
+  return portable_block_sums<1>();
+}
+
+template <>
+BlockSums<3> fastest_block_sums<3>() noexcept {
 #if defined(__x86_64__)
   if (has_avx2()) {
-    return {{add_blocks<16>, add_blocks<16>, add_blocks_avx2<8>, add_blocks_avx2<4>}};
+    return {{add_blocks<3, 16>, add_blocks<3, 16>, add_blocks_avx2<8>, add_blocks_avx2<4>}};
   }
 #endif
-  return portable_block_sums();
+  return portable_block_sums<3>();
 }
+
+template BlockSums<1> portable_block_sums<1>() noexcept;
+template BlockSums<3> portable_block_sums<3>() noexcept;
 
 }  // namespace greenloop

@@ -3,20 +3,21 @@
 #include <cstddef>
 
 #include "formats/stored_blocks.hpp"
+#include "runtime/algebra/stored_block.hpp"
 #include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {
 
 // calls visit(the stored type) for the bits of a value
-template <class Visit>
+template <unsigned N, class Visit>
 void with_stored(std::uint32_t value_bits, Visit visit) {
   if (value_bits == 4) {
-    visit(StoredBlock<4>{});
+    visit(StoredBlock<N, 4>{});
   } else if (value_bits == 8) {
-    visit(StoredBlock<8>{});
+    visit(StoredBlock<N, 8>{});
   } else {
-    visit(StoredBlock<16>{});
+    visit(StoredBlock<N, 16>{});
   }
 }
 
@@ -68,14 +69,17 @@ void add_counts(const std::uint32_t* counts, std::uint32_t size, LevelPair& pair
 
 }  // namespace
 
+template <unsigned N>
 float block_factor(const layout::Info& info, std::uint32_t layer) noexcept {
   float widening = 0;
-  with_stored(layout::value_bits[layer], [&](auto stored) { widening = decltype(stored)::widening; });
+  with_stored<N>(layout::value_bits[layer], [&](auto stored) { widening = decltype(stored)::widening; });
   return info.quantum[layer] * widening;
 }
 
+template <unsigned N>
 std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
-                           const std::uint32_t* slot, std::uint32_t slots, BlockPlace* places, Block* blocks) noexcept {
+                           const std::uint32_t* slot, std::uint32_t slots, BlockPlace* places,
+                           Block<N>* blocks) noexcept {
   if (view.columns == 0) {
     return 0;
   }
@@ -84,7 +88,7 @@ std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::
   const std::uint32_t count =
       view.index_bytes == 2 ? choose(static_cast<const std::uint16_t*>(view.index), begin, end, slot, slots, places)
                             : choose(static_cast<const std::uint32_t*>(view.index), begin, end, slot, slots, places);
-  with_stored(layout::value_bits[layer], [&](auto stored) {
+  with_stored<N>(layout::value_bits[layer], [&](auto stored) {
     using Stored = decltype(stored);
     for (std::uint32_t n = 0; n < count; ++n) {
       blocks[n] = Stored::load(view.value + Stored::bytes * std::size_t{places[n].position});
@@ -118,5 +122,12 @@ CouplingCounts count_couplings(const ModelView& view) noexcept {
   }
   return counts;
 }
+
+template float block_factor<1>(const layout::Info&, std::uint32_t) noexcept;
+template float block_factor<3>(const layout::Info&, std::uint32_t) noexcept;
+template std::uint32_t load_slotted<1>(const CouplingsView&, std::uint32_t, std::uint32_t, const std::uint32_t*,
+                                       std::uint32_t, BlockPlace*, Block<1>*) noexcept;
+template std::uint32_t load_slotted<3>(const CouplingsView&, std::uint32_t, std::uint32_t, const std::uint32_t*,
+                                       std::uint32_t, BlockPlace*, Block<3>*) noexcept;
 
 }  // namespace greenloop

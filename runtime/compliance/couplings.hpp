@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
-#include "runtime/algebra/float4.hpp"
+#include "runtime/algebra/block.hpp"
 
 namespace greenloop {
 
@@ -17,6 +17,7 @@ struct BlockPlace {
 };
 
 /// Value of one quantum of a layer, times the widening of the stored values (see StoredBlock).
+template <unsigned N>
 [[nodiscard]] float block_factor(const layout::Info& info, std::uint32_t layer) noexcept;
 
 /// Blocks of a column; a section without blocks has no columns.
@@ -47,9 +48,11 @@ void visit_rows(const CouplingsView& view, std::uint32_t column, std::uint32_t f
 
 /// The blocks of a column in the rows with a slot below `slots`, to be multiplied by block_factor; target: the slot.
 /// The others are not decoded. Returns their number. slot: [rows], layout::none without one; places, blocks: [blocks of
-/// the column + 1]. For the loop; work: 4 units per block, and 12 for each that is returned.
+/// the column + 1]. For the loop; work: 4 units per block, and N N + 3 for each that is returned.
+template <unsigned N>
 std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::uint32_t column,
-                           const std::uint32_t* slot, std::uint32_t slots, BlockPlace* places, Block* blocks) noexcept;
+                           const std::uint32_t* slot, std::uint32_t slots, BlockPlace* places,
+                           Block<N>* blocks) noexcept;
 
 /// Blocks between the coefficients of a level and those of another.
 struct LevelPair {

@@ -6,16 +6,21 @@
 #include <vector>
 
 #include "formats/stored_blocks.hpp"
+#include "runtime/testing/rooms.hpp"
 #include "runtime/testing/test_body.hpp"
 #include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {
 
-constexpr SyntheticOptions every_layer{.levels = 4, .epsilon = 0.002, .quantum = 0.0015};
+SyntheticOptions every_layer(unsigned components) {
+  return {.components = components, .levels = 4, .epsilon = 0.002, .quantum = 0.0015};
+}
 
-TEST_CASE("the blocks of a column in rows with a slot are read as they were written, in every layer") {
-  const ModelData data = synthetic_model(every_layer);
+TEST_CASE_TEMPLATE("the blocks of a column in rows with a slot are read as they were written, in every layer",
+                   Components, One, Three) {
+  constexpr unsigned N = Components::value;
+  const ModelData data = synthetic_model(every_layer(N));
   const TestModel model(encode(data));
   const ModelView& view = model.view();
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
@@ -29,10 +34,10 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
         slot[i] = i / 3;
       }
       std::vector<BlockPlace> places(couplings.rows + 1);
-      std::vector<Block> blocks(couplings.rows + 1);
+      std::vector<Block<N>> blocks(couplings.rows + 1);
       for (std::uint32_t j = 0; j < couplings.columns; ++j) {
         const std::uint32_t count =
-            load_slotted(couplings, layer, j, slot.data(), couplings.rows, places.data(), blocks.data());
+            load_slotted<N>(couplings, layer, j, slot.data(), couplings.rows, places.data(), blocks.data());
         std::uint32_t n = 0;
         for (std::uint32_t b = written.begin[j]; b < written.begin[j + 1]; ++b) {
           if (written.index[b] % 3 != 0) {
@@ -40,10 +45,10 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
           }
           REQUIRE(n < count);
           CHECK(places[n].target == written.index[b] / 3);
-          for (std::uint32_t k = 0; k < 9; ++k) {
-            const int value = written.value[9 * std::size_t{b} + k];
-            CHECK(stored_value<3>(couplings, layout::value_bits[layer], b, k) == value);
-            const float scaled = block_factor(data.info, layer) * blocks[n].column[k / 3][k % 3];
+          for (std::uint32_t k = 0; k < N * N; ++k) {
+            const int value = written.value[N * N * std::size_t{b} + k];
+            CHECK(stored_value<N>(couplings, layout::value_bits[layer], b, k) == value);
+            const float scaled = block_factor<N>(data.info, layer) * component(blocks[n].column[k / N], k % N);
             CHECK(scaled == data.info.quantum[layer] * static_cast<float>(value));
           }
           ++n;
@@ -57,7 +62,7 @@ TEST_CASE("the blocks of a column in rows with a slot are read as they were writ
 }
 
 TEST_CASE("blocks are counted by pairs of levels, from both sides") {
-  const ModelData data = synthetic_model(every_layer);
+  const ModelData data = synthetic_model(every_layer(3));
   const TestModel model(encode(data));
   const ModelView& view = model.view();
   const auto level_of_place = [&view](std::uint32_t place) {

@@ -31,25 +31,27 @@ BlockRange blocks_of(const CouplingsView& couplings, std::uint32_t column) {
 }
 
 // what a force coefficient moves, up to the coefficients before `end`
+template <unsigned N>
 class CoefficientColumn {
  public:
-  CoefficientColumn(const FieldModel& model, std::uint32_t coefficient, std::uint32_t end)
+  CoefficientColumn(const FieldModel<N>& model, std::uint32_t coefficient, std::uint32_t end)
       : model_(model),
         level_(model.refinement.view->level[model.refinement.level[coefficient]]),
         coefficient_(coefficient),
         end_(end) {}
 
-  void add(Float4 force, const CoefficientSums& sums) const {
+  void add(Vector<N> force, const CoefficientSums<N>& sums) const {
     const layout::Info& info = *model_.refinement.view->info;
     const std::uint32_t own = coefficient_ - level_.domain_begin;
-    const Float4 scaled = symmetric_product(level_.scales_of<3>()[own].root, force);
+    const Vector<N> scaled_force = symmetric_product(level_.scales_of<N>()[own].root, force);
     if (coefficient_ < end_) {
-      Float4& sum = sums.of_blocks[coefficient_];
-      sum = sum3(sum, symmetric_product(level_.scales_of<3>()[own].diagonal, without_denormals(scaled)));
+      Vector<N>& sum = sums.of_blocks[coefficient_];
+      sum = added(sum, symmetric_product(level_.scales_of<N>()[own].diagonal, without_denormals(scaled_force)));
     }
     if (coefficient_ < model_.base.columns) {
-      model_.add_tiles(model_.base.column(coefficient_), tiles_of(end_),
-                       without_denormals(splat(info.quantum[BaseColumns::quantum_layer]) * scaled), sums.of_tiles);
+      model_.add_tiles(model_.base.template column<N>(coefficient_), tiles_of(end_),
+                       without_denormals(scaled(info.quantum[BaseColumns::quantum_layer], scaled_force)),
+                       sums.of_tiles);
     }
     const bool whole = end_ == model_.refinement.view->domain_count;
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
@@ -60,21 +62,21 @@ class CoefficientColumn {
       if (before.begin == before.end && after.begin == after.end) {
         continue;
       }
-      const Float4 in_quanta = without_denormals(splat(block_factor(info, layer)) * scaled);
+      const Vector<N> in_quanta = without_denormals(scaled(block_factor<N>(info, layer), scaled_force));
       model_.sums.add[layer](before, in_quanta, sums.of_blocks);
       model_.sums.add[layer](after, in_quanta, sums.of_blocks);
     }
   }
 
  private:
-  const FieldModel& model_;
+  const FieldModel<N>& model_;
   const LevelView& level_;
   std::uint32_t coefficient_;
   std::uint32_t end_;
 };
 
 // the sums of four coefficients of a tile, as one vector each
-void add_four(const TileSums& tile, std::size_t half, Float4* sums) {
+void add_four(const TileSums<3>& tile, std::size_t half, Float4* sums) {
   const Float4 x = tile.of[0][half];
   const Float4 y = tile.of[1][half];
   const Float4 z = tile.of[2][half];
@@ -88,21 +90,29 @@ void add_four(const TileSums& tile, std::size_t half, Float4* sums) {
   sums[3] += __builtin_shufflevector(xy_high, z_high, 2, 3, 6, 7);
 }
 
+void add_four(const TileSums<1>& tile, std::size_t half, float* sums) {
+  for (std::size_t k = 0; k < 4; ++k) {
+    sums[k] += tile.of[0][half][k];
+  }
+}
+
 // moves the sums of tiles to those of blocks
-void add_tile_sums(std::uint32_t end, const CoefficientSums& sums) {
+template <unsigned N>
+void add_tile_sums(std::uint32_t end, const CoefficientSums<N>& sums) {
   for (std::uint32_t t = 0; t < tiles_of(end); ++t) {
-    Float4* const of_blocks = sums.of_blocks + std::size_t{BaseColumns::width} * t;
+    Vector<N>* const of_blocks = sums.of_blocks + std::size_t{BaseColumns::width} * t;
     add_four(sums.of_tiles[t], 0, of_blocks);
     add_four(sums.of_tiles[t], 1, of_blocks + 4);
     sums.of_tiles[t] = {};
   }
   for (std::uint32_t i = end; i < BaseColumns::width * tiles_of(end); ++i) {
-    sums.of_blocks[i] = Float4{};  // of a tile that a field is cut in
+    sums.of_blocks[i] = Vector<N>{};  // of a tile that a field is cut in
   }
 }
 
 }  // namespace
 
+template <unsigned N>
 void count_field_blocks(const ModelView& view, const MirroredCouplings& mirrored, const BaseColumns& base,
                         std::uint32_t* up_to) noexcept {
   for (std::uint32_t own = 0; own < view.levels; ++own) {
@@ -111,7 +121,7 @@ void count_field_blocks(const ModelView& view, const MirroredCouplings& mirrored
       for (std::uint32_t q = 0; q < view.levels; ++q, ++up_to) {
         const std::uint32_t end = domain_up_to(view, q);
         *up_to = level.domain_begin + i < end ? 1 : 0;
-        *up_to += level.domain_begin + i < base.columns ? FieldBlocks::of_tile * tiles_of(end) : 0;
+        *up_to += level.domain_begin + i < base.columns ? FieldBlocks::of_tile<N> * tiles_of(end) : 0;
         for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
           for (const BlockRange& range : {blocks_before(level.couplings[layer], i, end),
                                           blocks_before(mirrored.layer[layer], level.domain_begin + i, end)}) {
@@ -123,37 +133,55 @@ void count_field_blocks(const ModelView& view, const MirroredCouplings& mirrored
   }
 }
 
-void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums& sums) noexcept {
+template <unsigned N>
+void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums<N>& sums) noexcept {
   if (sums.of_tiles != nullptr) {
     add_tile_sums(end, sums);
   }
   for (std::uint32_t q = 0; q < view.levels && view.level[q].domain_begin < end; ++q) {
     const LevelView& level = view.level[q];
-    Float4* const sum = sums.of_blocks + level.domain_begin;
+    Vector<N>* const sum = sums.of_blocks + level.domain_begin;
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      sum[i] = symmetric_product(level.scales_of<3>()[i].root, sum[i]);
+      sum[i] = symmetric_product(level.scales_of<N>()[i].root, sum[i]);
     }
   }
 }
 
-void sum_couplings(const FieldModel& model, const Touched& touched, std::uint32_t end, Float4* force,
-                   const CoefficientSums& sums) noexcept {
+template <unsigned N>
+void sum_couplings(const FieldModel<N>& model, const Touched& touched, std::uint32_t end, Vector<N>* force,
+                   const CoefficientSums<N>& sums) noexcept {
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       const std::uint32_t coefficient = touched.list[q][k];
-      CoefficientColumn(model, coefficient, end).add(force[coefficient], sums);
-      force[coefficient] = Float4{};
+      CoefficientColumn<N>(model, coefficient, end).add(force[coefficient], sums);
+      force[coefficient] = Vector<N>{};
     }
   }
 }
 
-void compute_field(const FieldModel& model, const ColumnForces& forces, const Touched& touched,
-                   const FieldLevels& levels, const FieldScratch& scratch, Float4* x) noexcept {
+template <unsigned N>
+void compute_field(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched,
+                   const FieldLevels& levels, const FieldScratch<N>& scratch, Vector<N>* x) noexcept {
   const ModelView& view = *model.refinement.view;
-  transform_forces(model.refinement, forces, touched, scratch.force);
-  sum_couplings(model, touched, domain_up_to(view, levels.details), scratch.force, scratch.sums);
+  transform_forces<N>(model.refinement, forces, touched, scratch.force);
+  sum_couplings<N>(model, touched, domain_up_to(view, levels.details), scratch.force, scratch.sums);
   scale_sums(view, domain_up_to(view, levels.details), scratch.sums);
-  inverse_transform(view, model.offsets, levels, scratch.sums.of_blocks, x);
+  inverse_transform<N>(view, model.offsets, levels, scratch.sums.of_blocks, x);
 }
+
+template void count_field_blocks<1>(const ModelView&, const MirroredCouplings&, const BaseColumns&,
+                                    std::uint32_t*) noexcept;
+template void count_field_blocks<3>(const ModelView&, const MirroredCouplings&, const BaseColumns&,
+                                    std::uint32_t*) noexcept;
+template void scale_sums<1>(const ModelView&, std::uint32_t, const CoefficientSums<1>&) noexcept;
+template void scale_sums<3>(const ModelView&, std::uint32_t, const CoefficientSums<3>&) noexcept;
+template void sum_couplings<1>(const FieldModel<1>&, const Touched&, std::uint32_t, Vector<1>*,
+                               const CoefficientSums<1>&) noexcept;
+template void sum_couplings<3>(const FieldModel<3>&, const Touched&, std::uint32_t, Vector<3>*,
+                               const CoefficientSums<3>&) noexcept;
+template void compute_field<1>(const FieldModel<1>&, const ColumnForces&, const Touched&, const FieldLevels&,
+                               const FieldScratch<1>&, Vector<1>*) noexcept;
+template void compute_field<3>(const FieldModel<3>&, const ColumnForces&, const Touched&, const FieldLevels&,
+                               const FieldScratch<3>&, Vector<3>*) noexcept;
 
 }  // namespace greenloop

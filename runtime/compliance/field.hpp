@@ -14,32 +14,36 @@
 namespace greenloop {
 
 /// What compute_field reads.
+template <unsigned N>
 struct FieldModel {
   const Refinement& refinement;
   const MirroredCouplings& mirrored;
   const BaseColumns& base;
-  const PredictionOffsets& offsets;
-  const BlockSums& sums;  ///< what blocks are summed with
-  AddTiles add_tiles;     ///< and tiles
+  const PredictionOffsets<N>& offsets;
+  const BlockSums<N>& sums;  ///< what blocks are summed with
+  AddTiles<N> add_tiles;     ///< and tiles
 };
 
 /// What is summed, in units of the coefficients' scales: the sums of both, zero between uses.
+template <unsigned N>
 struct CoefficientSums {
-  Float4* of_blocks;   ///< [domain]
-  TileSums* of_tiles;  ///< [tiles_of(domain)]; null without BaseColumns
+  Vector<N>* of_blocks;   ///< [domain, up to a whole tile]
+  TileSums<N>* of_tiles;  ///< [tiles_of(domain)]; null without BaseColumns
 };
 
 /// Arrays of compute_field: zero before and after.
+template <unsigned N>
 struct FieldScratch {
-  Float4* force;  ///< [domain]
-  CoefficientSums sums;
+  Vector<N>* force;  ///< [domain]
+  CoefficientSums<N> sums;
 };
 
 /// How many blocks a force on a coefficient is summed with, by the levels that it moves: every one that the file has of
 /// it. Coefficients that forces reach are summed once, however many contacts share them.
 struct FieldBlocks {
-  static constexpr std::uint32_t of_tile = 3;  ///< a tile of BaseColumns counts as so many blocks
-  static_assert(of_tile * block_work >= tile_work);
+  /// A tile of BaseColumns counts as so many blocks of N x N.
+  template <unsigned N>
+  static constexpr auto of_tile = static_cast<std::uint32_t>((tile_work<N> + block_work<N> - 1) / block_work<N>);
 
   std::uint32_t levels = 0;
   const std::uint32_t* up_to = nullptr;  ///< [domain * levels] blocks that move levels 0..q
@@ -50,24 +54,36 @@ struct FieldBlocks {
 };
 
 /// Fills up_to: [domain * levels]. Start-up; linear in the blocks.
+template <unsigned N>
 void count_field_blocks(const ModelView& view, const MirroredCouplings& mirrored, const BaseColumns& base,
                         std::uint32_t* up_to) noexcept;
 
+/// Work units of a coefficient in sum_couplings: its scale, and where its blocks stand.
+template <unsigned N>
+inline constexpr std::uint64_t coefficient_work = 2 * N* N + 42;
+
+/// Work units of a coefficient in scale_sums.
+template <unsigned N>
+inline constexpr std::uint64_t scale_work = N* N + 5;
+
 /// sums += W U W^T times force coefficients, in units of the scales of the coefficients before `end`, which are moved.
 /// force: [domain] of touched coefficients; zero afterwards. For the loop; work: block_work units per block of
-/// FieldBlocks and 60 per coefficient.
-void sum_couplings(const FieldModel& model, const Touched& touched, std::uint32_t end, Float4* force,
-                   const CoefficientSums& sums) noexcept;
+/// FieldBlocks and coefficient_work per coefficient.
+template <unsigned N>
+void sum_couplings(const FieldModel<N>& model, const Touched& touched, std::uint32_t end, Vector<N>* force,
+                   const CoefficientSums<N>& sums) noexcept;
 
 /// Adds the sums of tiles to those of blocks and scales these, for the coefficients before `end`; those of tiles are
-/// zero afterwards. For the loop; work: 14 units per coefficient.
-void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums& sums) noexcept;
+/// zero afterwards. For the loop; work: scale_work per coefficient.
+template <unsigned N>
+void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums<N>& sums) noexcept;
 
 /// Fast summation in two-sided form (James & Pai 2003, section 5.4; docs/theory.md): x = W^-1 (W U W^T) T^-T f, the
 /// displacement of the nodes of K(levels.nodes) by some forces, with details up to levels.details, interpolated beyond.
 /// It is that of the very compliance whose forces hold the contacts: all couplings, none left out. touched: by the same
 /// columns; x: [nodes of K(levels.nodes)], all of which are written. For the loop; work: field_work.
-void compute_field(const FieldModel& model, const ColumnForces& forces, const Touched& touched,
-                   const FieldLevels& levels, const FieldScratch& scratch, Float4* x) noexcept;
+template <unsigned N>
+void compute_field(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched,
+                   const FieldLevels& levels, const FieldScratch<N>& scratch, Vector<N>* x) noexcept;
 
 }  // namespace greenloop

@@ -7,32 +7,35 @@ namespace greenloop {
 namespace {
 
 // calls take(n, coefficient) for the n-th that a force on a column reaches, while `force` holds what it is there
-template <class Take>
-void transform_force(const Refinement& refinement, std::uint32_t column, const float (&of_column)[3],
-                     const Touched& touched, Float4* force, Take take) {
-  transform_forces(refinement, {1, &column, of_column}, touched, force);
+template <unsigned N, class Take>
+void transform_force(const Refinement& refinement, std::uint32_t column, const float (&of_column)[N],
+                     const Touched& touched, Vector<N>* force, Take take) {
+  transform_forces<N>(refinement, {1, &column, of_column}, touched, force);
   std::uint32_t n = 0;
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
       take(n++, touched.list[q][k]);
     }
   }
-  clear_forces(touched, force);
+  clear_forces<N>(touched, force);
 }
 
+template <unsigned N>
 void write_numbers(const Refinement& refinement, std::uint32_t column, const std::uint32_t* slot,
-                   const Touched& touched, Float4* force, PointCoefficient* coefficients) {
-  transform_force(refinement, column, {1, 1, 1}, touched, force, [&](std::uint32_t n, std::uint32_t coefficient) {
-    coefficients[n] = {slot[coefficient], force[coefficient][0]};
+                   const Touched& touched, Vector<N>* force, PointCoefficient* coefficients) {
+  const float along_first[N] = {1};  // weights are alike along all axes
+  transform_force<N>(refinement, column, along_first, touched, force, [&](std::uint32_t n, std::uint32_t coefficient) {
+    coefficients[n] = {slot[coefficient], component(force[coefficient], 0)};
   });
 }
 
+template <unsigned N>
 void write_blocks(const Refinement& refinement, std::uint32_t column, const std::uint32_t* slot, const Touched& touched,
-                  Float4* force, PointCoefficient* coefficients, Block* block) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    float unit[3] = {};
+                  Vector<N>* force, PointCoefficient* coefficients, Block<N>* block) {
+  for (std::size_t axis = 0; axis < N; ++axis) {
+    float unit[N] = {};
     unit[axis] = 1;
-    transform_force(refinement, column, unit, touched, force, [&](std::uint32_t n, std::uint32_t coefficient) {
+    transform_force<N>(refinement, column, unit, touched, force, [&](std::uint32_t n, std::uint32_t coefficient) {
       coefficients[n] = {slot[coefficient], 1};
       block[n].column[axis] = force[coefficient];
     });
@@ -43,7 +46,8 @@ void write_blocks(const Refinement& refinement, std::uint32_t column, const std:
 }
 
 // the weights by slots
-void list_slot_rows(std::uint32_t rows, std::uint32_t slots, Functionals& functionals) {
+template <unsigned N>
+void list_slot_rows(std::uint32_t rows, std::uint32_t slots, Functionals<N>& functionals) {
   std::uint32_t* begin = functionals.slot_begin;
   std::memset(begin, 0, sizeof(std::uint32_t) * (slots + std::size_t{1}));
   for (std::uint32_t k = 0; k < functionals.begin[rows]; ++k) {
@@ -65,30 +69,32 @@ void list_slot_rows(std::uint32_t rows, std::uint32_t slots, Functionals& functi
 
 }  // namespace
 
-void Functionals::carve(Arena& arena, std::uint64_t columns, std::uint64_t entries, std::uint64_t slots,
-                        const Prediction& prediction) noexcept {
+template <unsigned N>
+void Functionals<N>::carve(Arena& arena, std::uint64_t columns, std::uint64_t entries, std::uint64_t slots,
+                           const Prediction& prediction) noexcept {
   coefficients = arena.take<PointCoefficient>(entries);
   begin = arena.take<std::uint32_t>(columns + 1);
   row = arena.take<SlotRow>(entries);
   slot_begin = arena.take<std::uint32_t>(slots + 1);
   if (prediction.blocks) {
-    block = arena.take<Block>(entries);
+    block = arena.take<Block<N>>(entries);
     block_of_row = arena.take<std::uint32_t>(entries);
   }
 }
 
-void list_functionals(const Refinement& refinement, const SlottedColumns& columns, Touched& touched, Float4* force,
-                      Functionals& functionals) noexcept {
+template <unsigned N>
+void list_functionals(const Refinement& refinement, const SlottedColumns& columns, Touched& touched, Vector<N>* force,
+                      Functionals<N>& functionals) noexcept {
   functionals.begin[0] = 0;
   for (std::uint32_t i = 0; i < columns.count; ++i) {
     const std::uint32_t column = columns.column[i];
     const std::uint32_t begin = functionals.begin[i];
     touch(refinement, &column, 1, touched);
     if (refinement.prediction.blocks) {
-      write_blocks(refinement, column, columns.slot, touched, force, functionals.coefficients + begin,
-                   functionals.block + begin);
+      write_blocks<N>(refinement, column, columns.slot, touched, force, functionals.coefficients + begin,
+                      functionals.block + begin);
     } else {
-      write_numbers(refinement, column, columns.slot, touched, force, functionals.coefficients + begin);
+      write_numbers<N>(refinement, column, columns.slot, touched, force, functionals.coefficients + begin);
     }
     functionals.begin[i + 1] = begin + static_cast<std::uint32_t>(touched.coefficients());
     clear(touched);
@@ -96,14 +102,22 @@ void list_functionals(const Refinement& refinement, const SlottedColumns& column
   list_slot_rows(columns.count, columns.slots, functionals);
 }
 
-void add_by_blocks(const Functionals& functionals, std::uint32_t slot, const Block& block, Block* sum) noexcept {
-  const BlockSplats of_block = splats(block);
+template <unsigned N>
+void add_by_blocks(const Functionals<N>& functionals, std::uint32_t slot, const Block<N>& block,
+                   Block<N>* sum) noexcept {
+  const BlockSplats<N> of_block = splats(block);
   for (std::uint32_t k = functionals.slot_begin[slot]; k < functionals.slot_begin[slot + 1]; ++k) {
-    const Block term = product(functionals.block[functionals.block_of_row[k]], of_block);
-    Block& of_row = sum[functionals.row[k].first];
-    of_row = {
-        {of_row.column[0] + term.column[0], of_row.column[1] + term.column[1], of_row.column[2] + term.column[2]}};
+    add(product(functionals.block[functionals.block_of_row[k]], of_block), sum[functionals.row[k].first]);
   }
 }
+
+template struct Functionals<1>;
+template struct Functionals<3>;
+template void list_functionals<1>(const Refinement&, const SlottedColumns&, Touched&, Vector<1>*,
+                                  Functionals<1>&) noexcept;
+template void list_functionals<3>(const Refinement&, const SlottedColumns&, Touched&, Vector<3>*,
+                                  Functionals<3>&) noexcept;
+template void add_by_blocks<1>(const Functionals<1>&, std::uint32_t, const Block<1>&, Block<1>*) noexcept;
+template void add_by_blocks<3>(const Functionals<3>&, std::uint32_t, const Block<3>&, Block<3>*) noexcept;
 
 }  // namespace greenloop

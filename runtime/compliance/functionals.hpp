@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "runtime/algebra/float4.hpp"
+#include "runtime/algebra/block.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/wavelet/force_transform.hpp"
 #include "runtime/wavelet/reach.hpp"
@@ -25,12 +25,13 @@ struct SlotRow {
 
 /// Functionals: what the displacements of some columns depend on. With block predictions each weight is times a block,
 /// the displacement of the column per displacement of the coefficient.
+template <unsigned N>
 struct Functionals {
   PointCoefficient* coefficients = nullptr;  ///< [entries] one functional after the other
   std::uint32_t* begin = nullptr;            ///< [columns + 1] of each functional
   SlotRow* row = nullptr;                    ///< [entries] the same by slots
   std::uint32_t* slot_begin = nullptr;       ///< [slots + 1] of each slot
-  Block* block = nullptr;                    ///< [entries] of `coefficients`; null where weights are numbers
+  Block<N>* block = nullptr;                 ///< [entries] of `coefficients`; null where weights are numbers
   std::uint32_t* block_of_row = nullptr;     ///< [entries] of `row`, in `block`; null as well
 
   /// Arrays out of `arena`; null while it counts.
@@ -49,11 +50,14 @@ struct SlottedColumns {
 /// Lists the functionals of some columns. touched: clear before and after; force: [domain], 0 before and after. For the
 /// loop; work: a unit per column and slot, and per column that of touch and of transform_forces, which with blocks is
 /// done for each axis, and 16 for each of its coefficients each time.
-void list_functionals(const Refinement& refinement, const SlottedColumns& columns, Touched& touched, Float4* force,
-                      Functionals& functionals) noexcept;
+template <unsigned N>
+void list_functionals(const Refinement& refinement, const SlottedColumns& columns, Touched& touched, Vector<N>* force,
+                      Functionals<N>& functionals) noexcept;
 
 /// sum += weight times `block` for each row that depends on a slot; sum: of their SlotRow::first. With block
 /// predictions. For the loop; work: Prediction::weight_work per row.
-void add_by_blocks(const Functionals& functionals, std::uint32_t slot, const Block& block, Block* sum) noexcept;
+template <unsigned N>
+void add_by_blocks(const Functionals<N>& functionals, std::uint32_t slot, const Block<N>& block,
+                   Block<N>* sum) noexcept;
 
 }  // namespace greenloop

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t padding = 16;  // bytes that a load may reach beyond a block
 
-std::size_t block_bytes(std::uint32_t bits) { return (9 * std::size_t{bits} + 7) / 8; }
-
 std::uint32_t index_bytes(const ModelView& view) { return view.domain_count <= 0x10000 ? 2 : 4; }
 
 // calls visit(section, row, column among all coefficients, position in the section) for the blocks of a layer that are
@@ -54,27 +52,30 @@ void store_value(std::uint32_t bits, std::byte* block, std::uint32_t k, std::int
   }
 }
 
+template <unsigned N>
 void store_transposed(const CouplingsView& from, std::uint32_t bits, std::uint32_t position, std::byte* block) {
-  for (std::uint32_t k = 0; k < 9; ++k) {
-    store_value(bits, block, 3 * (k % 3) + k / 3, stored_value<3>(from, bits, position, k));
+  for (std::uint32_t k = 0; k < N * N; ++k) {
+    store_value(bits, block, N * (k % N) + k / N, stored_value<N>(from, bits, position, k));
   }
 }
 
 }  // namespace
 
-void MirroredCouplingsMaker::carve(Arena& arena, const ModelView& view, const BaseColumns& base) noexcept {
+template <unsigned N>
+void MirroredCouplingsMaker<N>::carve(Arena& arena, const ModelView& view, const BaseColumns& base) noexcept {
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     std::uint64_t blocks = 0;
     visit_layer(view, layer, base, nullptr,
                 [&](const CouplingsView&, std::uint32_t, std::uint32_t, std::uint32_t) { ++blocks; });
     begin_[layer] = arena.take<std::uint32_t>(view.domain_count + std::uint64_t{1});
     index_[layer] = arena.take<std::byte>(index_bytes(view) * blocks);
-    value_[layer] = arena.take_zeroed<std::byte>(block_bytes(layout::value_bits[layer]) * blocks + padding);
+    value_[layer] = arena.take_zeroed<std::byte>(layout::block_bytes(N, layout::value_bits[layer]) * blocks + padding);
   }
 }
 
-MirroredCouplings MirroredCouplingsMaker::make(const ModelView& view, const BaseColumns& base,
-                                               const std::uint8_t* read) noexcept {
+template <unsigned N>
+MirroredCouplings MirroredCouplingsMaker<N>::make(const ModelView& view, const BaseColumns& base,
+                                                  const std::uint8_t* read) noexcept {
   MirroredCouplings mirrored;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const std::uint32_t bits = layout::value_bits[layer];
@@ -90,7 +91,7 @@ MirroredCouplings MirroredCouplingsMaker::make(const ModelView& view, const Base
                 [&](const CouplingsView& from, std::uint32_t row, std::uint32_t column, std::uint32_t position) {
                   const std::uint32_t at = begin[row]++;
                   store_row(view, index_[layer], at, column);
-                  store_transposed(from, bits, position, value_[layer] + block_bytes(bits) * at);
+                  store_transposed<N>(from, bits, position, value_[layer] + layout::block_bytes(N, bits) * at);
                 });
     std::memmove(begin + 1, begin, sizeof(std::uint32_t) * view.domain_count);
     begin[0] = 0;
@@ -103,6 +104,9 @@ MirroredCouplings MirroredCouplingsMaker::make(const ModelView& view, const Base
   }
   return mirrored;
 }
+
+template class MirroredCouplingsMaker<1>;
+template class MirroredCouplingsMaker<3>;
 
 void mark_read(const Refinement& refinement, Touched& touched, std::uint8_t* read) noexcept {
   const ModelView& view = *refinement.view;

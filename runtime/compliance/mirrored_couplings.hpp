@@ -18,7 +18,8 @@ struct MirroredCouplings {
   CouplingsView layer[layout::layers];
 };
 
-/// Where they are made.
+/// Where they are made, of N x N blocks.
+template <unsigned N>
 class MirroredCouplingsMaker {
  public:
   /// Arrays out of `arena`; null while it counts. base: what need not be held. Start-up; linear in the blocks.

@@ -7,7 +7,7 @@
 
 #include "formats/stored_blocks.hpp"
 #include "formats/write/aligned_bytes.hpp"
-#include "runtime/testing/placed_body.hpp"
+#include "runtime/testing/rooms.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -24,12 +24,14 @@ std::uint32_t find_row(const CouplingsView& view, std::uint32_t column, std::uin
   return layout::none;
 }
 
-TEST_CASE("the mirrored couplings are the stored ones, transposed, each once, rows increasing") {
+TEST_CASE_TEMPLATE("the mirrored couplings are the stored ones, transposed, each once, rows increasing", Components,
+                   One, Three) {
+  constexpr unsigned N = Components::value;
   for (const layout::Wavelet kind : layout::wavelets) {
-    const TestModel model({.levels = 4, .wavelet = kind});
+    const TestModel model({.components = N, .levels = 4, .wavelet = kind});
     const ModelView& view = model.view();
-    const PlacedBody placed(view);
-    MirroredCouplingsMaker maker;
+    const Rooms<N> rooms(view);
+    MirroredCouplingsMaker<N> maker;
     Arena counting;
     maker.carve(counting, view, {});
     AlignedBytes memory(static_cast<std::size_t>(counting.bytes()));
@@ -46,12 +48,12 @@ TEST_CASE("the mirrored couplings are the stored ones, transposed, each once, ro
           const std::uint32_t row = stored_row(mirrored, at);
           REQUIRE(row > j);
           REQUIRE((at == mirrored.begin[j] || row > stored_row(mirrored, at - 1)));
-          const LevelView& level = view.level[placed.body->refinement.level[row]];
+          const LevelView& level = view.level[rooms.refinement.level[row]];
           const std::uint32_t stored = find_row(level.couplings[layer], row - level.domain_begin, j);
           REQUIRE(stored != layout::none);
-          for (std::uint32_t k = 0; k < 9; ++k) {
-            CHECK(stored_value<3>(mirrored, layout::value_bits[layer], at, k) ==
-                  stored_value<3>(level.couplings[layer], layout::value_bits[layer], stored, 3 * (k % 3) + k / 3));
+          for (std::uint32_t k = 0; k < N * N; ++k) {
+            CHECK(stored_value<N>(mirrored, layout::value_bits[layer], at, k) ==
+                  stored_value<N>(level.couplings[layer], layout::value_bits[layer], stored, N * (k % N) + k / N));
           }
         }
       }
@@ -59,19 +61,20 @@ TEST_CASE("the mirrored couplings are the stored ones, transposed, each once, ro
   }
 }
 
-TEST_CASE("blocks that move what nobody reads are left out of the mirrored couplings") {
-  const TestModel model({.levels = 4, .read_above = 0.6});
+TEST_CASE_TEMPLATE("blocks that move what nobody reads are left out of the mirrored couplings", Components, One,
+                   Three) {
+  constexpr unsigned N = Components::value;
+  const TestModel model({.components = N, .levels = 4, .read_above = 0.6});
   const ModelView& view = model.view();
-  const PlacedBody placed(view);
-  Body& body = *placed.body;
+  Rooms<N> rooms(view);
   std::vector<std::uint8_t> read(view.domain_count);
-  mark_read(body.refinement, body.touched, read.data());
+  mark_read(rooms.refinement, rooms.touched, read.data());
   std::uint64_t unread = 0;
   for (const std::uint8_t byte : read) {
     unread += byte == 0 ? 1 : 0;
   }
   CHECK(unread > 10);
-  for (const CouplingsView& mirrored : body.mirrored.layer) {
+  for (const CouplingsView& mirrored : rooms.mirrored.layer) {
     for (std::uint32_t at = 0; at < mirrored.begin[view.domain_count]; ++at) {
       CHECK(read[stored_row(mirrored, at)] == 1);
     }

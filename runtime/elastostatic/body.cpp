@@ -53,7 +53,7 @@ double transform_growth(const ModelView& view, const Prediction& prediction, con
     // values of the level before, its averages, and the details
     growth = larger(growth, prediction_sum(view, prediction, level) * (growth + 2 * most)) + 2;
   }
-  return 2 * growth / (prediction.blocks ? double{weight_unit} : 1);
+  return 2 * growth / (prediction.blocks ? double{weight_unit<3>} : 1);
 }
 
 // largest factor between the sum of nodal forces and force coefficients
@@ -105,19 +105,19 @@ float largest_force_sum(const ModelView& view, const Lifting& lifting) {
 // what is written once, at the start
 struct Tables {
   ModelView* view = nullptr;
-  FactorTools* factor_tools = nullptr;
+  FactorTools<3>* factor_tools = nullptr;
   RefinementTables refinement;
   ColumnCost* cost[layout::max_levels] = {};
-  PredictionOffsets offsets;
-  BaseColumnsMaker base;
-  MirroredCouplingsMaker mirrored;
+  PredictionOffsets<3> offsets;
+  BaseColumnsMaker<3> base;
+  MirroredCouplingsMaker<3> mirrored;
   std::uint8_t* read = nullptr;
   std::uint32_t* field_blocks = nullptr;
 };
 
 void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
   tables.view = arena.take<ModelView>(1);
-  tables.factor_tools = arena.take<FactorTools>(1);
+  tables.factor_tools = arena.take<FactorTools<3>>(1);
   tables.refinement.carve(arena, view);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     tables.cost[c] = arena.take<ColumnCost>(domain_up_to(view, c));
@@ -132,7 +132,7 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.field_blocks = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels);
 }
 
-void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch& scratch) {
+void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch<3>& scratch) {
   scratch.touched.carve(arena, view);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   scratch.room = sizes.counts.capacitance_room;
@@ -142,11 +142,11 @@ void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& siz
   scratch.functionals.carve(arena, sizes.set_columns, entries, sizes.slots, sizes.counts.prediction);
   scratch.slot = arena.take<std::uint32_t>(view.domain_count);
   scratch.coefficient = arena.take<std::uint32_t>(sizes.slots);
-  scratch.root = arena.take<Block>(sizes.slots);
+  scratch.root = arena.take<Block<3>>(sizes.slots);
   scratch.inverse.carve(arena, sizes.slots, sizes.counts.prediction);
-  scratch.sum = arena.take<BlockPair>(scratch.room);
+  scratch.sum = arena.take<BlockPair<3>>(scratch.room);
   scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
-  scratch.blocks = arena.take<Block>(sizes.longest_column + std::uint64_t{1});
+  scratch.blocks = arena.take<Block<3>>(sizes.longest_column + std::uint64_t{1});
 }
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
@@ -155,7 +155,7 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
     const std::uint32_t tiles = tables.base.columns().tiles;
     const std::uint64_t places = std::uint64_t{BaseColumns::width} * tiles_of(view.domain_count);
     body.field_sums.of_blocks = arena.take_zeroed<Float4>(places);
-    body.field_sums.of_tiles = tiles > 0 ? arena.take_zeroed<TileSums>(tiles) : nullptr;
+    body.field_sums.of_tiles = tiles > 0 ? arena.take_zeroed<TileSums<3>>(tiles) : nullptr;
   }
   body.stored = arena.take<std::uint32_t>(view.domain_count);
   body.facts = arena.take<NodeFacts>(view.node_count);
@@ -164,14 +164,14 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.other.carve(arena, sizes.counts.max_contacts);
   body.touched.carve(arena, view);
   carve_capacitance(arena, view, sizes, body.capacitance);
-  body.factoring.carve(arena, sizes.set_columns);
+  body.factoring.carve<3>(arena, sizes.set_columns);
   body.column_force = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
   body.other_column_force = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
   body.older_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
-  body.cache.carve(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
-  body.job.carve(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);
+  body.cache.carve<3>(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
+  body.job.carve<3>(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.mixture.carve(arena, sizes.counts.max_contacts);
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
   body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);
@@ -217,10 +217,10 @@ void prepare_fields(const ModelView& view, Tables& tables, Body& body) {
   mark_read(body.refinement, body.touched, tables.read);
   body.base = tables.base.make(view);
   body.mirrored = tables.mirrored.make(view, body.base, tables.read);
-  count_field_blocks(view, body.mirrored, body.base, tables.field_blocks);
+  count_field_blocks<3>(view, body.mirrored, body.base, tables.field_blocks);
   body.field_blocks = {view.levels, tables.field_blocks};
-  body.block_sums = fastest_block_sums();
-  body.add_tiles = fastest_add_tiles();
+  body.block_sums = fastest_block_sums<3>();
+  body.add_tiles = fastest_add_tiles<3>();
 }
 
 }  // namespace
@@ -242,9 +242,10 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
     body.cost.level[q] = tables.cost[q];
   }
   body.refinement = tables.refinement.refinement(*body.view, body.lifting);
-  body.tools = new (tables.factor_tools) FactorTools{body.counts,    body.refinement, body.cost,
-                                                     body.stored,    body.cache,      body.capacitance,
-                                                     body.factoring, body.force,      body.resolution.index_of_place};
+  body.tools =
+      new (tables.factor_tools) FactorTools<3>{body.counts,    body.refinement, body.cost,
+                                               body.stored,    body.cache,      body.capacitance,
+                                               body.factoring, body.force,      body.resolution.index_of_place};
   fill_tables(view, tables, body);
   if (!body.counts.forces_only) {
     prepare_fields(view, tables, body);

@@ -31,12 +31,12 @@ struct Body {
   Lifting lifting;
   Refinement refinement;
   MirroredCouplings mirrored;
-  BlockSums block_sums = portable_block_sums();
+  BlockSums<3> block_sums = portable_block_sums<3>();
   FieldBlocks field_blocks;
   BaseColumns base;
-  AddTiles add_tiles = greenloop::add_tiles;
-  CoefficientSums field_sums{};     ///< zero between steps
-  PredictionOffsets offsets;        ///< empty without fields
+  AddTiles<3> add_tiles = greenloop::add_tiles<3>;
+  CoefficientSums<3> field_sums{};  ///< zero between steps
+  PredictionOffsets<3> offsets;     ///< empty without fields
   std::uint32_t* stored = nullptr;  ///< [domain] blocks of all layers in a coefficient's column
   ColumnCosts cost;
   NodeFacts* facts = nullptr;  ///< [node_count]
@@ -44,12 +44,12 @@ struct Body {
   ContactSet planned;  ///< the set that a step is answered with
   ContactSet other;    ///< the same contacts on the level before, and then on the one that is prepared
   Touched touched;     ///< by the planned set
-  CapacitanceScratch capacitance;
+  CapacitanceScratch<3> capacitance;
   FactorChanges changes;  ///< what tells the nearest cached factor from the planned set
   FactorScratch factoring;
-  const FactorTools* tools = nullptr;  ///< of this body, once for all steps
-  Float4* solution = nullptr;          ///< of a set's columns in the order of its factor
-  float* column_force = nullptr;       ///< [3 * columns] of the planned set
+  const FactorTools<3>* tools = nullptr;  ///< of this body, once for all steps
+  Float4* solution = nullptr;             ///< of a set's columns in the order of its factor
+  float* column_force = nullptr;          ///< [3 * columns] of the planned set
   float* other_column_force = nullptr;
   float* older_force = nullptr;  ///< [3 * contacts] by the level before
   Float4* force = nullptr;       ///< [domain], zero between steps
@@ -61,9 +61,11 @@ struct Body {
   Mixture mixture;
   const std::byte* last_red_zone = nullptr;
 
-  [[nodiscard]] const FactorTools& factor_tools() const { return *tools; }
-  [[nodiscard]] FieldModel field_model() const { return {refinement, mirrored, base, offsets, block_sums, add_tiles}; }
-  [[nodiscard]] FieldScratch field_scratch() const { return {force, field_sums}; }
+  [[nodiscard]] const FactorTools<3>& factor_tools() const { return *tools; }
+  [[nodiscard]] FieldModel<3> field_model() const {
+    return {refinement, mirrored, base, offsets, block_sums, add_tiles};
+  }
+  [[nodiscard]] FieldScratch<3> field_scratch() const { return {force, field_sums}; }
 };
 
 /// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. The bytes that

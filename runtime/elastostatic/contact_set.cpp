@@ -117,7 +117,7 @@ void average_displacements(std::span<const Constraint> contacts, const ContactSe
   for (std::uint32_t k = 0; k < set.columns; ++k) {
     const auto members = static_cast<float>(set.members[k]);
     for (std::uint32_t r = 0; r < 3; ++r) {
-      displacement[3 * k + r] = without_denormals(displacement[3 * k + r] / members);
+      displacement[3 * k + r] = without_tiny(displacement[3 * k + r] / members);
     }
   }
 }

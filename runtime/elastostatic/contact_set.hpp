@@ -40,7 +40,7 @@ CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32
 
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;
-constexpr float without_denormals(float displacement) {
+constexpr float without_tiny(float displacement) {
   // no branch on data: the same instructions for every number
   const std::uint32_t tiny = static_cast<std::uint32_t>(displacement < least_displacement) &
                              static_cast<std::uint32_t>(displacement > -least_displacement);

@@ -78,7 +78,7 @@ GlideReport Glide::blend(std::span<const Constraint> contacts, const LastAnswer&
       const float was = last_force == nullptr ? 0 : difference_[std::size_t{3} * place + r];
       const float known = last_force == nullptr ? 0 : fresh_ ? last_force[r] - newer : was;
       const float difference = older != nullptr ? older[3 * i + r] - newer : known;
-      const float displacement = without_denormals(contacts[i].value[r]);
+      const float displacement = without_tiny(contacts[i].value[r]);
       const float size = std::fabs(difference);
       largest = size > largest ? size : largest;
       along += double{difference} * displacement;

@@ -132,7 +132,7 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   sizes.longest_column = couplings.longest_column;
   sizes.set_columns = view.domain_count < limits.max_contacts ? view.domain_count : limits.max_contacts;
   Arena counting;
-  BaseColumnsMaker base;
+  BaseColumnsMaker<3> base;
   base.carve(counting, view);
   MostCounts most_of[layout::max_levels];
   MostCounts mixed_of[layout::max_levels];
@@ -155,8 +155,7 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
   sizes.counts.capacitance_room =
-      sizes.slots *
-      pairs(sizes.set_columns < CapacitanceScratch::batch ? sizes.set_columns : CapacitanceScratch::batch);
+      sizes.slots * pairs(sizes.set_columns < least_batch ? sizes.set_columns : least_batch);
   bound_work(view, limits, most_of, mixed_of, sizes, requirement);
   sizes.supported = true;
 }

@@ -43,11 +43,9 @@ std::uint64_t force_work(const SetCounts& set) noexcept {
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
-  constexpr std::uint64_t coefficient_work = 60;  // its scale, and where its blocks stand
-  constexpr std::uint64_t scale_work = 14;
   const std::uint64_t details = model.rows[levels.details];
-  return 4 * set.columns + model.prediction.force_work * set.visits + coefficient_work * set.coefficients +
-         block_work * blocks + scale_work * details +
+  return 4 * set.columns + model.prediction.force_work * set.visits + coefficient_work<3> * set.coefficients +
+         block_work<3> * blocks + scale_work<3> * details +
          inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details,
                                 model.prediction) +
          4 * set.contacts;
@@ -86,7 +84,7 @@ MostCounts most_counts(const ModelView& view, const CouplingCounts& couplings, s
     for (std::uint32_t other = 0; other < view.levels; ++other) {
       const std::uint64_t tiles = q == 0 && base.columns > 0 ? tiles_of(domain_up_to(view, other)) : 0;
       blocks += most_blocks(couplings.stored[q][other], of_set);
-      most.field_blocks[other] += blocks + of_set * tiles * FieldBlocks::of_tile;
+      most.field_blocks[other] += blocks + of_set * tiles * FieldBlocks::of_tile<3>;
     }
   }
   counts.slots = counts.coefficients;

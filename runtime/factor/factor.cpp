@@ -39,8 +39,9 @@ void append_rows(std::uint32_t order, std::uint32_t added, std::uint32_t stride,
 
 }  // namespace
 
+template <unsigned N>
 void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set, bool keeps_capacitance) noexcept {
-  const std::uint64_t stride = padded_order(3 * columns_of_a_set);
+  const std::uint64_t stride = padded_order(N * columns_of_a_set);
   column = arena.take<std::uint32_t>(columns_of_a_set);
   node = arena.take<std::uint32_t>(columns_of_a_set);
   position = arena.take<std::uint32_t>(columns_of_a_set);
@@ -48,44 +49,48 @@ void Factor::carve(Arena& arena, std::uint32_t columns_of_a_set, bool keeps_capa
   capacitance = keeps_capacitance ? arena.take<float>(stride * stride) : nullptr;
 }
 
+template <unsigned N>
 void keep_capacitance(std::uint32_t columns, std::uint32_t stride, Factor& factor) noexcept {
   if (factor.capacitance != nullptr) {
-    copy_lower(3 * columns, stride, reinterpret_cast<const float*>(factor.matrix), factor.capacitance);
+    copy_lower(N * columns, stride, reinterpret_cast<const float*>(factor.matrix), factor.capacitance);
   }
 }
 
+template <unsigned N>
 void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept {
-  const std::uint32_t order = padded_order(3 * from.columns);
+  const std::uint32_t order = padded_order(N * from.columns);
   for (std::uint32_t j = 0; j < order; ++j) {
     const std::size_t begin = std::size_t{j} * stride / 4 + j / 4;
     std::memcpy(to.matrix + begin, from.matrix + begin, sizeof(Float4) * (order / 4 - j / 4));
   }
   if (from.capacitance != nullptr) {
-    copy_lower(3 * from.columns, stride, from.capacitance, to.capacitance);
+    copy_lower(N * from.columns, stride, from.capacitance, to.capacitance);
   }
   std::memcpy(to.node, from.node, sizeof(std::uint32_t) * from.columns);
   to.columns = from.columns;
   to.changes = from.changes;
 }
 
+template <unsigned N>
 void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
   std::uint32_t at = 0;
   while (factor.node[at] != node) {
     ++at;
   }
-  cholesky_remove(3 * factor.columns, 3 * at, 3, stride, factor.matrix, border);
+  cholesky_remove(N * factor.columns, N * at, N, stride, factor.matrix, border);
   if (factor.capacitance != nullptr) {
-    remove_rows(3 * factor.columns, 3 * at, 3, stride, factor.capacitance);
+    remove_rows(N * factor.columns, N * at, N, stride, factor.capacitance);
   }
   --factor.columns;
   std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
 }
 
+template <unsigned N>
 bool append_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
   if (factor.capacitance != nullptr) {
-    append_rows(3 * factor.columns, 3, stride, reinterpret_cast<const float*>(border), factor.capacitance);
+    append_rows(N * factor.columns, N, stride, reinterpret_cast<const float*>(border), factor.capacitance);
   }
-  if (!cholesky_append(3 * factor.columns, 3, stride, factor.matrix, border)) {
+  if (!cholesky_append(N * factor.columns, N, stride, factor.matrix, border)) {
     return false;
   }
   factor.node[factor.columns++] = node;
@@ -102,5 +107,16 @@ void list_positions(ColumnSet set, std::uint32_t* index_of_place, Factor& factor
     index = layout::none;
   }
 }
+
+template void Factor::carve<1>(Arena&, std::uint32_t, bool) noexcept;
+template void keep_capacitance<1>(std::uint32_t, std::uint32_t, Factor&) noexcept;
+template void copy_factor<1>(const Factor&, std::uint32_t, Factor&) noexcept;
+template void remove_node<1>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
+template bool append_node<1>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
+template void Factor::carve<3>(Arena&, std::uint32_t, bool) noexcept;
+template void keep_capacitance<3>(std::uint32_t, std::uint32_t, Factor&) noexcept;
+template void copy_factor<3>(const Factor&, std::uint32_t, Factor&) noexcept;
+template void remove_node<3>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
+template bool append_node<3>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
 
 }  // namespace greenloop

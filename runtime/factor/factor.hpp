@@ -8,7 +8,7 @@
 
 namespace greenloop {
 
-/// The factors of one capacitance matrix and the set of columns they belong to.
+/// The factors of one capacitance matrix, of N rows and columns for each of a set of columns, and that set.
 struct Factor {
   std::uint64_t key = 0;   ///< of the columns; 0: empty
   std::uint64_t used = 0;  ///< when it was last used
@@ -21,23 +21,28 @@ struct Factor {
   float* capacitance = nullptr;       ///< what was factored, laid out alike; null unless it is kept
 
   /// Arrays out of `arena` for sets of so many columns; null while it counts.
+  template <unsigned N>
   void carve(Arena& arena, std::uint32_t columns_of_a_set, bool keeps_capacitance) noexcept;
 };
 
 /// Keeps what `matrix` holds before it is factored. For the loop; work: half the square of its order.
+template <unsigned N>
 void keep_capacitance(std::uint32_t columns, std::uint32_t stride, Factor& factor) noexcept;
 
 /// Copies what a factor holds into another with room for it. For the loop; work: half the square of its order,
 /// twice that where the capacitance is kept.
+template <unsigned N>
 void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept;
 
-/// Takes a node out of a factor by rank-one updates. border: [3 * stride / 4] scratch. For the loop; work:
+/// Takes a node out of a factor by rank-one updates. border: [N * stride / 4] scratch. For the loop; work:
 /// cholesky_remove_work, a unit a column, and half the square of its order where the capacitance is kept.
+template <unsigned N>
 void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
 
 /// Borders a factor by a node. border: its rows of the capacitance matrix of the factor's nodes and itself, up to the
-/// diagonal. False if it is not positive definite; then it is spoilt. For the loop; work: cholesky_append_work, and 9 a
-/// column where the capacitance is kept.
+/// diagonal. False if it is not positive definite; then it is spoilt. For the loop; work: cholesky_append_work, and N N
+/// a column where the capacitance is kept.
+template <unsigned N>
 [[nodiscard]] bool append_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
 
 /// Lists where the set's columns stand in its factor. index_of_place: [domain], layout::none before and after. For the

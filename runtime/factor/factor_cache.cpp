@@ -24,13 +24,14 @@ bool belongs_to(const Factor& factor, ColumnSet set) {
 
 }  // namespace
 
+template <unsigned N>
 void FactorCache::carve(Arena& arena, std::uint32_t factors, std::uint32_t columns, bool keeps_capacitance) noexcept {
-  stride_ = padded_order(3 * columns);
+  stride_ = padded_order(N * columns);
   factors_ = factors;
   factor_ = arena.take_zeroed<Factor>(factors);
   for (std::uint32_t i = 0; i < factors; ++i) {
     Factor factor;
-    factor.carve(arena, columns, keeps_capacitance);
+    factor.carve<N>(arena, columns, keeps_capacitance);
     if (factor_ != nullptr) {
       factor_[i] = factor;
     }
@@ -69,5 +70,8 @@ void FactorCache::keep(Factor& factor, ColumnSet set) noexcept {
   factor.columns = set.count;
   std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.count);
 }
+
+template void FactorCache::carve<1>(Arena&, std::uint32_t, std::uint32_t, bool) noexcept;
+template void FactorCache::carve<3>(Arena&, std::uint32_t, std::uint32_t, bool) noexcept;
 
 }  // namespace greenloop

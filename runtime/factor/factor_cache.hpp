@@ -11,7 +11,8 @@ namespace greenloop {
 /// Factors by set of columns; the least recently used one makes room (James & Pai 2003, section 3.2).
 class FactorCache {
  public:
-  /// Room for `factors` sets of `columns` each, out of `arena`; null arrays while it counts.
+  /// Room for `factors` sets of `columns` each, with N rows a column, out of `arena`; null arrays while it counts.
+  template <unsigned N>
   void carve(Arena& arena, std::uint32_t factors, std::uint32_t columns, bool keeps_capacitance = false) noexcept;
 
   /// Floats from column to column of a factor's matrix.

@@ -13,10 +13,10 @@ class SmallCache {
  public:
   explicit SmallCache(std::uint32_t factors) {
     Arena counting;
-    cache.carve(counting, factors, 4);
+    cache.carve<3>(counting, factors, 4);
     memory_ = AlignedBytes(static_cast<std::size_t>(counting.bytes()));
     Arena arena(memory_.data());
-    cache.carve(arena, factors, 4);
+    cache.carve<3>(arena, factors, 4);
   }
 
   bool has(std::vector<std::uint32_t> columns, std::uint32_t level = 2) {

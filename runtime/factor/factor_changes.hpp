@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "runtime/compliance/capacitance.hpp"
+#include "runtime/compliance/capacitance_work.hpp"
 #include "runtime/factor/factor_cache.hpp"
 #include "runtime/wavelet/column.hpp"
 

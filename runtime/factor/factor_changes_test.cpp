@@ -81,10 +81,10 @@ TEST_CASE("what a factor changed into is cached, and what it came from as well")
 TEST_CASE("changes are what two sets differ by, and too many are none") {
   FactorCache cache;
   Arena counting;
-  cache.carve(counting, 2, 64);
+  cache.carve<3>(counting, 2, 64);
   AlignedBytes memory(static_cast<std::size_t>(counting.bytes()));
   Arena arena(memory.data());
-  cache.carve(arena, 2, 64);
+  cache.carve<3>(arena, 2, 64);
   std::vector<std::uint32_t> columns = {3, 5, 8, 13, 21};
   ColumnSet set{5, columns.data()};
   cache.keep(cache.make_room(set), set);

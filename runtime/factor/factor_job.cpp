@@ -6,35 +6,39 @@
 
 namespace greenloop {
 
+template <unsigned N>
 void FactorScratch::carve(Arena& arena, std::uint32_t columns) noexcept {
-  const std::uint64_t stride = padded_order(3 * columns);
+  const std::uint64_t stride = padded_order(N * columns);
   order = arena.take<std::uint32_t>(columns);
-  border = arena.take<Float4>(3 * stride / 4);
+  border = arena.take<Float4>(N * stride / 4);
 }
 
 namespace {
 
 // begins the rows of the capacitance matrix of nodes that enter a factor: the last ones of `order`, which lists its
 // nodes and then those
-PartialCapacitance begin_rows(const FactorTools& tools, const Touched& touched, ColumnSet order,
+template <unsigned N>
+PartialCapacitance begin_rows(const FactorTools<N>& tools, const Touched& touched, ColumnSet order,
                               std::uint32_t entering) {
   PartialCapacitance rows;
   rows.set = order;
   rows.computed = entering;
   rows.panel = has_panel(tools.capacitance.room, count_slots(order, touched), entering);
-  begin_capacitance(tools.refinement, touched, tools.capacitance, tools.force, rows);
+  begin_capacitance<N>(tools.refinement, touched, tools.capacitance, tools.force, rows);
   return rows;
 }
 
 // borders a factor by the t-th of them; false if it is not positive definite
-bool enter_node(const FactorTools& tools, const PartialCapacitance& rows, std::uint32_t t, Factor& factor) {
+template <unsigned N>
+bool enter_node(const FactorTools<N>& tools, const PartialCapacitance& rows, std::uint32_t t, Factor& factor) {
   const std::uint32_t stride = tools.cache.stride();
   store_capacitance_row(tools.capacitance, rows, t, stride, tools.scratch.border);
-  return append_node(rows.set.column[factor.columns], stride, factor, tools.scratch.border);
+  return append_node<N>(rows.set.column[factor.columns], stride, factor, tools.scratch.border);
 }
 
 // borders a factor by the nodes that enter; false if it is not positive definite
-bool enter_nodes(const FactorTools& tools, const FactorChanges& changes, const Touched& touched, Factor& factor) {
+template <unsigned N>
+bool enter_nodes(const FactorTools<N>& tools, const FactorChanges& changes, const Touched& touched, Factor& factor) {
   std::uint32_t* const order = tools.scratch.order;
   std::memcpy(order, factor.node, sizeof(std::uint32_t) * factor.columns);
   std::memcpy(order + factor.columns, changes.in, sizeof(std::uint32_t) * changes.added);
@@ -49,31 +53,34 @@ bool enter_nodes(const FactorTools& tools, const FactorChanges& changes, const T
 }
 
 // takes the nodes that leave out of a copy of the base
-void copy_without(const FactorChanges& changes, const FactorTools& tools, Factor& factor) {
+template <unsigned N>
+void copy_without(const FactorChanges& changes, const FactorTools<N>& tools, Factor& factor) {
   const std::uint32_t stride = tools.cache.stride();
   if (changes.base != &factor) {
-    copy_factor(*changes.base, stride, factor);
+    copy_factor<N>(*changes.base, stride, factor);
   }
   for (std::uint32_t t = 0; t < changes.removed; ++t) {
-    remove_node(changes.out[t], stride, factor, tools.scratch.border);
+    remove_node<N>(changes.out[t], stride, factor, tools.scratch.border);
   }
 }
 
 // apart, so that neither has the stack of the other
-[[gnu::noinline]] Factor* make_fresh(const FactorTools& tools, ColumnSet set, const Touched& touched) {
+template <unsigned N>
+[[gnu::noinline]] Factor* make_fresh(const FactorTools<N>& tools, ColumnSet set, const Touched& touched) {
   Factor& factor = tools.cache.make_room(set);
-  assemble_capacitance(tools.refinement, set, touched, tools.capacitance, tools.force, tools.cache.stride(),
-                       factor.matrix);
-  keep_capacitance(set.count, tools.cache.stride(), factor);
+  assemble_capacitance<N>(tools.refinement, set, touched, tools.capacitance, tools.force, tools.cache.stride(),
+                          factor.matrix);
+  keep_capacitance<N>(set.count, tools.cache.stride(), factor);
   factor.changes = 0;
   for (std::uint32_t k = 0; k < set.count; ++k) {
     factor.node[k] = set.column[k];
     factor.position[k] = k;
   }
-  return cholesky_factor(3 * set.count, tools.cache.stride(), factor.matrix) ? &factor : nullptr;
+  return cholesky_factor(N * set.count, tools.cache.stride(), factor.matrix) ? &factor : nullptr;
 }
 
-[[gnu::noinline]] Factor* make_from(const FactorTools& tools, ColumnSet set, const Touched& touched,
+template <unsigned N>
+[[gnu::noinline]] Factor* make_from(const FactorTools<N>& tools, ColumnSet set, const Touched& touched,
                                     const FactorChanges& changes) {
   const std::uint32_t changed = changes.base->changes + changes.added + changes.removed;
   Factor& factor = tools.cache.make_room(set);
@@ -88,7 +95,8 @@ void copy_without(const FactorChanges& changes, const FactorTools& tools, Factor
 
 }  // namespace
 
-Factor* make_factor(const FactorTools& tools, ColumnSet set, const Touched& touched,
+template <unsigned N>
+Factor* make_factor(const FactorTools<N>& tools, ColumnSet set, const Touched& touched,
                     const FactorChanges* changes) noexcept {
   return changes == nullptr ? make_fresh(tools, set, touched) : make_from(tools, set, touched, *changes);
 }
@@ -172,7 +180,8 @@ void put_in(std::uint32_t node, Factor& factor) {
 }
 
 // the factor without the nodes that leave
-void begin_from(FactorJob& job, const FactorTools& tools) {
+template <unsigned N>
+void begin_from(FactorJob& job, const FactorTools<N>& tools) {
   const FactorChanges& changes = job.changes;
   std::uint32_t columns = changes.base->columns;
   if (changes.base != &job.factor) {
@@ -203,7 +212,8 @@ std::uint32_t list_batch(const Factor& factor, ColumnSet set, std::uint32_t most
 }
 
 // prepares for the nodes that enter
-void begin_batch(FactorJob& job, const FactorTools& tools, ColumnSet set, const SetCounts& whole) {
+template <unsigned N>
+void begin_batch(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole) {
   const Factor& factor = job.factor;
   std::uint32_t* const order = tools.scratch.order;
   const auto width = static_cast<std::uint32_t>(most_in_a_batch(tools.counts, whole));
@@ -219,7 +229,8 @@ void begin_batch(FactorJob& job, const FactorTools& tools, ColumnSet set, const 
 }
 
 // borders the factor by the next node of the batch; without columns if it is not positive definite
-void enter_next(FactorJob& job, const FactorTools& tools) {
+template <unsigned N>
+void enter_next(FactorJob& job, const FactorTools<N>& tools) {
   put_in(job.batch.set.column[job.factor.columns], job.factor);
   if (!enter_node(tools, job.batch, job.entered++, job.factor)) {
     job.factor.columns = 0;
@@ -228,7 +239,8 @@ void enter_next(FactorJob& job, const FactorTools& tools) {
 }
 
 // adds to `total`; false if the allowance does not hold what is next, or the factor failed
-bool continue_batch(FactorJob& job, const FactorTools& tools, std::uint64_t allowance, std::uint64_t& total) {
+template <unsigned N>
+bool continue_batch(FactorJob& job, const FactorTools<N>& tools, std::uint64_t allowance, std::uint64_t& total) {
   std::uint64_t work = add_capacitance_blocks(tools.refinement, job.touched, tools.capacitance, allowance, job.batch);
   bool holds = !job.batch.has_blocks_left();
   while (holds && job.entered < job.batch.computed) {
@@ -250,7 +262,8 @@ bool continue_batch(FactorJob& job, const FactorTools& tools, std::uint64_t allo
 
 // the batch that is at work, or what begins the next; false if the allowance does not hold what is next, or the factor
 // failed
-bool continue_changes(FactorJob& job, const FactorTools& tools, ColumnSet set, const SetCounts& whole,
+template <unsigned N>
+bool continue_changes(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
                       std::uint64_t allowance, std::uint64_t& work) {
   if (job.batch.computed > 0) {
     return continue_batch(job, tools, allowance - work, work);
@@ -278,7 +291,8 @@ std::uint64_t left_of(FactorJob& job, const FactorCounts& counts, const SetCount
   return left > job.spent ? left - job.spent : left;
 }
 
-void hand_over(FactorJob& job, const FactorTools& tools, ColumnSet set) {
+template <unsigned N>
+void hand_over(FactorJob& job, const FactorTools<N>& tools, ColumnSet set) {
   list_positions(set, tools.index_of_place, job.factor);
   Factor& place = tools.cache.make_room(set);
   const Factor evicted = place;
@@ -290,14 +304,16 @@ void hand_over(FactorJob& job, const FactorTools& tools, ColumnSet set) {
 
 }  // namespace
 
+template <unsigned N>
 void FactorJob::carve(Arena& arena, const ModelView& view, std::uint32_t columns_of_a_set,
                       bool keeps_capacitance) noexcept {
-  factor.carve(arena, columns_of_a_set, keeps_capacitance);
+  factor.carve<N>(arena, columns_of_a_set, keeps_capacitance);
   column = arena.take<std::uint32_t>(columns_of_a_set);
   touched.carve(arena, view);
 }
 
-FactorProgress continue_factor(FactorJob& job, const FactorTools& tools, ColumnSet set, const SetCounts& whole,
+template <unsigned N>
+FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
                                std::uint64_t allowance) noexcept {
   FactorProgress progress;
   progress.pending = pending_work(tools.counts, whole);
@@ -333,7 +349,8 @@ std::uint64_t drop_batch_work(const FactorJob& job) noexcept {
   return job.batch.computed > 0 ? 2 * job.counts.coefficients : 0;
 }
 
-void drop_batch(FactorJob& job, CapacitanceScratch& capacitance) noexcept {
+template <unsigned N>
+void drop_batch(FactorJob& job, CapacitanceScratch<N>& capacitance) noexcept {
   if (job.batch.computed > 0) {
     release_capacitance(job.batch, capacitance);
     clear(job.touched);
@@ -341,5 +358,18 @@ void drop_batch(FactorJob& job, CapacitanceScratch& capacitance) noexcept {
     job.spent = 0;
   }
 }
+
+template void FactorScratch::carve<1>(Arena&, std::uint32_t) noexcept;
+template void FactorJob::carve<1>(Arena&, const ModelView&, std::uint32_t, bool) noexcept;
+template Factor* make_factor<1>(const FactorTools<1>&, ColumnSet, const Touched&, const FactorChanges*) noexcept;
+template FactorProgress continue_factor<1>(FactorJob&, const FactorTools<1>&, ColumnSet, const SetCounts&,
+                                           std::uint64_t) noexcept;
+template void drop_batch<1>(FactorJob&, CapacitanceScratch<1>&) noexcept;
+template void FactorScratch::carve<3>(Arena&, std::uint32_t) noexcept;
+template void FactorJob::carve<3>(Arena&, const ModelView&, std::uint32_t, bool) noexcept;
+template Factor* make_factor<3>(const FactorTools<3>&, ColumnSet, const Touched&, const FactorChanges*) noexcept;
+template FactorProgress continue_factor<3>(FactorJob&, const FactorTools<3>&, ColumnSet, const SetCounts&,
+                                           std::uint64_t) noexcept;
+template void drop_batch<3>(FactorJob&, CapacitanceScratch<3>&) noexcept;
 
 }  // namespace greenloop

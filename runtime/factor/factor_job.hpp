@@ -21,22 +21,24 @@ namespace greenloop {
 /// Memory that factors are made in.
 struct FactorScratch {
   std::uint32_t* order = nullptr;  ///< [columns] nodes of the factor, then those that enter
-  Float4* border = nullptr;        ///< [3 * stride / 4] of the node that enters
+  Float4* border = nullptr;        ///< [N * stride / 4] of the node that enters
 
   /// Arrays out of `arena` for sets of `columns`; null while it counts.
+  template <unsigned N>
   void carve(Arena& arena, std::uint32_t columns) noexcept;
 };
 
 /// What the factors of a body are made with.
+template <unsigned N>
 struct FactorTools {
   const FactorCounts& counts;
   const Refinement& refinement;
   const ColumnCosts& cost;
   const std::uint32_t* stored;  ///< [domain] blocks of all layers in a coefficient's column
   FactorCache& cache;
-  CapacitanceScratch& capacitance;
+  CapacitanceScratch<N>& capacitance;
   FactorScratch& scratch;
-  Float4* force;                  ///< [domain], 0 before and after
+  Vector<N>* force;               ///< [domain], 0 before and after
   std::uint32_t* index_of_place;  ///< [domain], layout::none before and after
 };
 
@@ -54,13 +56,15 @@ struct FactorJob {
   FactorChanges changes;    ///< what tells the factor from the set, within a step
 
   /// Arrays out of `arena` for sets of `columns`; null while it counts.
+  template <unsigned N>
   void carve(Arena& arena, const ModelView& view, std::uint32_t columns_of_a_set, bool keeps_capacitance) noexcept;
 };
 
 /// Makes the factor of a set in the place of the least recently used one, from changes.base or, where `changes` is
 /// null, afresh. Null if the matrix is not positive definite. To be kept in the cache afterwards. touched: by the set;
 /// no batch may be at work. For the loop; work: factor_work, or update_factor_work.
-[[nodiscard]] Factor* make_factor(const FactorTools& tools, ColumnSet set, const Touched& touched,
+template <unsigned N>
+[[nodiscard]] Factor* make_factor(const FactorTools<N>& tools, ColumnSet set, const Touched& touched,
                                   const FactorChanges* changes) noexcept;
 
 /// What a slice has done.
@@ -74,13 +78,15 @@ struct FactorProgress {
 /// begin_batch_work, the blocks of one coefficient in a layer (add_capacitance_blocks), enter_work. Nodes whose matrix
 /// turned out not to be positive definite are not begun again: of a set with all of them nothing is pending. For the
 /// loop.
-FactorProgress continue_factor(FactorJob& job, const FactorTools& tools, ColumnSet set, const SetCounts& whole,
+template <unsigned N>
+FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
                                std::uint64_t allowance) noexcept;
 
 /// Work units of drop_batch.
 [[nodiscard]] std::uint64_t drop_batch_work(const FactorJob& job) noexcept;
 
 /// Forgets the batch that is at work, so that the scratch is free. For the loop.
-void drop_batch(FactorJob& job, CapacitanceScratch& capacitance) noexcept;
+template <unsigned N>
+void drop_batch(FactorJob& job, CapacitanceScratch<N>& capacitance) noexcept;
 
 }  // namespace greenloop

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "runtime/algebra/cholesky.hpp"
-#include "runtime/elastostatic/body.hpp"
-#include "runtime/testing/placed_body.hpp"
+#include "runtime/testing/rooms.hpp"
 #include "runtime/testing/test_body.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {
@@ -26,79 +26,73 @@ double difference(std::span<const float> a, std::span<const float> b) {
   return worst / largest;
 }
 
-// resolves contacts at the finest level; returns what their factor takes
-SetCounts resolve(Body& body, const std::vector<Constraint>& contacts) {
-  const std::uint32_t finest = body.view->levels - 1;
-  resolve_contacts(contacts, *body.view, body.facts, {finest}, body.resolution, body.planned);
-  clear(body.touched);
-  touch(body.refinement, body.planned.column, body.planned.columns, body.touched);
-  SetCounts counts;
-  counts.contacts = contacts.size();
-  counts.columns = body.planned.columns;
-  count_factor(body.planned.all(), body.touched, body.cost, body.stored, counts);
-  return counts;
+// touchable nodes as columns of the finest level, from the `first` on
+std::vector<std::uint32_t> patch_columns(const TestModel& model, std::size_t first, std::size_t count) {
+  std::vector<std::uint32_t> places;
+  for (const Constraint& contact : patch(model, first, count)) {
+    places.push_back(domain_place(model.view(), contact.node));
+  }
+  return columns_at(model.view().levels - 1, places);
 }
 
 // work of the largest piece that a slice can be cut into
-std::uint64_t largest_piece(const Body& body, const SetCounts& whole) {
+template <unsigned N>
+std::uint64_t largest_piece(const Rooms<N>& rooms, const SetCounts& whole) {
   std::uint64_t longest = 0;
-  for (std::uint32_t q = 0; q < body.view->levels; ++q) {
+  for (std::uint32_t q = 0; q < rooms.view.levels; ++q) {
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-      for (std::uint32_t j = 0; j < body.view->level[q].counts->domain_count; ++j) {
-        longest = std::max(longest, std::uint64_t{column_length(body.view->level[q].couplings[layer], j)});
+      for (std::uint32_t j = 0; j < rooms.view.level[q].counts->domain_count; ++j) {
+        longest = std::max(longest, std::uint64_t{column_length(rooms.view.level[q].couplings[layer], j)});
       }
     }
   }
-  const Prediction& prediction = body.counts.prediction;
-  const std::uint64_t blocks = longest * (88 + prediction.weight_work * 2 * whole.columns);
-  const std::uint64_t pair = prediction.pair_work * whole.visits + 6 * whole.columns;
+  const Prediction& prediction = rooms.counts.prediction;
+  const std::uint64_t blocks = longest * (4 + scaled_block_work(N) + prediction.weight_work * 2 * whole.columns);
+  const std::uint64_t pair = prediction.pair_work * whole.visits + 2 * N * whole.columns;
   return std::max(
-      {blocks, pair, begin_batch_work(body.counts, whole, 0), enter_work(body.counts, whole, whole.columns)});
+      {blocks, pair, begin_batch_work(rooms.counts, whole, 0), enter_work(rooms.counts, whole, whole.columns)});
 }
 
 // solution of the set's matrix for a right-hand side of ones, in the order of the set
-std::vector<float> solve_ones(const Body& body, const Factor& factor) {
-  const std::uint32_t order = 3 * body.planned.columns;
+template <unsigned N>
+std::vector<float> solve_ones(const Rooms<N>& rooms, const Factor& factor, std::uint32_t columns) {
+  const std::uint32_t order = N * columns;
   std::vector<Float4> b(padded_order(order) / 4);
   auto* x = reinterpret_cast<float*>(b.data());
   std::fill_n(x, order, 1.0F);
-  cholesky_solve(order, body.cache.stride(), factor.matrix, b.data());
+  cholesky_solve(order, rooms.cache.stride(), factor.matrix, b.data());
   std::vector<float> solution;
-  for (std::uint32_t k = 0; k < body.planned.columns; ++k) {
-    const float* at = x + std::size_t{3} * factor.position[k];
-    solution.insert(solution.end(), at, at + 3);
+  for (std::uint32_t k = 0; k < columns; ++k) {
+    const float* at = x + std::size_t{N} * factor.position[k];
+    solution.insert(solution.end(), at, at + N);
   }
   return solution;
 }
 
-TEST_CASE("a factor is complete after as many slices as its work holds, each within its allowance") {
+TEST_CASE_TEMPLATE("a factor is complete after as many slices as its work holds, each within its allowance", Components,
+                   One, Three) {
+  constexpr unsigned N = Components::value;
   layout::Wavelet kind{};
   SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
   SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
-  const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.3});
-  const PlacedBody other(model.view(), 40);
-  Body& fresh = *other.body;
-  resolve(fresh, patch(model, 7, 40));
-  Factor& expected = fresh.cache.make_room(fresh.planned.all());
-  assemble_capacitance(fresh.refinement, fresh.planned.all(), fresh.touched, fresh.capacitance, fresh.force,
-                       fresh.cache.stride(), expected.matrix);
-  REQUIRE(cholesky_factor(120, fresh.cache.stride(), expected.matrix));
-  for (std::uint32_t k = 0; k < 40; ++k) {
-    expected.position[k] = k;
-  }
-  const std::vector<float> right = solve_ones(fresh, expected);
+  const TestModel model({.components = N, .levels = 5, .wavelet = kind, .touchable_above = 0.3});
+  const std::vector<std::uint32_t> columns = patch_columns(model, 7, 40);
+  const ColumnSet set{40, columns.data()};
+  Rooms<N> fresh(model.view(), 40);
+  fresh.touch_set(set);
+  const Factor* const expected = make_factor<N>(fresh.factor_tools(), set, fresh.touched, nullptr);
+  REQUIRE(expected != nullptr);
+  const std::vector<float> right = solve_ones<N>(fresh, *expected, 40);
   for (const std::uint64_t part : {1U, 5U, 25U, 200U}) {
-    const PlacedBody placed(model.view(), 40);
-    Body& body = *placed.body;
-    const SetCounts whole = resolve(body, patch(model, 7, 40));
-    REQUIRE(whole.columns == 40);
-    const std::uint64_t all = pending_work(body.counts, whole);
-    const std::uint64_t compare = compare_factors_work(1, 40) + 2 * whole.coefficients;
-    const std::uint64_t piece = largest_piece(body, whole);
+    Rooms<N> rooms(model.view(), 40);
+    const SetCounts whole = rooms.touch_set(set);
+    const std::uint64_t all = pending_work(rooms.counts, whole);
+    const std::uint64_t compare = compare_factors_work(rooms.counts.cached_factors, 40) + 2 * whole.coefficients;
+    const std::uint64_t piece = largest_piece<N>(rooms, whole);
     const std::uint64_t allowance = compare + piece + all / part;
     std::vector<FactorProgress> slices;
     do {
-      slices.push_back(continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance));
+      slices.push_back(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance));
       REQUIRE(slices.back().work <= allowance);
       CHECK((slices.back().pending == 0 || slices.back().work + piece > allowance - compare));
     } while (slices.back().pending > 0 && slices.size() < 1000);
@@ -106,58 +100,67 @@ TEST_CASE("a factor is complete after as many slices as its work holds, each wit
     std::uint64_t follows = 0;
     for (auto slice = slices.rbegin(); slice != slices.rend(); ++slice) {
       CHECK(slice->pending >= follows);
-      follows += slice->work - compare_factors_work(1, 40);
+      follows += slice->work - compare_factors_work(rooms.counts.cached_factors, 40);
     }
     CHECK(follows <= all);
     CHECK(all <= 2 * follows);
     MESSAGE("allowance ", allowance, " of ", all, " units: ", slices.size(), " slices, ", follows, " units");
     CHECK(slices.size() <= (all + allowance - compare - piece - 1) / (allowance - compare - piece));
-    const Factor* const factor = body.cache.find(body.planned.all());
+    const Factor* const factor = rooms.cache.find(set);
     REQUIRE(factor != nullptr);
-    CHECK(difference(solve_ones(body, *factor), right) <= 2e-4);
+    CHECK(difference(solve_ones<N>(rooms, *factor, 40), right) <= 2e-4);
   }
 }
 
-TEST_CASE("less than a piece makes no progress, and says so") {
-  const TestModel model({.levels = 4});
-  const PlacedBody placed(model.view(), 12);
-  Body& body = *placed.body;
-  const SetCounts whole = resolve(body, patch(model, 0, 12));
-  const std::uint64_t begin = compare_factors_work(1, whole.columns) + begin_batch_work(body.counts, whole, 0);
+TEST_CASE_TEMPLATE("less than a piece makes no progress, and says so", Components, One, Three) {
+  constexpr unsigned N = Components::value;
+  const TestModel model({.components = N, .levels = 4});
+  const std::vector<std::uint32_t> columns = patch_columns(model, 0, 12);
+  const ColumnSet set{12, columns.data()};
+  Rooms<N> rooms(model.view(), 12);
+  const SetCounts whole = rooms.touch_set(set);
+  const std::uint64_t begin =
+      compare_factors_work(rooms.counts.cached_factors, whole.columns) + begin_batch_work(rooms.counts, whole, 0);
   for (const std::uint64_t allowance : {std::uint64_t{0}, std::uint64_t{100}, begin - 1}) {
-    const FactorProgress progress =
-        continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance);
+    const FactorProgress progress = continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance);
     CHECK(progress.work <= allowance);
-    CHECK(progress.pending == pending_work(body.counts, whole));
+    CHECK(progress.pending == pending_work(rooms.counts, whole));
   }
-  CHECK(continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, begin).pending <
-        pending_work(body.counts, whole));
+  CHECK(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, begin).pending <
+        pending_work(rooms.counts, whole));
 }
 
-TEST_CASE("a factor in the making follows its contacts, and begins anew for others") {
-  const TestModel model({.levels = 5, .touchable_above = 0.3});
-  const PlacedBody placed(model.view(), 40);
-  Body& body = *placed.body;
-  SetCounts whole = resolve(body, patch(model, 0, 40));
-  const std::uint64_t allowance = pending_work(body.counts, whole) / 20;
-  for (std::uint32_t slice = 0; slice < 20 && body.job.factor.columns < 20; ++slice) {
-    continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance);
+TEST_CASE_TEMPLATE("a factor in the making follows its contacts, and begins anew for others", Components, One, Three) {
+  constexpr unsigned N = Components::value;
+  const TestModel model({.components = N, .levels = 5, .touchable_above = 0.3});
+  const std::vector<std::uint32_t> before = patch_columns(model, 0, 40);
+  const std::vector<std::uint32_t> after = patch_columns(model, 2, 40);
+  const std::vector<std::uint32_t> elsewhere = patch_columns(model, 200, 40);
+  Rooms<N> rooms(model.view(), 40);
+  ColumnSet set{40, before.data()};
+  SetCounts whole = rooms.touch_set(set);
+  const std::uint64_t allowance = pending_work(rooms.counts, whole) / 20 + largest_piece<N>(rooms, whole);
+  for (std::uint32_t slice = 0; slice < 20 && rooms.job.factor.columns < 20; ++slice) {
+    continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance);
   }
-  REQUIRE(body.job.factor.columns >= 20);
-  const std::uint32_t made = body.job.factor.columns;
-  whole = resolve(body, patch(model, 2, 40));
+  REQUIRE(rooms.job.factor.columns >= 20);
+  const std::uint32_t made = rooms.job.factor.columns;
+  set.column = after.data();
+  whole = rooms.touch_set(set);
   std::uint32_t slices = 0;
-  while (continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance).pending > 0) {
+  while (continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance).pending > 0) {
     REQUIRE(++slices < 20);
-    CHECK(body.job.factor.columns + 2 >= made);
+    CHECK(rooms.job.factor.columns + 2 >= made);
   }
-  CHECK(body.cache.find(body.planned.all()) != nullptr);
-  whole = resolve(body, patch(model, 200, 40));
-  CHECK(continue_factor(body.job, body.factor_tools(), body.planned.all(), whole, allowance).pending >
-        pending_work(body.counts, whole) / 2);
-  whole = resolve(body, patch(model, 2, 40));
-  drop_batch(body.job, body.capacitance);
-  CHECK(body.cache.find(body.planned.all()) != nullptr);
+  CHECK(rooms.cache.find(set) != nullptr);
+  set.column = elsewhere.data();
+  whole = rooms.touch_set(set);
+  CHECK(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance).pending >
+        pending_work(rooms.counts, whole) / 2);
+  set.column = after.data();
+  whole = rooms.touch_set(set);
+  drop_batch<N>(rooms.job, rooms.capacitance);
+  CHECK(rooms.cache.find(set) != nullptr);
 }
 
 TEST_CASE("a matrix that is not positive definite is given up until the contacts change") {

@@ -40,7 +40,7 @@ CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts&
 }
 
 std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexcept {
-  const auto order = static_cast<std::uint32_t>(3 * set.columns);
+  const std::uint32_t order = model.order(set.columns);
   return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
          assemble_capacitance_work(capacitance_counts(model, set)) + kept_work(model, order) +
          cholesky_factor_work(order);
@@ -63,16 +63,18 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 
 std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set,
                                  const ChangeCounts& changes) noexcept {
-  const auto order = static_cast<std::uint32_t>(3 * (set.columns + changes.removed));
+  const std::uint32_t components = model.prediction.components;
+  const std::uint32_t order = model.order(set.columns + changes.removed);
   CapacitanceCounts capacitance = capacitance_counts(model, set);
   capacitance.rows = changes.added;
   capacitance.visits = changes.entering.visits;
   capacitance.coefficients = changes.entering.coefficients;
   capacitance.blocks = changes.entering.blocks;
   const std::uint64_t kept = (1 + changes.removed) * kept_work(model, order);
-  const std::uint64_t appended = model.keeps_capacitance ? 3 * std::uint64_t{order} : 0;
-  return kept + std::uint64_t{order} * order / 2 + changes.removed * (set.columns + cholesky_remove_work(order, 0, 3)) +
-         changes.added * (appended + cholesky_append_work(order, 3)) + assemble_capacitance_work(capacitance) +
+  const std::uint64_t appended = model.keeps_capacitance ? std::uint64_t{components} * order : 0;
+  return kept + std::uint64_t{order} * order / 2 +
+         changes.removed * (set.columns + cholesky_remove_work(order, 0, components)) +
+         changes.added * (appended + cholesky_append_work(order, components)) + assemble_capacitance_work(capacitance) +
          6 * set.columns;
 }
 
@@ -86,16 +88,17 @@ std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns)
 
 std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set, std::uint64_t removed) noexcept {
   const std::uint64_t columns = set.columns + removed;
-  const auto order = static_cast<std::uint32_t>(3 * columns);
+  const std::uint32_t order = model.order(columns);
   return (1 + removed) * kept_work(model, order) + std::uint64_t{order} * order / 2 +
-         removed * (2 * columns + cholesky_remove_work(order, 0, 3)) + 12 * columns + touch_work(set) +
-         begin_capacitance_work(batch_counts(model, set));
+         removed * (2 * columns + cholesky_remove_work(order, 0, model.prediction.components)) + 12 * columns +
+         touch_work(set) + begin_capacitance_work(batch_counts(model, set));
 }
 
 std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {
-  const std::uint64_t kept = model.keeps_capacitance ? 9 * (columns_before + 1) : 0;
-  return kept + store_capacitance_work(set.columns) + columns_before +
-         cholesky_append_work(static_cast<std::uint32_t>(3 * columns_before), 3);
+  const std::uint32_t components = model.prediction.components;
+  const std::uint64_t kept = model.keeps_capacitance ? store_capacitance_work(components, columns_before + 1) : 0;
+  return kept + store_capacitance_work(components, set.columns) + columns_before +
+         cholesky_append_work(model.order(columns_before), components);
 }
 
 std::uint64_t most_slice_work(const FactorCounts& model, const SetCounts& whole) noexcept {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "runtime/compliance/capacitance.hpp"
+#include "runtime/compliance/capacitance_work.hpp"
 #include "runtime/factor/factor_changes.hpp"
 
 namespace greenloop {
@@ -13,6 +13,11 @@ struct FactorCounts {
   bool keeps_capacitance = false;
   std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
   Prediction prediction{};
+
+  /// Rows of a matrix of so many columns.
+  [[nodiscard]] std::uint32_t order(std::uint64_t columns) const noexcept {
+    return static_cast<std::uint32_t>(prediction.components * columns);
+  }
 };
 
 /// What a set of columns holds.

@@ -15,13 +15,41 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+// weights between the components of two nodes, by place
+class Weights {
+ public:
+  explicit Weights(Index components) : n_(components) {}
+
+  // weight(k): of element k of an N x N block by columns
+  template <class Weight>
+  void add(Index row, Index column, Weight weight) {
+    for (Index k = 0; k < n_ * n_; ++k) {
+      entries_.emplace_back(n_ * row + k % n_, n_ * column + k / n_, weight(static_cast<std::uint32_t>(k)));
+    }
+  }
+  void add_number(Index row, Index column, double weight) {
+    for (Index r = 0; r < n_; ++r) entries_.emplace_back(n_ * row + r, n_ * column + r, weight);
+  }
+  [[nodiscard]] Eigen::SparseMatrix<double> matrix(Index nodes) const {
+    Eigen::SparseMatrix<double> result(n_ * nodes, n_ * nodes);
+    result.setFromTriplets(entries_.begin(), entries_.end());
+    return result;
+  }
+
+ private:
+  Index n_;
+  std::vector<Eigen::Triplet<double>> entries_;
+};
+
 // by blocks of node i of a level
-void add_blocks(const LevelView& level, std::uint32_t i, std::vector<Eigen::Triplet<double>>& predict) {
-  const Index odd = level.domain_begin + i;
-  for (std::uint32_t k = 0; k < 9 * level.predictions.terms; ++k) {
-    const std::size_t term = std::size_t{level.predictions.terms} * i + k / 9;
-    const Index from = Index{3} * stored_source(level.predictions, term);
-    predict.emplace_back(3 * odd + k % 3, from + k % 9 / 3, stored_weight<3>(level.predictions, term, k % 9) / 4096.0);
+void add_blocks(const ModelView& view, const LevelView& level, std::uint32_t i, Weights& predict) {
+  for (std::uint32_t k = 0; k < level.predictions.terms; ++k) {
+    const std::size_t term = std::size_t{level.predictions.terms} * i + k;
+    predict.add(level.domain_begin + i, stored_source(level.predictions, term), [&](std::uint32_t e) {
+      return (view.info->components == 1 ? stored_weight<1>(level.predictions, term, e)
+                                         : stored_weight<3>(level.predictions, term, e)) /
+             4096.0;
+    });
   }
 }
 
@@ -29,19 +57,17 @@ void add_blocks(const LevelView& level, std::uint32_t i, std::vector<Eigen::Trip
 
 Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q) {
   const LevelView& level = view.level[q];
-  const Index n = 3 * domain_up_to(view, q);
-  std::vector<Eigen::Triplet<double>> lift;
-  std::vector<Eigen::Triplet<double>> predict;
+  const Index nodes = domain_up_to(view, q);
+  Weights lift(view.info->components);
+  Weights predict(view.info->components);
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     const Index odd = level.domain_begin + i;
     if (level.predictions.weight != nullptr) {
-      add_blocks(level, i, predict);
+      add_blocks(view, level, i, predict);
       continue;
     }
     const auto add_prediction = [&](std::uint32_t node, double weight) {
-      for (Index r = 0; node != layout::none && in_domain(view, node) && r < 3; ++r) {
-        predict.emplace_back(3 * odd + r, Index{3} * domain_place(view, node) + r, weight);
-      }
+      if (node != layout::none && in_domain(view, node)) predict.add_number(odd, domain_place(view, node), weight);
     };
     for (std::uint32_t k = 0; level.stencils != nullptr && k < 4; ++k) {
       add_prediction(level.stencils[i].outer[k], -1.0 / 16);
@@ -50,21 +76,16 @@ Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q)
     for (std::uint32_t side = 0; side < 2; ++side) {
       const std::uint32_t parent = level.refinement[i].parent[side];
       add_prediction(parent, 0.5);
-      for (Index r = 0; in_domain(view, parent) && r < 3; ++r) {
-        const Index even = Index{3} * domain_place(view, parent) + r;
-        lift.emplace_back(even, 3 * odd + r, -double{level.refinement[i].lift[side]});
+      if (in_domain(view, parent)) {
+        lift.add_number(domain_place(view, parent), odd, -double{level.refinement[i].lift[side]});
       }
     }
   }
-  for (Index i = 0; i < n; ++i) {
-    lift.emplace_back(i, i, 1);
-    predict.emplace_back(i, i, 1);
+  for (Index i = 0; i < nodes; ++i) {
+    lift.add_number(i, i, 1);
+    predict.add_number(i, i, 1);
   }
-  Eigen::SparseMatrix<double> undo_lifting(n, n);
-  Eigen::SparseMatrix<double> interpolate(n, n);
-  undo_lifting.setFromTriplets(lift.begin(), lift.end());
-  interpolate.setFromTriplets(predict.begin(), predict.end());
-  return interpolate * undo_lifting;
+  return predict.matrix(nodes) * lift.matrix(nodes);
 }
 
 DenseReference::DenseReference(const ModelData& model) : wavelet_(model) {
@@ -80,7 +101,7 @@ DenseReference::DenseReference(const ModelData& model) : wavelet_(model) {
 MatrixXd DenseReference::averages(std::uint32_t q, MatrixXd x) const {
   for (std::uint32_t l = wavelet_.levels() - 1; l > q; --l) {
     wavelet_.forward(l, x);
-    x.conservativeResize(3 * wavelet_.end(l - 1), Eigen::NoChange);
+    x.conservativeResize(wavelet_.rows(l - 1), Eigen::NoChange);
   }
   return x;
 }

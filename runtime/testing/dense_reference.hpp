@@ -13,12 +13,12 @@
 
 namespace greenloop {
 
-/// T_q^-1 by its definition: from the averages of level q-1 and the details of level q to the averages of level q,
-/// three rows and columns a domain node.
+/// T_q^-1 by its definition: from the averages of level q-1 and the details of level q to the averages of level q, as
+/// many rows and columns a domain node as the model has components.
 [[nodiscard]] Eigen::SparseMatrix<double> inverse_step(const ModelView& view, std::uint32_t q);
 
-/// The compliances that a model stands for, as dense matrices in double precision: 3 rows and columns per domain node,
-/// by place in the domain. For tests: plain and slow.
+/// The compliances that a model stands for, as dense matrices in double precision: N rows and columns per domain node
+/// of a model of N components, by place in the domain. For tests: plain and slow.
 class DenseReference {
  public:
   explicit DenseReference(const ModelData& model);
@@ -27,7 +27,7 @@ class DenseReference {
   [[nodiscard]] const Eigen::MatrixXd& compliance(std::uint32_t c) const { return compliance_[c]; }
   /// Of the averages of level c per force on the nodes of the finest level; m/N.
   [[nodiscard]] const Eigen::MatrixXd& finest_compliance(std::uint32_t c) const { return finest_compliance_[c]; }
-  /// Displacement of the domain per force of level c: 3 domain by 3 |K(c)|.
+  /// Displacement of the domain per force of level c: N domain by N |K(c)|.
   [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
   /// The averages of level q of displacements of the domain.
   [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;
@@ -45,7 +45,8 @@ struct DenseAnswer {
   double condition = 0;          ///< of the capacitance matrix
 };
 
-/// The capacitance matrix algorithm on dense matrices in double precision with a complete factorisation.
+/// The capacitance matrix algorithm of an elastostatic model on dense matrices in double precision with a complete
+/// factorisation.
 [[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference,
                                       const Resolution& resolution, std::span<const Constraint> contacts);
 

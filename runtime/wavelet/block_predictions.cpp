@@ -11,14 +11,14 @@
 namespace greenloop {
 namespace {
 
-constexpr std::size_t block_bytes = StoredBlock<16>::bytes;
-
-const Float4& at_offset(const Float4* x, std::uint32_t byte_offset) {
-  return *reinterpret_cast<const Float4*>(reinterpret_cast<const std::byte*>(x) + byte_offset);
+template <class Vector>
+const Vector& at_offset(const Vector* x, std::uint32_t byte_offset) {
+  return *reinterpret_cast<const Vector*>(reinterpret_cast<const std::byte*>(x) + byte_offset);
 }
 
-Float4 predicted(const std::byte* block, const Float4* x, std::uint32_t source) {
-  return product(StoredBlock<16>::load(block), at_offset(x, source));
+template <unsigned N>
+Vector<N> predicted(const std::byte* block, const Vector<N>* x, std::uint32_t source) {
+  return product(StoredBlock<N, 16>::load(block), at_offset(x, source));
 }
 
 #if defined(__x86_64__)
@@ -51,9 +51,10 @@ struct Spread {
 [[gnu::target("avx2")]] void predict_blocks_avx2(const LevelView& level, const std::uint32_t* sources,
                                                  Float4* x) noexcept {
   static constexpr Spread spread;
+  constexpr std::size_t block_bytes = StoredBlock<3, 16>::bytes;
   const std::uint32_t terms = level.predictions.terms;
   const std::byte* block = level.predictions.weight;
-  const __m128 unit = _mm_set1_ps(weight_unit);
+  const __m128 unit = _mm_set1_ps(weight_unit<3>);
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     __m256 sum = _mm256_setzero_ps();
     std::uint32_t k = 0;
@@ -69,7 +70,7 @@ struct Spread {
     }
     __m128 even = _mm256_castps256_ps128(sum);
     if (k < terms) {
-      const Float4 moved = predicted(block, x, *sources++);
+      const Float4 moved = predicted<3>(block, x, *sources++);
       even = _mm_add_ps(even, reinterpret_cast<__m128>(xyz(moved)));
       block += block_bytes;
     }
@@ -81,32 +82,43 @@ struct Spread {
 
 }  // namespace
 
-void predict_blocks(const LevelView& level, const std::uint32_t* sources, Float4* x) noexcept {
+template <unsigned N>
+void predict_blocks(const LevelView& level, const std::uint32_t* sources, Vector<N>* x) noexcept {
+  constexpr std::size_t block_bytes = StoredBlock<N, 16>::bytes;
   const std::uint32_t terms = level.predictions.terms;
   const std::byte* block = level.predictions.weight;
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-    Float4 even{};
-    Float4 odd{};
+    Vector<N> even{};
+    Vector<N> odd{};
     std::uint32_t k = 0;
     for (; k + 2 <= terms; k += 2, block += 2 * block_bytes, sources += 2) {
-      even += predicted(block, x, sources[0]);
-      odd += predicted(block + block_bytes, x, sources[1]);
+      even += predicted<N>(block, x, sources[0]);
+      odd += predicted<N>(block + block_bytes, x, sources[1]);
     }
     if (k < terms) {
-      even += predicted(block, x, *sources++);
+      even += predicted<N>(block, x, *sources++);
       block += block_bytes;
     }
-    x[level.node_begin + i] = xyz(splat(weight_unit) * (even + odd));
+    x[level.node_begin + i] = components(scaled(weight_unit<N>, even + odd));
   }
 }
 
-PredictBlocks fastest_predict_blocks() noexcept {
+template void predict_blocks<1>(const LevelView&, const std::uint32_t*, Vector<1>*) noexcept;
+template void predict_blocks<3>(const LevelView&, const std::uint32_t*, Vector<3>*) noexcept;
+
+template <>
+PredictBlocks<1> fastest_predict_blocks<1>() noexcept {
+  return predict_blocks<1>;
+}
+
+template <>
+PredictBlocks<3> fastest_predict_blocks<3>() noexcept {
 #if defined(__x86_64__)
   if (has_avx2()) {
     return predict_blocks_avx2;
   }
 #endif
-  return predict_blocks;
+  return predict_blocks<3>;
 }
 
 }  // namespace greenloop

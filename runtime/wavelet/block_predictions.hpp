@@ -3,20 +3,28 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
-#include "runtime/algebra/float4.hpp"
+#include "runtime/algebra/block.hpp"
 
 namespace greenloop {
 
-/// Predicts the domain nodes of a level with 3x3 weights, which are read in the file: x_m = the sum of P_mk x_k over
-/// the level's terms, those of even number and those of odd number each added up by themselves. sources: [domain nodes
+/// Predicts the domain nodes of a level with weights that are blocks, which are read in the file: x_m = the sum of P_mk
+/// x_k over the level's terms, those of even number and those of odd number each added up by themselves. sources:
+/// [domain nodes
 /// * terms] byte offsets of the nodes k in x; x: by node; those of coarser levels are read. For the loop; work:
 /// Prediction::node_work units per node, in the inverse transform.
-using PredictBlocks = void (*)(const LevelView& level, const std::uint32_t* sources, Float4* x) noexcept;
+template <unsigned N>
+using PredictBlocks = void (*)(const LevelView& level, const std::uint32_t* sources, Vector<N>* x) noexcept;
 
 /// On every processor.
-void predict_blocks(const LevelView& level, const std::uint32_t* sources, Float4* x) noexcept;
+template <unsigned N>
+void predict_blocks(const LevelView& level, const std::uint32_t* sources, Vector<N>* x) noexcept;
 
 /// The fastest on this processor, of the same bits. Start-up.
-[[nodiscard]] PredictBlocks fastest_predict_blocks() noexcept;
+template <unsigned N>
+[[nodiscard]] PredictBlocks<N> fastest_predict_blocks() noexcept;
+template <>
+[[nodiscard]] PredictBlocks<1> fastest_predict_blocks<1>() noexcept;
+template <>
+[[nodiscard]] PredictBlocks<3> fastest_predict_blocks<3>() noexcept;
 
 }  // namespace greenloop

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "runtime/algebra/float4.hpp"
+#include "runtime/algebra/block.hpp"
 #include "runtime/wavelet/reach.hpp"
 #include "runtime/wavelet/refinement.hpp"
 
@@ -18,15 +18,17 @@ namespace greenloop {
 struct ColumnForces {
   std::uint32_t count;
   const std::uint32_t* column;  ///< [count] of distinct places, coarser ones first
-  const float* force;           ///< [3 * count] N; denormal numbers count as 0
+  const float* force;           ///< [N * count] N for three components; denormal numbers count as 0
 };
 
 /// The force coefficients T^-T f of forces on columns, each of which enters on its own level. touched: by the same
 /// columns; force: [domain], 0 before. For the loop; work: Prediction::force_work per visit.
+template <unsigned N>
 void transform_forces(const Refinement& refinement, const ColumnForces& columns, const Touched& touched,
-                      Float4* force) noexcept;
+                      Vector<N>* force) noexcept;
 
 /// Zeroes the touched coefficients. For the loop; work: one unit per coefficient.
-void clear_forces(const Touched& touched, Float4* force) noexcept;
+template <unsigned N>
+void clear_forces(const Touched& touched, Vector<N>* force) noexcept;
 
 }  // namespace greenloop

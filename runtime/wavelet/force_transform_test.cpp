@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "runtime/testing/dense_reference.hpp"
-#include "runtime/testing/placed_body.hpp"
+#include "runtime/testing/rooms.hpp"
 #include "runtime/testing/test_body.hpp"
 #include "runtime/wavelet/domain.hpp"
 #include "runtime/wavelet/point_support.hpp"
@@ -19,21 +19,21 @@ namespace {
 // coefficients of nodal forces of level c, by T_l^-T as dense matrices
 std::vector<double> dense_coefficients(const ModelView& view, const std::vector<Eigen::SparseMatrix<double>>& inverse,
                                        std::uint32_t c, Eigen::VectorXd f) {
-  std::vector<double> result(std::size_t{3} * view.domain_count);
+  std::vector<double> result(std::size_t{view.info->components} * view.domain_count);
   for (std::uint32_t level = c; level > 0; --level) {
-    f.head(3 * domain_up_to(view, level)) =
-        Eigen::VectorXd(inverse[level].transpose() * f.head(3 * domain_up_to(view, level)));
+    f.head(inverse[level].rows()) = Eigen::VectorXd(inverse[level].transpose() * f.head(inverse[level].rows()));
   }
   std::copy(f.begin(), f.end(), result.begin());
   return result;
 }
 
-TEST_CASE("sparse forces reach the coefficients that the dense transform finds, and no other") {
+TEST_CASE_TEMPLATE("sparse forces reach the coefficients that the dense transform finds, and no other", Components, One,
+                   Three) {
+  constexpr unsigned N = Components::value;
   for (const layout::Wavelet kind : layout::wavelets) {
-    const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.8});
+    const TestModel model({.components = N, .levels = 5, .wavelet = kind, .touchable_above = 0.8});
     const ModelView& view = model.view();
-    PlacedBody placed(view, 16);
-    Body& body = *placed.body;
+    Rooms<N> rooms(view);
     std::uint32_t most_neighbours[layout::max_levels] = {};
     std::vector<Eigen::SparseMatrix<double>> inverse(view.levels);
     for (std::uint32_t q = 1; q < view.levels; ++q) {
@@ -53,43 +53,43 @@ TEST_CASE("sparse forces reach the coefficients that the dense transform finds, 
         }
         std::shuffle(places.begin(), places.end(), random);
         places.resize(std::min<std::size_t>(places.size(), trial < 15 ? 1 : 16));
-        Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * domain_up_to(view, c));
+        Eigen::VectorXd f = Eigen::VectorXd::Zero(N * domain_up_to(view, c));
         std::vector<std::uint32_t> columns;
         std::vector<float> forces;
         for (const std::uint32_t place : places) {
           columns.push_back(make_column(c, place));
         }
-        touch(body.refinement, columns.data(), static_cast<std::uint32_t>(columns.size()), body.touched);
+        touch(rooms.refinement, columns.data(), static_cast<std::uint32_t>(columns.size()), rooms.touched);
         for (const std::uint32_t place : places) {
-          for (Eigen::Index r = 0; r < 3; ++r) {
+          for (Eigen::Index r = 0; r < N; ++r) {
             forces.push_back(static_cast<float>(random() >> 40) * 0x1p-24F);
-            f(Eigen::Index{3} * place + r) = forces.back();
+            f(Eigen::Index{N} * place + r) = forces.back();
           }
         }
-        transform_forces(body.refinement, {static_cast<std::uint32_t>(columns.size()), columns.data(), forces.data()},
-                         body.touched, body.force);
+        transform_forces<N>(rooms.refinement,
+                            {static_cast<std::uint32_t>(columns.size()), columns.data(), forces.data()}, rooms.touched,
+                            rooms.force);
         const auto dense = dense_coefficients(view, inverse, c, f);
         std::vector<int> times(view.domain_count);
         for (std::uint32_t q = 0; q < view.levels; ++q) {
           const LevelView& level = view.level[q];
-          for (std::uint32_t k = 0; k < body.touched.count[q]; ++k) {
-            CHECK(body.touched.list[q][k] - level.domain_begin < level.counts->domain_count);
-            ++times[body.touched.list[q][k]];
+          for (std::uint32_t k = 0; k < rooms.touched.count[q]; ++k) {
+            CHECK(rooms.touched.list[q][k] - level.domain_begin < level.counts->domain_count);
+            ++times[rooms.touched.list[q][k]];
           }
-          CHECK(body.touched.count[q] <= (q <= c ? places.size() * reach.coefficients[q] : 0));
+          CHECK(rooms.touched.count[q] <= (q <= c ? places.size() * reach.coefficients[q] : 0));
         }
-        CHECK(body.touched.visits <= places.size() * reach.visits);
+        CHECK(rooms.touched.visits <= places.size() * reach.visits);
         for (std::size_t i = 0; i < dense.size(); ++i) {
-          CHECK(times[i / 3] <= 1);
-          CHECK(std::abs(double{body.force[i / 3][i % 3]} - dense[i]) <= 1e-5);
-          CHECK((times[i / 3] == 1 || dense[i] == 0));
-          CHECK(float{body.force[i / 3][3]} == 0);
+          CHECK(times[i / N] <= 1);
+          CHECK(std::abs(double{component(rooms.force[i / N], i % N)} - dense[i]) <= 1e-5);
+          CHECK((times[i / N] == 1 || dense[i] == 0));
+          CHECK(is_padded(rooms.force[i / N]));
         }
-        clear_forces(body.touched, body.force);
-        clear(body.touched);
-        CHECK(std::none_of(body.touched.mark, body.touched.mark + view.domain_count, [](bool m) { return m; }));
-        CHECK(std::all_of(body.force, body.force + view.domain_count,
-                          [](Float4 x) { return x[0] == 0 && x[1] == 0 && x[2] == 0 && x[3] == 0; }));
+        clear_forces<N>(rooms.touched, rooms.force);
+        clear(rooms.touched);
+        CHECK(std::none_of(rooms.touched.mark, rooms.touched.mark + view.domain_count, [](bool m) { return m; }));
+        CHECK(std::all_of(rooms.force, rooms.force + view.domain_count, is_zero<N>));
       }
     }
   }

@@ -59,7 +59,7 @@ void visit_blocks(const Refinement& refinement, std::uint32_t odd, Visit visit) 
   const std::uint32_t terms = at.predictions.terms;
   const std::size_t first = std::size_t{terms} * (odd - at.domain_begin);
   for (std::size_t term = first; term < first + terms; ++term) {
-    visit(stored_source(at.predictions, term), stored_block(at.predictions, term));
+    visit(stored_source(at.predictions, term), at.predictions.weight + refinement.prediction.block_bytes * term);
   }
 }
 
@@ -96,7 +96,7 @@ void visit_neighbours(const Refinement& refinement, std::uint32_t level, std::ui
   for (std::uint32_t n = begin[0]; n < begin[1]; ++n) {
     const OddNeighbours& record = refinement.lifting->neighbours[level][n];
     for (std::uint32_t k = 0; k < record.count; ++k) {
-      visit(record.node(k) - at.node_begin + at.domain_begin, record.lift[k]);
+      visit(record.node[k] - at.node_begin + at.domain_begin, record.lift[k]);
     }
   }
 }

@@ -27,7 +27,7 @@ struct SparseInverse {
   Term* term = nullptr;  ///< [slots (Prediction::length + 3)], with blocks [slots (length + 1)]
   std::uint32_t steps = 0;
   std::uint32_t* settled = nullptr;   ///< [slots] steps after which a slot holds the value of its node
-  const std::byte** block = nullptr;  ///< [2 slots] stored_block of a step's first, or null; null without predictions
+  const std::byte** block = nullptr;  ///< [2 slots] a step's first stored block, or null; null without predictions
                                       ///< by blocks
 
   /// Arrays out of `arena` for so many slots; null while it counts.

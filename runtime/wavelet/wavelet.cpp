@@ -9,35 +9,38 @@
 namespace greenloop {
 namespace {
 
-Float4& at_offset(Float4* x, std::uint32_t byte_offset) {
-  return *reinterpret_cast<Float4*>(reinterpret_cast<std::byte*>(x) + byte_offset);
+template <class Vector>
+Vector& at_offset(Vector* x, std::uint32_t byte_offset) {
+  return *reinterpret_cast<Vector*>(reinterpret_cast<std::byte*>(x) + byte_offset);
 }
 
-void undo_lifting(const LevelView& level, const ParentOffsets* parents, const Float4* coefficients, Float4* x) {
+template <class Vector>
+void undo_lifting(const LevelView& level, const ParentOffsets* parents, const Vector* coefficients, Vector* x) {
   const ParentOffsets* of_level = parents + level.domain_begin;
-  const Float4* detail = coefficients + level.domain_begin;
+  const Vector* detail = coefficients + level.domain_begin;
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
     const float* lift = level.refinement[i].lift;
-    at_offset(x, of_level[i].byte_offset[0]) -= splat(lift[0]) * detail[i];
-    at_offset(x, of_level[i].byte_offset[1]) -= splat(lift[1]) * detail[i];
+    at_offset(x, of_level[i].byte_offset[0]) -= scaled(lift[0], detail[i]);
+    at_offset(x, of_level[i].byte_offset[1]) -= scaled(lift[1], detail[i]);
   }
 }
 
 // 0 outside the domain
-void clear_fixed(const LevelView& level, Float4* x) {
+template <class Vector>
+void clear_fixed(const LevelView& level, Vector* x) {
   const std::uint32_t count = level.counts->domain_count;
-  std::memset(x + level.node_begin + count, 0, sizeof(Float4) * (level.counts->node_count - count));
+  std::memset(x + level.node_begin + count, 0, sizeof(Vector) * (level.counts->node_count - count));
 }
 
 // halfway between the parents
-void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
-  Float4* odd = x + level.node_begin;
+template <class Vector>
+void predict(const LevelView& level, const ParentOffsets* parents, Vector* x) {
+  Vector* odd = x + level.node_begin;
   const ParentOffsets* of_level = parents + level.domain_begin;
   const std::uint32_t count = level.counts->domain_count;
   const auto halfway = [&](std::uint32_t i) {
     const auto both = std::bit_cast<std::uint64_t>(of_level[i]);  // one load; their order does not matter
-    odd[i] = splat3(0.5F) *
-             sum3(at_offset(x, static_cast<std::uint32_t>(both)), at_offset(x, static_cast<std::uint32_t>(both >> 32)));
+    odd[i] = mean(at_offset(x, static_cast<std::uint32_t>(both)), at_offset(x, static_cast<std::uint32_t>(both >> 32)));
   };
   std::uint32_t i = 0;
   for (; i + 4 <= count; i += 4) {
@@ -53,23 +56,25 @@ void predict(const LevelView& level, const ParentOffsets* parents, Float4* x) {
 }
 
 // moves a level's details to its nodes
-void add_details(const LevelView& level, Float4* coefficients, Float4* x) {
-  Float4* node = x + level.node_begin;
-  Float4* detail = coefficients + level.domain_begin;
+template <class Vector>
+void add_details(const LevelView& level, Vector* coefficients, Vector* x) {
+  Vector* node = x + level.node_begin;
+  Vector* detail = coefficients + level.domain_begin;
   for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-    node[i] = sum3(node[i], detail[i]);
-    detail[i] = Float4{};
+    node[i] = added(node[i], detail[i]);
+    detail[i] = Vector{};
   }
 }
 
-void add_stencils(const LevelView& level, Float4* x) {
-  Float4* odd = x + level.node_begin;
+template <class Vector>
+void add_stencils(const LevelView& level, Vector* x) {
+  Vector* odd = x + level.node_begin;
   const std::uint32_t count = level.counts->domain_count;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto& [wing, outer] = level.stencils[i];
     if (wing[0] != layout::none) {
-      odd[i] += splat(layout::wing_weight) * (x[wing[0]] + x[wing[1]]);
-      odd[i] += splat(layout::outer_weight) * ((x[outer[0]] + x[outer[1]]) + (x[outer[2]] + x[outer[3]]));
+      odd[i] += scaled(layout::wing_weight, x[wing[0]] + x[wing[1]]);
+      odd[i] += scaled(layout::outer_weight, (x[outer[0]] + x[outer[1]]) + (x[outer[2]] + x[outer[3]]));
     }
   }
 }
@@ -138,12 +143,13 @@ void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32
       ++record;
     }
     record->even = parent;
-    record->byte_offset[record->count] = odd * static_cast<std::uint32_t>(sizeof(Float4));
+    record->node[record->count] = odd;
     record->lift[record->count++] = lift;
   });
 }
 
-void PredictionOffsets::carve(Arena& arena, const ModelView& view) noexcept {
+template <unsigned N>
+void PredictionOffsets<N>::carve(Arena& arena, const ModelView& view) noexcept {
   if (!prediction_of(view).blocks) {
     parents = arena.take<ParentOffsets>(view.domain_count);
     return;
@@ -155,9 +161,10 @@ void PredictionOffsets::carve(Arena& arena, const ModelView& view) noexcept {
   sources = arena.take<std::uint32_t>(terms);
 }
 
-void PredictionOffsets::fill(const ModelView& view) noexcept {
-  predict_blocks = fastest_predict_blocks();
-  constexpr std::uint32_t bytes = sizeof(Float4);
+template <unsigned N>
+void PredictionOffsets<N>::fill(const ModelView& view) noexcept {
+  predict_blocks = fastest_predict_blocks<N>();
+  constexpr std::uint32_t bytes = sizeof(Vector<N>);
   const bool blocks = prediction_of(view).blocks;
   std::uint32_t* source = sources;
   for (std::uint32_t q = 1; q < view.levels; ++q) {
@@ -176,12 +183,13 @@ void PredictionOffsets::fill(const ModelView& view) noexcept {
   }
 }
 
-void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, const FieldLevels& levels,
-                       Float4* coefficients, Float4* x) noexcept {
+template <unsigned N>
+void inverse_transform(const ModelView& view, const PredictionOffsets<N>& offsets, const FieldLevels& levels,
+                       Vector<N>* coefficients, Vector<N>* x) noexcept {
   const auto wavelet = static_cast<layout::Wavelet>(view.info->wavelet);
   const bool lifted = layout::is_lifted(wavelet);
   const std::uint32_t* sources = offsets.sources;
-  std::memset(x, 0, sizeof(Float4) * view.level[0].counts->node_count);
+  std::memset(x, 0, sizeof(Vector<N>) * view.level[0].counts->node_count);
   add_details(view.level[0], coefficients, x);
   for (std::uint32_t q = 1; q <= levels.nodes; ++q) {
     const LevelView& level = view.level[q];
@@ -203,5 +211,12 @@ void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, 
     }
   }
 }
+
+template struct PredictionOffsets<1>;
+template struct PredictionOffsets<3>;
+template void inverse_transform<1>(const ModelView&, const PredictionOffsets<1>&, const FieldLevels&, Vector<1>*,
+                                   Vector<1>*) noexcept;
+template void inverse_transform<3>(const ModelView&, const PredictionOffsets<3>&, const FieldLevels&, Vector<3>*,
+                                   Vector<3>*) noexcept;
 
 }  // namespace greenloop

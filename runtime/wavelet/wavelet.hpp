@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
-#include "runtime/algebra/float4.hpp"
+#include "runtime/algebra/block.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/wavelet/block_predictions.hpp"
 #include "runtime/wavelet/domain.hpp"
@@ -16,7 +16,7 @@ namespace greenloop {
 //   undo lifting   x_a -= lift[0] d_m,  x_b -= lift[1] d_m    for all m
 //   predict        x_m  = d_m + (x_a + x_b) / 2               for all m
 //                  x_m += (x_c + x_d) / 8 - (x_e + x_f + x_g + x_h) / 16    for m with a Butterfly stencil
-//   or instead     x_m  = d_m + (sum of P_mk x_k)             for all m, with 3x3 blocks P_mk of the file
+//   or instead     x_m  = d_m + (sum of P_mk x_k)             for all m, with blocks P_mk of the file
 // Nodes outside the domain are 0.
 
 /// Up to six odd neighbours in M(l) that are lifted into one domain node of K(l-1), in file order: lifting as a gather
@@ -26,10 +26,8 @@ struct alignas(64) OddNeighbours {
 
   std::uint32_t even;
   std::uint32_t count;
-  std::uint32_t byte_offset[most];  ///< of the neighbour in an array of Float4 per node
+  std::uint32_t node[most];
   float lift[most];
-
-  [[nodiscard]] std::uint32_t node(std::uint32_t k) const { return byte_offset[k] / sizeof(Float4); }
 };
 
 /// The lifting of every level l > 0: its odd neighbours by domain node of K(l-1).
@@ -51,16 +49,17 @@ struct LiftingCounts {
 void list_odd_neighbours(const ModelView& view, std::uint32_t level, std::uint32_t* begin,
                          OddNeighbours* neighbours) noexcept;
 
-/// Where the parents of a node stand in an array of Float4 per node.
+/// Where the parents of a node stand in an array of Vector<N> per node.
 struct ParentOffsets {
   std::uint32_t byte_offset[2];
 };
 
-/// Where what predicts a node stands in an array of Float4 per node.
+/// Where what predicts a node stands in an array of Vector<N> per node.
+template <unsigned N>
 struct PredictionOffsets {
   ParentOffsets* parents = nullptr;  ///< [domain]; null with block predictions
   std::uint32_t* sources = nullptr;  ///< [terms of Predictions(1), of (2) and so on] byte offsets; null with others
-  PredictBlocks predict_blocks = greenloop::predict_blocks;
+  PredictBlocks<N> predict_blocks = greenloop::predict_blocks<N>;
 
   /// Out of `arena`; null while it counts. Start-up.
   void carve(Arena& arena, const ModelView& view) noexcept;
@@ -78,14 +77,15 @@ struct FieldLevels {
 /// The inverse transform: displacements x of the nodes of K(levels.nodes), all of which are written. Levels above
 /// levels.details are interpolated; their coefficients are not looked at. coefficients: [domain], those of levels
 /// 0..levels.details are zero afterwards. For the loop; work: inverse_transform_work.
-void inverse_transform(const ModelView& view, const PredictionOffsets& offsets, const FieldLevels& levels,
-                       Float4* coefficients, Float4* x) noexcept;
+template <unsigned N>
+void inverse_transform(const ModelView& view, const PredictionOffsets<N>& offsets, const FieldLevels& levels,
+                       Vector<N>* coefficients, Vector<N>* x) noexcept;
 
 /// Work units of inverse_transform. odd_nodes: of the domain above level 0; details: coefficients of levels up to
 /// levels.details.
 constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t details,
                                                const Prediction& prediction) {
-  return nodes + prediction.node_work * odd_nodes + 8 * details;
+  return nodes + prediction.node_work * odd_nodes + prediction.detail_work * details;
 }
 
 }  // namespace greenloop

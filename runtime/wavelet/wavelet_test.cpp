@@ -10,6 +10,7 @@
 
 #include "formats/stored_blocks.hpp"
 #include "runtime/testing/placed_body.hpp"
+#include "runtime/testing/rooms.hpp"
 #include "runtime/testing/test_body.hpp"
 #include "runtime/wavelet/domain.hpp"
 
@@ -27,43 +28,46 @@ std::vector<std::uint32_t> domain_nodes(const ModelView& view) {
 }
 
 // a field to be
+template <unsigned N>
 struct Coefficients {
   explicit Coefficients(const ModelView& model) : view(model), value(view.domain_count) {}
-  void add(std::uint32_t node, Float4 coefficient) { value[domain_place(view, node)] = coefficient; }
+  void add(std::uint32_t node, Vector<N> coefficient) { value[domain_place(view, node)] = coefficient; }
   // by file index; the coefficients are checked to be zero again
-  std::vector<Float4> inverse(const PlacedBody& placed, std::uint32_t field_level) {
-    std::vector<Float4> x(view.node_count, splat(1e30F));
-    inverse_transform(view, placed.body->offsets, {view.levels - 1, field_level}, value.data(), x.data());
-    CHECK(std::all_of(value.begin(), value.begin() + domain_up_to(view, field_level),
-                      [](Float4 v) { return v[0] == 0 && v[1] == 0 && v[2] == 0 && v[3] == 0; }));
+  std::vector<Vector<N>> inverse(const Rooms<N>& rooms, std::uint32_t field_level) {
+    std::vector<Vector<N>> x(view.node_count, Vector<N>{} + 1e30F);
+    inverse_transform<N>(view, rooms.offsets, {view.levels - 1, field_level}, value.data(), x.data());
+    CHECK(std::all_of(value.begin(), value.begin() + domain_up_to(view, field_level), is_zero<N>));
     return x;
   }
   const ModelView& view;
-  std::vector<Float4> value;
+  std::vector<Vector<N>> value;
 };
 
 // takes what the blocks of node i of a level predict from it
+template <unsigned N>
 void subtract_blocks(const ModelView& view, const LevelView& level, std::uint32_t i,
-                     std::vector<std::array<double, 3>>& d) {
-  for (std::uint32_t k = 0; k < 9 * level.predictions.terms; ++k) {
-    const std::size_t term = std::size_t{level.predictions.terms} * i + k / 9;
-    const double weight = stored_weight<3>(level.predictions, term, k % 9) / 4096.0;
-    d[level.node_begin + i][k % 3] -= weight * d[domain_node(view, stored_source(level.predictions, term))][k % 9 / 3];
+                     std::vector<std::array<double, N>>& d) {
+  for (std::uint32_t k = 0; k < N * N * level.predictions.terms; ++k) {
+    const std::size_t term = std::size_t{level.predictions.terms} * i + k / (N * N);
+    const double weight = stored_weight<N>(level.predictions, term, k % (N * N)) / 4096.0;
+    const auto& from = d[domain_node(view, stored_source(level.predictions, term))];
+    d[level.node_begin + i][k % N] -= weight * from[k % (N * N) / N];
   }
 }
 
-TEST_CASE("the inverse transform undoes the definition's forward transform") {
+TEST_CASE_TEMPLATE("the inverse transform undoes the definition's forward transform", Components, One, Three) {
+  constexpr unsigned N = Components::value;
   layout::Wavelet kind{};
   SUBCASE("lifted linear") { kind = layout::Wavelet::lifted_linear; }
   SUBCASE("linear") { kind = layout::Wavelet::linear; }
   SUBCASE("lifted butterfly") { kind = layout::Wavelet::lifted_butterfly; }
   SUBCASE("butterfly") { kind = layout::Wavelet::butterfly; }
   SUBCASE("equilibrated") { kind = layout::Wavelet::equilibrated; }
-  const TestModel model({.levels = 5, .wavelet = kind, .touchable_above = 0.95});
+  const TestModel model({.components = N, .levels = 5, .wavelet = kind, .touchable_above = 0.95});
   const ModelView& view = model.view();
-  const PlacedBody placed(view);
+  const Rooms<N> rooms(view);
   std::mt19937_64 random(2);
-  std::vector<std::array<double, 3>> x(view.node_count);
+  std::vector<std::array<double, N>> x(view.node_count);
   for (const std::uint32_t node : domain_nodes(view)) {
     for (double& value : x[node]) {
       value = static_cast<double>(random() >> 11) * 0x1p-53;
@@ -73,8 +77,8 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
   for (std::uint32_t q = view.levels - 1; q > 0; --q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      subtract_blocks(view, level, i, d);
-      for (std::size_t r = 0; level.predictions.weight == nullptr && r < 3; ++r) {
+      subtract_blocks<N>(view, level, i, d);
+      for (std::size_t r = 0; level.predictions.weight == nullptr && r < N; ++r) {
         d[level.node_begin + i][r] -= 0.5 * (d[level.refinement[i].parent[0]][r] + d[level.refinement[i].parent[1]][r]);
         if (level.stencils == nullptr || level.stencils[i].wing[0] == layout::none) continue;
         for (const std::uint32_t wing : level.stencils[i].wing) d[level.node_begin + i][r] -= d[wing][r] / 8;
@@ -82,47 +86,51 @@ TEST_CASE("the inverse transform undoes the definition's forward transform") {
       }
     }
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      for (std::size_t r = 0; r < 6; ++r) {
-        d[level.refinement[i].parent[r / 3]][r % 3] +=
-            double{level.refinement[i].lift[r / 3]} * d[level.node_begin + i][r % 3];
+      for (std::size_t r = 0; r < 2 * N; ++r) {
+        d[level.refinement[i].parent[r / N]][r % N] +=
+            double{level.refinement[i].lift[r / N]} * d[level.node_begin + i][r % N];
       }
     }
   }
-  Coefficients coefficients(view);
+  Coefficients<N> coefficients(view);
   for (const std::uint32_t node : domain_nodes(view)) {
-    const auto& of_node = d[node];
-    coefficients.add(
-        node, Float4{static_cast<float>(of_node[0]), static_cast<float>(of_node[1]), static_cast<float>(of_node[2])});
+    float of_node[N];
+    std::copy(d[node].begin(), d[node].end(), of_node);
+    coefficients.add(node, load_vector<N>(of_node));
   }
-  const std::vector<Float4> field = coefficients.inverse(placed, view.levels - 1);
+  const std::vector<Vector<N>> field = coefficients.inverse(rooms, view.levels - 1);
   for (std::uint32_t node = 0; node < view.node_count; ++node) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      CHECK(std::abs(double{field[node][r]} - x[node][r]) <= 8 * view.levels * 0x1p-24);
+    for (std::size_t r = 0; r < N; ++r) {
+      CHECK(std::abs(double{component(field[node], r)} - x[node][r]) <= 8 * view.levels * 0x1p-24);
     }
-    CHECK(float{field[node][3]} == 0);
+    CHECK(is_padded(field[node]));
   }
 }
 
 TEST_CASE("a body predicts with blocks in the fastest form") {
   const TestModel model({.levels = 3, .wavelet = layout::Wavelet::equilibrated});
   const PlacedBody placed(model.view());
-  CHECK((placed.body->offsets.predict_blocks == fastest_predict_blocks()));
+  CHECK((placed.body->offsets.predict_blocks == fastest_predict_blocks<3>()));
 }
 
-TEST_CASE("details above the field level are interpolated") {
-  const TestModel model({.levels = 4, .touchable_above = 0.95});
+TEST_CASE_TEMPLATE("details above the field level are interpolated", Components, One, Three) {
+  constexpr unsigned N = Components::value;
+  const TestModel model({.components = N, .levels = 4, .touchable_above = 0.95});
   const ModelView& view = model.view();
-  const PlacedBody placed(view);
-  Coefficients coarse(view);
+  const Rooms<N> rooms(view);
+  Coefficients<N> coarse(view);
   for (std::uint32_t i = 0; i < view.level[0].counts->domain_count; ++i) {
-    coarse.add(i, splat3(1.0F + static_cast<float>(i)));
+    coarse.add(i, components(Vector<N>{} + (1.0F + static_cast<float>(i))));
   }
-  const std::vector<Float4> field = coarse.inverse(placed, 0);
+  const std::vector<Vector<N>> field = coarse.inverse(rooms, 0);
   for (std::uint32_t q = 1; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
       const std::uint32_t* parent = level.refinement[i].parent;
-      CHECK(float{field[level.node_begin + i][1]} == 0.5F * (field[parent[0]][1] + field[parent[1]][1]));
+      for (std::size_t r = 0; r < N; ++r) {
+        const float sum = component(field[parent[0]], r) + component(field[parent[1]], r);
+        CHECK(component(field[level.node_begin + i], r) == 0.5F * sum);
+      }
     }
   }
 }

@@ -19,7 +19,7 @@ FieldCounter::FieldCounter(const ModelView& view) : view_(view), up_to_(std::siz
   refinement_ = tables_.refinement(view, lifting_);
   std::vector<std::uint8_t> read(view.domain_count);
   mark_read(refinement_, touched_, read.data());
-  count_field_blocks(view, maker_.make(view, {}, read.data()), {}, up_to_.data());
+  count_field_blocks<3>(view, maker_.make(view, {}, read.data()), {}, up_to_.data());
 }
 
 void FieldCounter::carve(Arena& arena) {

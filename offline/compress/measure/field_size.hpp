@@ -37,7 +37,7 @@ class FieldCounter {
   const ModelView& view_;
   AlignedBytes memory_;
   RefinementTables tables_;
-  MirroredCouplingsMaker maker_;
+  MirroredCouplingsMaker<3> maker_;
   Touched touched_;
   Lifting lifting_;
   Refinement refinement_;

@@ -1,0 +1,114 @@
+#include "runtime/compliance/capacitance_work.hpp"
+
+#include "runtime/algebra/merge_sort.hpp"
+#include "runtime/compliance/couplings.hpp"
+
+namespace greenloop {
+namespace {
+
+std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
+
+// of touching the computed rows alone; the steps of T^-1 have no more terms
+std::uint64_t own_visits(const CapacitanceCounts& counts) { return smaller(counts.set_visits, counts.visits); }
+
+bool panel_of(const CapacitanceCounts& counts) { return has_panel(counts.room, counts.slots, counts.rows); }
+
+// most slots of a set that has a panel
+std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
+  std::uint64_t slots = counts.slots;
+  while (slots * slots > 2 * counts.room) {
+    slots = (slots + 2 * counts.room / slots) / 2;  // Newton's iteration falls to the root
+  }
+  return slots;
+}
+
+// a slot's diagonal block, scaled on both sides, and what is looked up for it
+std::uint64_t slot_work(const Prediction& prediction) {
+  const std::uint64_t n = prediction.components;
+  return 2 * n * n * n + 6;
+}
+
+// what every batch of rows begins with
+std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
+  return 4 * own_visits(counts) + 2 * counts.set_visits + slot_work(counts.prediction) * counts.slots +
+         merge_sort_work(counts.rows);
+}
+
+std::uint64_t functionals_work(const CapacitanceCounts& counts) {
+  const std::uint64_t transforms = counts.prediction.blocks ? counts.prediction.components : 1;
+  const std::uint64_t visit_work = 2 + transforms * counts.prediction.force_work;
+  return visit_work * counts.visits + 16 * transforms * counts.coefficients + counts.rows * counts.slots;
+}
+
+// of the blocks in the columns of the slots
+std::uint64_t stored_work(const CapacitanceCounts& counts) {
+  return (4 + scaled_block_work(counts.prediction.components)) * counts.stored;
+}
+
+std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
+  return pairs(slots) * panel_pair_work(counts.prediction, own_visits(counts), counts.rows);
+}
+
+}  // namespace
+
+void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept {
+  const LevelView& level = view.level[q];
+  for (const CouplingsView& couplings : level.couplings) {
+    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+      const std::uint32_t column = level.domain_begin + j;
+      degree[column] += column_length(couplings, j);
+      visit_rows(couplings, j, 0, column, [degree](std::uint32_t row, std::uint32_t) { ++degree[row]; });
+    }
+  }
+}
+
+ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const std::uint32_t* degree,
+                       Touched& touched) noexcept {
+  touch(refinement, &column, 1, touched);
+  ColumnCost cost;
+  cost.visits = static_cast<std::uint32_t>(touched.visits);
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    cost.coefficients += touched.count[q];
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      cost.blocks += degree[touched.list[q][k]];
+    }
+  }
+  clear(touched);
+  return cost;
+}
+
+std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept {
+  const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
+  const std::uint64_t panel = panel_of(counts) || counts.bounds ? slots * slots : 0;
+  const std::uint64_t functionals = panel_of(counts) ? 0 : functionals_work(counts);
+  return begin_batch_work(counts) + (panel > functionals ? panel : functionals);
+}
+
+std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept {
+  const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
+  return stored_work(counts) + pairs(counts.rows) * sum_pair_work(counts.prediction, counts.set_visits) +
+         (panel_of(counts) ? 0 : counts.prediction.weight_work * counts.blocks) +
+         (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
+}
+
+std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept {
+  if (counts.rows == 0) {
+    return 0;
+  }
+  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
+  const std::uint64_t batches = panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
+  const std::uint64_t more = batches > 1 ? batches - 1 : 0;
+  return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
+         more * (begin_batch_work(counts) + stored_work(counts)) +
+         counts.rows * store_capacitance_work(counts.prediction.components, counts.columns);
+}
+
+std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept {
+  auto slots = static_cast<std::uint32_t>(touched.coefficients());
+  for (std::uint32_t i = 0; i < set.count; ++i) {
+    slots += column_level(set.column[i]) < touched.finest ? 1 : 0;
+  }
+  return slots;
+}
+
+}  // namespace greenloop
