@@ -34,7 +34,7 @@ typedef struct greenloop_version_numbers {
 } greenloop_version_numbers;
 
 /* What a model file is precomputed for: which functions take it. */
-typedef enum greenloop_problem { GREENLOOP_PROBLEM_ELASTOSTATIC = 1 } greenloop_problem;
+typedef enum greenloop_problem { GREENLOOP_PROBLEM_ELASTOSTATIC = 1, GREENLOOP_PROBLEM_SCALAR = 2 } greenloop_problem;
 
 /* Rules of the verifier that a model file can break. */
 typedef enum greenloop_rule {

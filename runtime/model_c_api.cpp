@@ -52,7 +52,8 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
               same(GREENLOOP_HELD_UNSUPPORTED, Status::held_unsupported) && GREENLOOP_HELD_UNSUPPORTED + 1 == statuses);
 static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
               same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
-static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic));
+static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic) &&
+              same(GREENLOOP_PROBLEM_SCALAR, layout::Problem::scalar));
 // NOLINTBEGIN(misc-redundant-expression): two types are compared
 static_assert(sizeof(Model) <= sizeof(greenloop_model) && alignof(Model) <= alignof(greenloop_model) &&
               std::is_trivially_destructible_v<Model>);

@@ -9,4 +9,7 @@ namespace greenloop {
 /// only.
 [[nodiscard]] ModelData smallest_model();
 
+/// The same of a scalar problem: a unit load on a node of the domain causes 1/16 there. For tests only.
+[[nodiscard]] ModelData smallest_scalar_model();
+
 }  // namespace greenloop

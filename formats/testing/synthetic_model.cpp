@@ -14,10 +14,12 @@ namespace {
 using Eigen::Index;
 using Eigen::Matrix3d;
 using Eigen::MatrixXd;
+template <unsigned N>
+using Block = Eigen::Matrix<double, N, N>;
 using Sphere = SyntheticSphere;
 
 constexpr double range = 0.05;     // m, of the kernel
-constexpr double softness = 1e-3;  // m/N
+constexpr double softness = 1e-3;  // m/N, or of a scalar problem's units
 constexpr double twist = 0.5;
 
 // The quantum of each layer over SyntheticOptions::quantum; of 16 bits over what holds the largest value. All differ,
@@ -32,6 +34,18 @@ Matrix3d frame_at(const Eigen::Vector3d& x) {
   return frame;
 }
 
+template <unsigned N>
+Block<N> exact_block(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
+template <>
+Block<1> exact_block<1>(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
+  return Block<1>(synthetic_scalar_compliance(x, y));
+}
+template <>
+Block<3> exact_block<3>(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
+  return synthetic_compliance(x, y);
+}
+
+template <unsigned N>
 MatrixXd exact_compliance(const Sphere& sphere) {
   std::vector<Eigen::Vector3d> domain;
   for (std::uint32_t i = 0; i < sphere.count(); ++i) {
@@ -39,54 +53,58 @@ MatrixXd exact_compliance(const Sphere& sphere) {
     if (sphere.has(i, layout::node_domain)) domain.emplace_back(x[0], x[1], x[2]);
   }
   const auto n = static_cast<Index>(domain.size());
-  MatrixXd compliance(3 * n, 3 * n);
+  MatrixXd compliance(N * n, N * n);
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < n; ++i) {
-      compliance.block<3, 3>(3 * i, 3 * j) = synthetic_compliance(domain[i], domain[j]);
+      compliance.block<N, N>(N * i, N * j) = exact_block<N>(domain[i], domain[j]);
     }
   }
   return compliance;
 }
 
-void store(const Matrix3d& matrix, float (&six)[6]) {
+template <unsigned N>
+void store(const Block<N>& matrix, float (&upper)[N * (N + 1) / 2]) {
   std::size_t k = 0;
-  for (Index r = 0; r < 3; ++r) {
-    for (Index c = r; c < 3; ++c) six[k++] = static_cast<float>(matrix(r, c));
+  for (Index r = 0; r < Index{N}; ++r) {
+    for (Index c = r; c < Index{N}; ++c) upper[k++] = static_cast<float>(matrix(r, c));
   }
 }
 
 // Of the coefficients begin .. end-1.
+template <unsigned N>
 ScalesData scales_of(const MatrixXd& form, Index begin, Index end) {
-  const Eigen::Vector3d direction(1, -1, 0.5);
+  const Eigen::Matrix<double, N, 1> direction = Eigen::Vector3d(1, -1, 0.5).head<N>();
   ScalesData scales;
   for (Index i = begin; i < end; ++i) {
-    const Matrix3d block = form.block<3, 3>(3 * i, 3 * i).selfadjointView<Eigen::Lower>();
+    const Block<N> block = form.block<N, N>(N * i, N * i).template selfadjointView<Eigen::Lower>();
     // a conditional compliance as if some neighbour were held along one direction; how many are is the writer's choice
-    const Eigen::Vector3d held = block * direction;
-    const Matrix3d conditional = 0.8 * (block - 0.5 / direction.dot(held) * held * held.transpose());
-    const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(conditional).operatorSqrt();
-    layout::Scale<3> scale;
-    store(root, scale.root);
-    const Matrix3d inverse = symmetric_matrix(scale.root).inverse();
-    store(inverse * block * inverse, scale.diagonal);
+    const Eigen::Matrix<double, N, 1> held = block * direction;
+    const Block<N> conditional = 0.8 * (block - 0.5 / direction.dot(held) * held * held.transpose());
+    const Block<N> root = Eigen::SelfAdjointEigenSolver<Block<N>>(conditional).operatorSqrt();
+    layout::Scale<N> scale;
+    store<N>(root, scale.root);
+    const Block<N> inverse = symmetric_matrix(scale.root).inverse();
+    store<N>(inverse * block * inverse, scale.diagonal);
     scales.push_back(scale);
   }
   return scales;
 }
 
+template <unsigned N>
 double worst_column(const MatrixXd& decoded, const MatrixXd& exact) {
   double worst = 0;
-  for (Index j = 0; j < exact.cols(); j += 3) {
+  for (Index j = 0; j < exact.cols(); j += N) {
     double largest_error = 0, largest = 0;
-    for (Index i = 0; i < exact.rows(); i += 3) {
-      largest = std::max(largest, exact.block<3, 3>(i, j).norm());
-      largest_error = std::max(largest_error, (decoded.block<3, 3>(i, j) - exact.block<3, 3>(i, j)).norm());
+    for (Index i = 0; i < exact.rows(); i += N) {
+      largest = std::max(largest, exact.block<N, N>(i, j).norm());
+      largest_error = std::max(largest_error, (decoded.block<N, N>(i, j) - exact.block<N, N>(i, j)).norm());
     }
     worst = std::max(worst, largest_error / largest);
   }
   return worst;
 }
 
+template <unsigned N>
 class Compression {
  public:
   Compression(ModelData& model, const SyntheticOptions& options) : model_(model), options_(options), wavelet_(model) {}
@@ -96,8 +114,9 @@ class Compression {
     to_wavelet_form(wavelet_, form);
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
       auto& scales = model_.levels[q].scales;
-      scales = scales_of(form, wavelet_.begin(q), wavelet_.end(q));
-      for (const layout::Scale<3>& scale : scales.of<3>()) inverse_.emplace_back(symmetric_matrix(scale.root).inverse());
+      scales = scales_of<N>(form, wavelet_.begin(q), wavelet_.end(q));
+      for (const layout::Scale<N>& scale : scales.template of<N>())
+        inverse_.emplace_back(symmetric_matrix(scale.root).inverse());
     }
     choose_quanta(form);
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) add_couplings(q, form);
@@ -105,8 +124,8 @@ class Compression {
   }
 
  private:
-  [[nodiscard]] Matrix3d scaled(const MatrixXd& form, Index i, Index j) const {
-    return inverse_[i] * form.block<3, 3>(3 * i, 3 * j) * inverse_[j];
+  [[nodiscard]] Block<N> scaled(const MatrixXd& form, Index i, Index j) const {
+    return inverse_[i] * form.block<N, N>(N * i, N * j) * inverse_[j];
   }
 
   void choose_quanta(const MatrixXd& form) {
@@ -122,7 +141,7 @@ class Compression {
   }
 
   // the layer of fewest bits that holds the block
-  [[nodiscard]] std::uint32_t layer_of(const Matrix3d& block) const {
+  [[nodiscard]] std::uint32_t layer_of(const Block<N>& block) const {
     for (std::uint32_t layer = layout::layers; layer-- > 1;) {
       const double most = (1 << (layout::value_bits[layer] - 1)) - 1;
       if (block.cwiseAbs().maxCoeff() < most * double{model_.info.quantum[layer]}) return layer;
@@ -135,13 +154,13 @@ class Compression {
     for (CouplingsData& layer : level.couplings) layer.begin = {0};
     for (Index j = wavelet_.begin(q); j < wavelet_.end(q); ++j) {
       for (Index i = 0; i < j; ++i) {
-        const Matrix3d block = scaled(form, i, j);
-        if (block.norm() / std::sqrt(3.0) < options_.epsilon) continue;
+        const Block<N> block = scaled(form, i, j);
+        if (block.norm() / std::sqrt(double{N}) < options_.epsilon) continue;
         const std::uint32_t layer = layer_of(block);
         level.couplings[layer].index.push_back(static_cast<std::uint32_t>(i));
-        for (Index k = 0; k < 9; ++k) {
+        for (Index k = 0; k < block.size(); ++k) {
           level.couplings[layer].value.push_back(
-              static_cast<std::int16_t>(std::lround(block(k % 3, k / 3) / double{model_.info.quantum[layer]})));
+              static_cast<std::int16_t>(std::lround(block(k % N, k / N) / double{model_.info.quantum[layer]})));
         }
       }
       for (CouplingsData& layer : level.couplings) {
@@ -152,7 +171,7 @@ class Compression {
 
   void measure(const MatrixXd& form) {
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
-      const Index end = 3 * wavelet_.end(q);
+      const Index end = wavelet_.rows(q);
       MatrixXd exact = form.topLeftCorner(end, end);
       from_wavelet_form(wavelet_, q, exact);
       const MatrixXd all = decoded_compliance(model_, q);
@@ -161,15 +180,15 @@ class Compression {
       MatrixXd field = field_displacements(cut, q);
       layout::Level& counts = model_.levels[q].counts;
       counts.rms_error = static_cast<float>((all - exact).norm() / exact.norm());
-      counts.worst_column_error = static_cast<float>(worst_column(all, exact));
+      counts.worst_column_error = static_cast<float>(worst_column<N>(all, exact));
       MatrixXd read = exact;
       for (Index node = 0; node < wavelet_.end(q); ++node) {
         if (is_read(cut, node)) continue;
-        field.middleRows<3>(3 * node) = exact.middleRows<3>(3 * node);
-        read.middleRows<3>(3 * node).setZero();
+        field.middleRows<N>(N * node) = exact.middleRows<N>(N * node);
+        read.middleRows<N>(N * node).setZero();
       }
       counts.field_rms_error = static_cast<float>((field - exact).norm() / read.norm());
-      counts.field_column_error = static_cast<float>(worst_column(field, exact));
+      counts.field_column_error = static_cast<float>(worst_column<N>(field, exact));
     }
   }
 
@@ -184,7 +203,7 @@ class Compression {
   ModelData& model_;
   const SyntheticOptions& options_;
   DenseWavelet wavelet_;
-  std::vector<Matrix3d> inverse_;  // of every coefficient's root
+  std::vector<Block<N>> inverse_;  // of every coefficient's root
 };
 
 std::vector<std::vector<std::uint32_t>> representatives(const Sphere& sphere, std::uint32_t c) {
@@ -211,9 +230,9 @@ std::uint32_t domain_place(const Sphere& sphere, std::uint32_t node) {
   return static_cast<std::uint32_t>(std::count_if(sphere.flags.begin(), sphere.flags.begin() + node, domain));
 }
 
-// from the two ends of the edge and the corners across it, with 3x3 weights that differ a little from numbers; what is
+// from the two ends of the edge and the corners across it, with weights that differ a little from numbers; what is
 // outside the domain weighs nothing
-PredictionsData make_predictions(const Sphere& sphere, std::uint32_t q) {
+PredictionsData make_predictions(const Sphere& sphere, std::uint32_t q, std::uint32_t components) {
   constexpr int half = 2048, spread = 401;
   PredictionsData predictions{.terms = 4, .index = {}, .weight = {}};
   for (std::uint32_t i = sphere.begin[q]; i < sphere.begin[q + 1]; ++i) {
@@ -224,9 +243,9 @@ PredictionsData make_predictions(const Sphere& sphere, std::uint32_t q) {
     for (std::size_t k = 0; k < from.size(); ++k) {
       const bool inside = sphere.has(from[k], layout::node_domain);
       predictions.index.push_back(inside ? domain_place(sphere, from[k]) : 0);
-      for (int e = 0; e < 9; ++e) {
-        const int weight =
-            (k < 2 && e % 4 == 0 ? half : 0) + static_cast<int>(37 * i + 11 * k) * (e + 1) % spread - spread / 2;
+      for (std::uint32_t e = 0; e < components * components; ++e) {
+        const int near = k < 2 && e % (components + 1) == 0 ? half : 0;
+        const int weight = near + static_cast<int>((37 * i + 11 * k) * (e + 1)) % spread - spread / 2;
         predictions.weight.push_back(static_cast<std::int16_t>(inside ? weight : 0));
       }
     }
@@ -234,10 +253,11 @@ PredictionsData make_predictions(const Sphere& sphere, std::uint32_t q) {
   return predictions;
 }
 
-LevelData make_level(const Sphere& sphere, std::uint32_t q, layout::Wavelet wavelet) {
+LevelData make_level(const Sphere& sphere, std::uint32_t q, const SyntheticOptions& options) {
   constexpr layout::StencilRecord none{{layout::none, layout::none},
                                        {layout::none, layout::none, layout::none, layout::none}};
   LevelData level;
+  const layout::Wavelet wavelet = options.wavelet;
   const bool butterfly = layout::is_butterfly(wavelet);
   const auto lift = lifting_weights(sphere, butterfly);
   for (std::uint32_t i = sphere.begin[q]; i < sphere.begin[q + 1]; ++i) {
@@ -252,7 +272,8 @@ LevelData make_level(const Sphere& sphere, std::uint32_t q, layout::Wavelet wave
     if (!butterfly || !sphere.has(i, layout::node_domain)) continue;
     level.stencils.push_back(uses_stencil(sphere, i) ? sphere.stencils[i] : none);
   }
-  if (q > 0 && wavelet == layout::Wavelet::equilibrated) level.predictions = make_predictions(sphere, q);
+  if (q > 0 && wavelet == layout::Wavelet::equilibrated)
+    level.predictions = make_predictions(sphere, q, options.components);
   return level;
 }
 
@@ -263,6 +284,12 @@ Matrix3d synthetic_compliance(const Eigen::Vector3d& x, const Eigen::Vector3d& y
   core << 1, 0.2, 0.1, 0.2, 0.9, 0.15, 0.1, 0.15, 0.8;
   return softness * std::exp(-(x - y).norm() / range) * frame_at(x) * core * frame_at(y).transpose();
 }
+
+double synthetic_scalar_compliance(const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
+  return softness * std::exp(-(x - y).norm() / range);
+}
+
+namespace {
 
 // vertices on the finest triangles, in turn, at places that differ
 std::vector<layout::VertexRecord> vertex_map(const Sphere& sphere, std::uint32_t vertices) {
@@ -275,6 +302,21 @@ std::vector<layout::VertexRecord> vertex_map(const Sphere& sphere, std::uint32_t
   return map;
 }
 
+void set_problem(layout::Info& info, std::uint32_t components) {
+  const bool scalar = components == 1;
+  info.problem = static_cast<std::uint32_t>(scalar ? layout::Problem::scalar : layout::Problem::elastostatic);
+  info.components = components;
+  info.young = scalar ? 0 : 1e5;
+  info.poisson = scalar ? 0 : 0.4;
+}
+
+template <unsigned N>
+void compress(const Sphere& sphere, const SyntheticOptions& options, ModelData& model) {
+  Compression<N>(model, options).run(exact_compliance<N>(sphere));
+}
+
+}  // namespace
+
 ModelData synthetic_model(const SyntheticOptions& options) {
   Sphere sphere = make_sphere(options.levels, options.touchable_above);
   for (std::uint32_t i = 0; i < sphere.count(); ++i) {
@@ -283,11 +325,8 @@ ModelData synthetic_model(const SyntheticOptions& options) {
     }
   }
   ModelData model;
-  model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
+  set_problem(model.info, options.components);
   model.info.wavelet = static_cast<std::uint32_t>(options.wavelet);
-  model.info.components = 3;
-  model.info.young = 1e5;
-  model.info.poisson = 0.4;
   model.info.threshold = options.epsilon;
   model.info.rate = 1000;
   model.info.max_contacts = 16;
@@ -296,12 +335,11 @@ ModelData synthetic_model(const SyntheticOptions& options) {
   model.provenance = R"({"generator": "synthetic sphere"})";
   for (const auto& t : sphere.base) model.base_triangles.insert(model.base_triangles.end(), t.begin(), t.end());
   for (std::uint32_t q = 0; q < sphere.levels(); ++q) {
-    model.levels.push_back(make_level(sphere, q, options.wavelet));
+    model.levels.push_back(make_level(sphere, q, options));
     if (q >= options.coarsest_constraint_level) model.levels.back().representatives = representatives(sphere, q);
   }
   model.vertices = vertex_map(sphere, options.vertices);
-  Compression compression(model, options);
-  compression.run(exact_compliance(sphere));
+  options.components == 1 ? compress<1>(sphere, options, model) : compress<3>(sphere, options, model);
   return model;
 }
 

@@ -9,6 +9,7 @@ namespace greenloop {
 
 /// A small body for tests: an octahedron split onto a sphere of radius 0.1 m, held below z = -0.05 m.
 struct SyntheticOptions {
+  std::uint32_t components = 3;                 ///< 3: elastostatic; 1: scalar
   std::uint32_t levels = 3;                     ///< 1..6 mesh levels: 6, 18, 66, 258, 1026, 4098 nodes
   std::uint32_t coarsest_constraint_level = 0;  ///< < levels
   layout::Wavelet wavelet = layout::Wavelet::lifted_linear;
@@ -23,6 +24,9 @@ struct SyntheticOptions {
 /// constant C and a smoothly varying Q. Symmetric positive definite over any points, not elastic; its blocks are not
 /// symmetric.
 [[nodiscard]] Eigen::Matrix3d synthetic_compliance(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
+
+/// The same of the scalar model: 1e-3 exp(-|x - y| / 0.05 m), of a unit a unit load.
+[[nodiscard]] double synthetic_scalar_compliance(const Eigen::Vector3d& x, const Eigen::Vector3d& y);
 
 /// A valid model of that body: scaled, thresholded, quantised; the compliance it stands for is positive definite too.
 /// The errors in Level are measured, but patch_force_error and Info::lambda_min stay 0. On the finest of several levels

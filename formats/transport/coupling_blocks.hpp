@@ -16,11 +16,12 @@ namespace greenloop::transport {
 struct CouplingBlock {
   std::uint32_t row = 0;
   std::uint32_t layer = 0;
-  std::array<std::int16_t, 9> value{};  ///< element 3 c + r: row r of the block, column c
+  std::array<std::int16_t, 9> value{};  ///< element N c + r: row r of the block, column c; N x N of them
 };
 
 /// All layers of the couplings of one level, joined: a block belongs to one layer.
 struct CouplingBlocks {
+  std::uint32_t components = 3;  ///< N: 1 or 3
   std::uint32_t columns = 0;
   std::uint32_t rows = 0;               ///< all coefficients; the columns are the last of them
   std::vector<std::uint32_t> begin{};   ///< [columns + 1]
@@ -34,8 +35,8 @@ struct CouplingBlocks {
 
 /// Joins the layers of a level with so many columns and rows; nothing if two of them hold the same block. Work: linear
 /// but for sorting each column.
-[[nodiscard]] std::optional<CouplingBlocks> join_layers(const LevelView& level, std::uint32_t columns,
-                                                        std::uint32_t rows);
+[[nodiscard]] std::optional<CouplingBlocks> join_layers(const LevelView& level, std::uint32_t components,
+                                                        std::uint32_t columns, std::uint32_t rows);
 
 /// The blocks of one layer again, as the writer takes them.
 [[nodiscard]] CouplingsData take_layer(const CouplingBlocks& joined, std::uint32_t layer);

@@ -65,6 +65,7 @@ void CouplingsModel::code(BitCoder& coder, CouplingBlocks& couplings, std::span<
   const std::vector<CouplingBlock> given = std::move(couplings.blocks);  // empty if this is a decoder's
   const std::vector<std::uint32_t> end = std::move(couplings.begin);
   const std::uint32_t first = couplings.rows - couplings.columns;
+  components_ = couplings.components;
   begin_level(coefficients, first);
   couplings.begin = {0};
   couplings.blocks.clear();
@@ -169,7 +170,7 @@ void CouplingsModel::code_block(BitCoder& coder, CouplingBlock& block) {
   const bool is_coarse = coarse_.code(coder, block.layer == 0, contexts, 0);
   error_so_far_ = squares_so_far_ = 0;
   see_values();
-  for (std::size_t element = 0; element < 9; ++element) {
+  for (std::size_t element = 0; element < std::size_t{components_} * components_; ++element) {
     block.value[element] = static_cast<std::int16_t>(code_value(coder, block, element, block.value[element]));
   }
   if (is_coarse) {
@@ -181,17 +182,17 @@ void CouplingsModel::code_block(BitCoder& coder, CouplingBlock& block) {
 
 std::int32_t CouplingsModel::code_value(BitCoder& coder, const CouplingBlock& block, std::size_t element,
                                         std::int32_t value_given) {
-  const std::size_t r = element % 3, c = element / 3, mirror = 3 * r + c;
+  const std::size_t n = components_, r = element % n, c = element / n, mirror = n * r + c;
   LinearPredictor<row_inputs>::Inputs up{};
   LinearPredictor<column_inputs>::Inputs left{};
   std::int64_t energy = 20;
   for (std::size_t k = 0; k < neighbour_count; ++k) {
-    for (std::size_t d = 0; d < 3; ++d) {
-      up[3 * k + d] = here_.up_values[k][3 * c + (r + d) % 3];
-      left[3 * k + d] = here_.left_values[k][3 * ((c + d) % 3) + r];
+    for (std::size_t d = 0; d < n; ++d) {
+      up[3 * k + d] = here_.up_values[k][n * c + (r + d) % n];
+      left[3 * k + d] = here_.left_values[k][n * ((c + d) % n) + r];
     }
   }
-  for (std::size_t d = 0; d < r; ++d) up[3 * neighbour_count + d] = block.value[3 * c + d];
+  for (std::size_t d = 0; d < r; ++d) up[3 * neighbour_count + d] = block.value[n * c + d];
   if (mirror < element) up[3 * neighbour_count + 3] = block.value[mirror];
   for (const std::int32_t input : up) energy += std::int64_t{input} * input;
   for (const std::int32_t input : left) energy += std::int64_t{input} * input;
@@ -247,8 +248,8 @@ void CouplingsModel::remember(const CouplingBlock& block) {
   std::uint32_t sum = 0;
   for (const std::int16_t element : block.value) sum += static_cast<std::uint32_t>(std::abs(element));
   blocks_.push_back(block);
-  sizes_.push_back(sum);
-  errors_.push_back(error_so_far_ / 9);
+  sizes_.push_back(sum * 9 / (components_ * components_));
+  errors_.push_back(error_so_far_ / (components_ * components_));
   above_[block.row] = as_stored(index);
   seen_from_[column_].emplace_back(block.row, as_stored(index));
   seen_from_[block.row].emplace_back(column_, transposed(index));
@@ -280,7 +281,8 @@ std::array<std::int32_t, 9> CouplingsModel::values(std::uint32_t seen) const {
   std::array<std::int32_t, 9> values{};
   if (!is_stored(seen)) return values;
   const auto& stored = blocks_[seen / 2].value;
-  for (std::size_t k = 0; k < 9; ++k) values[k] = stored[seen % 2 == 0 ? k : 3 * (k % 3) + k / 3];
+  const std::size_t n = components_;
+  for (std::size_t k = 0; k < n * n; ++k) values[k] = stored[seen % 2 == 0 ? k : n * (k % n) + k / n];
   return values;
 }
 

@@ -20,15 +20,15 @@ struct Coefficient {
   std::uint32_t level = 0;
 };
 
-/// Codes couplings level by level. Whether a block is stored, its nine values and its layer are predicted from the
-/// blocks of neighbouring columns and rows coded before, on this level and coarser ones.
+/// Codes couplings level by level. Whether a block is stored, its values, nine or one, and its layer are predicted from
+/// the blocks of neighbouring columns and rows coded before, on this level and coarser ones.
 class CouplingsModel {
  public:
   CouplingsModel();
 
-  /// Codes `begin` and `blocks` of `couplings`; what else it says both sides know. `coefficients`: of all its rows;
-  /// those of the levels before as they were. A decoder throws DamagedPacket if it reads what no encoder writes. Work:
-  /// columns times rows, and some hundred operations a value.
+  /// Codes `begin` and `blocks` of `couplings`, always of the same components; what else it says both sides know.
+  /// `coefficients`: of all its rows; those of the levels before as they were. A decoder throws DamagedPacket if it
+  /// reads what no encoder writes. Work: columns times rows, and some hundred operations a value.
   void code(BitCoder& coder, CouplingBlocks& couplings, std::span<const Coefficient> coefficients);
 
  private:
@@ -63,10 +63,11 @@ class CouplingsModel {
   [[nodiscard]] std::uint32_t error_around() const;
   [[nodiscard]] std::array<std::int32_t, 9> values(std::uint32_t seen) const;
 
+  std::uint32_t components_ = 3;
   std::span<const Coefficient> coefficients_;
   std::vector<Neighbours> neighbours_;  // of all coefficients
   std::vector<CouplingBlock> blocks_;   // coded so far, of all levels
-  std::vector<std::uint32_t> sizes_;    // sums of magnitudes of their values
+  std::vector<std::uint32_t> sizes_;    // sums of magnitudes of their values, as of nine
   std::vector<std::uint32_t> errors_;   // mean errors of the predictions of their values, in 1/256
 
   std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>> seen_from_;  // per coefficient: row, block

@@ -1,6 +1,7 @@
 #include "formats/transport/packet.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -50,8 +51,15 @@ int rank(const SectionBytes& section) {
 }
 
 std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t layer) {
-  return encode_couplings(take_layer(joined, layer), {3, joined.columns, joined.rows, layout::value_bits[layer]},
-                          "couplings");
+  return encode_couplings(take_layer(joined, layer),
+                          {joined.components, joined.columns, joined.rows, layout::value_bits[layer]}, "couplings");
+}
+
+// of a model with this Info; a decoder's may say anything
+std::uint32_t stated_components(std::span<const std::byte> info) {
+  layout::InfoStart start{};
+  std::memcpy(&start, info.data(), std::min(info.size(), sizeof(start)));
+  return layout::components_of(static_cast<layout::Problem>(start.problem));
 }
 
 // whether the sections are what the writer makes of the blocks
@@ -86,6 +94,9 @@ void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std:
       couplings.push_back(section);
     } else if (!code_records(coder, q, *section)) {
       bytes_.code(coder, section->bytes);
+    }
+    if (section->entry.kind == static_cast<std::uint32_t>(SectionKind::info)) {
+      components_ = stated_components(section->bytes);
     }
   }
   if (!couplings.empty()) code_couplings(coder, q, couplings, model);
@@ -144,7 +155,7 @@ bool PacketModel::code_records(BitCoder& coder, std::uint32_t q, SectionBytes& s
       if (a <= q && b <= q) mesh_.code_representatives(coder, a, b, bytes);
       return a <= q && b <= q;
     case Coding::scales:
-      if (a == q) mesh_.code_scales(coder, q, bytes);
+      if (a == q) mesh_.code_scales(coder, q, components_, bytes);
       return a == q;
   }
   return false;
@@ -153,9 +164,9 @@ bool PacketModel::code_records(BitCoder& coder, std::uint32_t q, SectionBytes& s
 void PacketModel::code_predictions(BitCoder& coder, std::span<std::byte> bytes) {
   const std::size_t header = std::min(bytes.size(), sizeof(layout::PredictionsHeader));
   bytes_.code(coder, bytes.first(header));
-  if (!PredictionsModel::fits(bytes)) return bytes_.code(coder, bytes.subspan(header));
-  predictions_.code(coder, bytes);
-  const auto [between, behind] = gaps_of_predictions(bytes);
+  if (!PredictionsModel::fits(bytes, components_)) return bytes_.code(coder, bytes.subspan(header));
+  predictions_.code(coder, bytes, components_);
+  const auto [between, behind] = gaps_of_predictions(bytes, components_);
   bytes_.code(coder, between);
   bytes_.code(coder, behind);
 }
@@ -165,9 +176,9 @@ void PacketModel::code_couplings(BitCoder& coder, std::uint32_t q, std::span<Sec
   const std::vector<Coefficient> coefficients = mesh_.coefficients(q);
   const std::uint32_t columns = mesh_.own_coefficients(q);
   const auto rows = static_cast<std::uint32_t>(coefficients.size());
-  std::optional<CouplingBlocks> joined = CouplingBlocks{.columns = columns, .rows = rows};
+  std::optional<CouplingBlocks> joined = CouplingBlocks{.components = components_, .columns = columns, .rows = rows};
   if (model != nullptr) {
-    joined = join_layers(model->level[q], columns, rows);
+    joined = join_layers(model->level[q], components_, columns, rows);
     if (joined && !are_reproduced(*joined, layers)) joined.reset();
   }
   if (coder.code_plain(joined.has_value() ? 1 : 0, 1) == 0) {

@@ -40,6 +40,7 @@ class PacketModel {
   void code_predictions(BitCoder& coder, std::span<std::byte> bytes);
   void code_couplings(BitCoder& coder, std::uint32_t q, std::span<SectionBytes*> layers, const ModelView* model);
 
+  std::uint32_t components_ = 3;  // of the model, once its Info is known
   AdaptiveInteger table_{8};
   ByteModel bytes_;
   MeshModel mesh_;

@@ -8,7 +8,7 @@
 namespace greenloop::transport {
 namespace {
 
-constexpr std::uint32_t elements = 9;
+constexpr std::uint32_t most_elements = 9;
 constexpr std::int64_t one = 4096;  // in units of layout::prediction_unit
 static_assert(one * layout::prediction_unit == 1);
 
@@ -53,7 +53,7 @@ void code_index(BitCoder& coder, AdaptiveInteger& model, const layout::Predictio
 
 }  // namespace
 
-bool PredictionsModel::fits(std::span<const std::byte> section) {
+bool PredictionsModel::fits(std::span<const std::byte> section, std::uint32_t components) {
   if (section.size() < sizeof(layout::PredictionsHeader)) return false;
   const auto header = header_of(section);
   // with no terms a length says nothing of the nodes
@@ -61,21 +61,23 @@ bool PredictionsModel::fits(std::span<const std::byte> section) {
       (header.index_bytes != 2 && header.index_bytes != 4)) {
     return false;
   }
-  const layout::PredictionsExtent extent(header, 3);
+  const layout::PredictionsExtent extent(header, components);
   return header.index_offset == extent.index && header.weight_offset == extent.weight &&
          section.size() >= extent.weight_end;
 }
 
-void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section) {
+void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section, std::uint32_t components) {
   const auto header = header_of(section);
   if (header.index_bytes == 2) {
     code_index<std::uint16_t>(coder, index_, header, section);
   } else {
     code_index<std::uint32_t>(coder, index_, header, section);
   }
-  std::uint64_t offset = layout::PredictionsExtent(header, 3).weight;
+  const std::uint32_t elements = components * components;
+  std::uint64_t offset = layout::PredictionsExtent(header, components).weight;
   for (std::uint32_t node = 0; node < header.nodes; ++node) {
-    std::array<std::int64_t, elements> left{one, 0, 0, 0, one, 0, 0, 0, one};
+    std::array<std::int64_t, most_elements> left{};
+    for (std::uint32_t e = 0; e < elements; e += components + 1) left[e] = one;
     for (std::uint32_t k = 0; k < header.terms; ++k) {
       const bool last = k + 1 == header.terms;
       for (std::uint32_t e = 0; e < elements; ++e, offset += sizeof(std::int16_t)) {
@@ -86,8 +88,8 @@ void PredictionsModel::code(BitCoder& coder, std::span<std::byte> section) {
   }
 }
 
-PredictionsGaps gaps_of_predictions(std::span<std::byte> section) {
-  const layout::PredictionsExtent extent(header_of(section), 3);
+PredictionsGaps gaps_of_predictions(std::span<std::byte> section, std::uint32_t components) {
+  const layout::PredictionsExtent extent(header_of(section), components);
   return {section.subspan(extent.index_end, extent.weight - extent.index_end), section.subspan(extent.weight_end)};
 }
 

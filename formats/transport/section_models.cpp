@@ -14,7 +14,6 @@ constexpr std::uint32_t length_contexts = 17;
 constexpr std::uint32_t most_step = 200;
 constexpr std::uint32_t step_of_exponent = 40 + 127 - 150;  // to_fixed's exponent over ours
 constexpr std::int64_t most_steps = 1 << 27;
-constexpr std::size_t scale_fields = sizeof(layout::Scale<3>) / sizeof(std::uint32_t);
 
 std::uint32_t word_at(std::span<const std::byte> bytes, std::size_t i) {
   std::uint32_t word = 0;
@@ -36,22 +35,23 @@ std::uint32_t code_word(BitCoder& coder, WordModel& words, std::span<std::byte> 
 
 // The last digit that all numbers of a field of scales have: they are whole numbers, below 2^25, of 2^(step - 150). 0
 // if there is none or some number does not come back from them.
-std::uint32_t common_step(std::span<const std::byte> scales, std::size_t field) {
+std::uint32_t common_step(std::span<const std::byte> scales, std::size_t fields, std::size_t field) {
   const std::size_t count = scales.size() / sizeof(std::uint32_t);
   std::uint32_t step = most_step;
-  for (std::size_t i = field; i < count; i += scale_fields) {
+  for (std::size_t i = field; i < count; i += fields) {
     const std::uint32_t word = word_at(scales, i), digits = (word & 0x7fffff) | 0x800000;
     if ((word & 0x7fffffff) != 0) step = std::min(step, exponent_of(word) + std::countr_zero(digits));
   }
-  for (std::size_t i = field; i < count; i += scale_fields) {
+  for (std::size_t i = field; i < count; i += fields) {
     const std::int64_t steps = to_fixed(word_at(scales, i), step + step_of_exponent);
     if (std::abs(steps) > most_steps / 4 || from_fixed(steps, step + step_of_exponent) != word_at(scales, i)) return 0;
   }
   return step;
 }
 
-std::uint32_t code_common_step(BitCoder& coder, std::span<const std::byte> scales, std::size_t field) {
-  const auto step = static_cast<std::uint32_t>(coder.code_plain(common_step(scales, field), 8));
+std::uint32_t code_common_step(BitCoder& coder, std::span<const std::byte> scales, std::size_t fields,
+                               std::size_t field) {
+  const auto step = static_cast<std::uint32_t>(coder.code_plain(common_step(scales, fields, field), 8));
   if (step > most_step) throw DamagedPacket("a digit beyond those of scales");
   return step;
 }
@@ -188,22 +188,23 @@ void MeshModel::code_representatives(BitCoder& coder, std::uint32_t c, std::uint
   }
 }
 
-void MeshModel::code_scales(BitCoder& coder, std::uint32_t q, std::span<std::byte> section) {
+void MeshModel::code_scales(BitCoder& coder, std::uint32_t q, std::uint32_t components, std::span<std::byte> section) {
   const std::vector<std::size_t> nodes = domain_nodes(q);
   std::vector<GridPoint> points;
   points.reserve(nodes.size());
   const std::uint32_t exponent = largest_exponent();
   for (const std::size_t node : nodes) points.push_back(grid_point(nodes_[node], exponent));
   const auto near = neighbours_before(points);
-  std::array<std::uint32_t, scale_fields> step{};
-  for (std::size_t k = 0; k < scale_fields; ++k) step[k] = code_common_step(coder, section, k);
-  WordModel words(scale_fields);
-  for (std::size_t i = 0; i < section.size() / sizeof(layout::Scale<3>); ++i) {
+  const std::uint32_t fields = components * (components + 1);
+  std::vector<std::uint32_t> step;
+  for (std::size_t k = 0; k < fields; ++k) step.push_back(code_common_step(coder, section, fields, k));
+  WordModel words(fields);
+  for (std::size_t i = 0; i < section.size() / sizeof(std::uint32_t) / fields; ++i) {
     const std::uint32_t like = i < near.size() ? near[i][0] : no_neighbour;
-    for (std::uint32_t k = 0; k < scale_fields; ++k) {
-      const std::size_t at = scale_fields * i + k;
+    for (std::uint32_t k = 0; k < fields; ++k) {
+      const std::size_t at = fields * i + k;
       const std::uint32_t given = word_at(section, at),
-                          predicted = like == no_neighbour ? 0 : word_at(section, scale_fields * like + k);
+                          predicted = like == no_neighbour ? 0 : word_at(section, std::size_t{fields} * like + k);
       set_word(section, at,
                step[k] == 0 ? words.code(coder, k, given, predicted)
                             : words.code_steps(coder, k, step[k], given, predicted));

@@ -61,7 +61,7 @@ class MeshModel {
 
   /// Scales(q): from the nearest coefficient before, in steps of the last digit if all of a field's numbers have it.
   /// After Nodes(q).
-  void code_scales(BitCoder& coder, std::uint32_t q, std::span<std::byte> section);
+  void code_scales(BitCoder& coder, std::uint32_t q, std::uint32_t components, std::span<std::byte> section);
 
   /// BaseTriangles and the like: words from those `fields` before.
   void code_words(BitCoder& coder, std::uint32_t fields, std::span<std::byte> section);

@@ -116,7 +116,7 @@ TEST_CASE("verify: the view shows every array where it stands") {
 }
 
 TEST_CASE("verify refuses: an unknown problem, whatever its Info looks like otherwise") {
-  for (const std::uint32_t problem : {0u, layout::problems + 1, 0xffffffffu}) {
+  for (const std::uint32_t problem : {0u, layout::problems_of(layout::version_minor) + 1, 0xffffffffu}) {
     for (const std::size_t bytes : {sizeof(layout::InfoStart), sizeof(layout::Info), sizeof(layout::Info) + 64}) {
       ModelMutant mutant = valid();
       mutant.rebuild([&](std::vector<SectionCopy>& sections) {

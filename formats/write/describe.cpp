@@ -26,6 +26,16 @@ std::string section_name(SectionKind kind, std::uint32_t a, std::uint32_t b) {
   return fmt::format("section of kind {} ({}, {})", static_cast<std::uint32_t>(kind), a, b);
 }
 
+std::string_view problem_name(layout::Problem problem) {
+  switch (problem) {
+    case layout::Problem::elastostatic:
+      return "elastostatic";
+    case layout::Problem::scalar:
+      return "scalar";
+  }
+  return "unknown";
+}
+
 std::string_view wavelet_name(std::uint32_t wavelet) {
   switch (static_cast<layout::Wavelet>(wavelet)) {
     case layout::Wavelet::lifted_linear:

@@ -10,6 +10,9 @@ namespace greenloop {
 /// "Nodes(2)": the section's name with its indices as in layout.hpp. Offline only.
 [[nodiscard]] std::string section_name(layout::SectionKind kind, std::uint32_t a, std::uint32_t b);
 
+/// "elastostatic": the name of a problem; "unknown" if it is none. Offline only.
+[[nodiscard]] std::string_view problem_name(layout::Problem problem);
+
 /// "lifted linear": the name of a layout::Wavelet; "unknown" if it is none. Offline only.
 [[nodiscard]] std::string_view wavelet_name(std::uint32_t wavelet);
 

@@ -1,5 +1,7 @@
 #include "formats/write/model_file.hpp"
 
+#include <fmt/format.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -31,6 +33,12 @@ ModelFile verified_model(AlignedBytes bytes, const std::string& name) {
   const VerifyResult result = verify(model.bytes.span(), model.view);
   if (!result.ok()) throw std::runtime_error(name + ": " + describe(result));
   return model;
+}
+
+void require_problem(const FileView& model, layout::Problem problem, const std::filesystem::path& file) {
+  if (model.problem == problem) return;
+  throw std::runtime_error(fmt::format("{}: this is a {} model; only {} ones are taken here", file.string(),
+                                       problem_name(model.problem), problem_name(problem)));
 }
 
 ModelFile open_model_file(const std::filesystem::path& path) { return verified_model(load_file(path), path.string()); }

@@ -26,6 +26,10 @@ struct ModelFile {
 /// Verifies `bytes`. Throws std::runtime_error with `name`, usually the file's, and what is wrong. Offline only.
 [[nodiscard]] ModelFile verified_model(AlignedBytes bytes, const std::string& name);
 
+/// Throws std::runtime_error unless the model of `file` is one of `problem`, which is what the caller takes: it names
+/// the file, what it is and what is taken. Offline only.
+void require_problem(const FileView& model, layout::Problem problem, const std::filesystem::path& file);
+
 /// load_file and verified_model. Throws std::runtime_error naming the file and what is wrong with it. Offline only.
 [[nodiscard]] ModelFile open_model_file(const std::filesystem::path& path);
 

@@ -52,6 +52,13 @@ TEST_CASE("model file: written, it loads aligned and verified") {
   CHECK(model.view.levels == 2);
 }
 
+TEST_CASE("model file: a model of another problem than is taken is refused by name; one of it passes") {
+  const ModelFile scalar = encoded_file(synthetic_model({.components = 1, .levels = 1}));
+  require_problem(scalar.view, layout::Problem::scalar, "warm.gloop");
+  CHECK(failure([&] { require_problem(scalar.view, layout::Problem::elastostatic, "warm.gloop"); }) ==
+        "warm.gloop: this is a scalar model; only elastostatic ones are taken here");
+}
+
 TEST_CASE("model file: encoded, it stands as written, with its view") {
   const ModelData data = synthetic_model({.levels = 2});
   const ModelFile model = encoded_file(data);

@@ -23,8 +23,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t dense_block_bytes = 9 * sizeof(float);
-
 Json sections_of(const ModelFile& model) {
   Json sections = Json::array();
   const std::byte* next = model.bytes.data() + sizeof(layout::Header);
@@ -87,26 +85,55 @@ Json recorded(const ModelView& view, const std::string& key, Json otherwise) {
   return provenance.is_object() && provenance.contains(key) ? provenance[key] : std::move(otherwise);
 }
 
+// what a body of the loop sums for a field, if there are bodies of such models
+Json field_size_of(const ModelView& view) {
+  if (view.problem != layout::Problem::elastostatic) return {{"blocks", nullptr}, {"longest", nullptr}};
+  const FieldSize field = field_size(view);
+  return {{"blocks", field.blocks}, {"longest", field.longest}};
+}
+
+// of an elastostatic model only
+Json material_of(const ModelView& view) {
+  if (view.problem != layout::Problem::elastostatic) return nullptr;
+  return {{"young", view.info->young}, {"poisson", view.info->poisson}};
+}
+
+// those of a scalar problem's quantity are not in the file
+Json units_of(const ModelView& view) {
+  const auto mechanical = [&](const char* unit) {
+    return view.problem == layout::Problem::elastostatic ? Json(unit) : Json(nullptr);
+  };
+  return {{"length", "m"},
+          {"area", "m^2"},
+          {"force", mechanical("N")},
+          {"compliance", mechanical("m/N")},
+          {"young", mechanical("Pa")},
+          {"rate", "Hz"},
+          {"step_work", "multiply-adds"}};
+}
+
 Json inspection_of(const ModelFile& model) {
   const ModelView& view = model.view;
   const layout::Info& info = *view.info;
   const layout::Level& finest = *view.level[view.levels - 1].counts;
-  const FieldSize field = field_size(view);
+  const Json field = field_size_of(view);
+  const std::uint64_t block_bytes = std::uint64_t{info.components} * info.components * sizeof(float);
   return {
       {"version", fmt::format("{}.{}", view.header->major, view.header->minor)},
+      {"problem", problem_name(view.problem)},
       {"nodes", view.node_count},
       {"domain_nodes", view.domain_count},
       {"levels", view.levels},
       {"complete_levels", info.levels},
       {"bytes", model.bytes.size()},
-      {"dense_bytes", dense_block_bytes * view.domain_count * view.domain_count},
+      {"dense_bytes", block_bytes * view.domain_count * view.domain_count},
       {"kept_blocks", finest.kept_blocks},
       {"dense_blocks", finest.dense_blocks},
       {"rms_error", finest.rms_error},
       {"worst_column_error", finest.worst_column_error},
       {"worst_patch_force_error", finest.patch_force_error},
-      {"field_blocks", field.blocks},
-      {"longest_field_column", field.longest},
+      {"field_blocks", field["blocks"]},
+      {"longest_field_column", field["longest"]},
       {"field_rms_error", finest.field_rms_error},
       {"field_column_error", finest.field_column_error},
       {"lambda_min", info.lambda_min},
@@ -118,17 +145,10 @@ Json inspection_of(const ModelFile& model) {
       {"frontier", recorded(view, "frontier", Json::array())},
       {"frontier_contacts", recorded(view, "frontier_contacts", nullptr)},
       {"store_asymmetry", info.store_asymmetry},
-      {"material", {{"young", info.young}, {"poisson", info.poisson}}},
+      {"material", material_of(view)},
       {"box", {{"min", info.box_min}, {"max", info.box_max}}},
       {"scene", {{"rate", info.rate}, {"max_contacts", info.max_contacts}, {"step_work", info.step_work}}},
-      {"units",
-       {{"length", "m"},
-        {"area", "m^2"},
-        {"force", "N"},
-        {"compliance", "m/N"},
-        {"young", "Pa"},
-        {"rate", "Hz"},
-        {"step_work", "multiply-adds"}}},
+      {"units", units_of(view)},
       {"constraint_levels", levels_of(view)},
       {"patterns", patterns_of(view)},
       {"vertices", view.vertices.size()},
@@ -147,6 +167,21 @@ std::string bytes_text(const Json& value) {
   return bytes < 1e6 ? fmt::format("{:.1f} kB", bytes / 1e3) : fmt::format("{:.1f} MB", bytes / 1e6);
 }
 
+std::string field_text(const Json& found) {
+  const std::string errors = fmt::format("{} RMS, {} in the worst column", percent(found["field_rms_error"]),
+                                         percent(found["field_column_error"]));
+  if (found["field_blocks"].is_null()) return errors;
+  return fmt::format("{}; summed of {} blocks, at most {} by a force on one node", errors, found["field_blocks"].dump(),
+                     found["longest_field_column"].dump());
+}
+
+std::string certificate_text(const Json& found) {
+  if (!found["certificate"].get<bool>()) return "none";
+  const Json& unit = found["units"]["compliance"];
+  return fmt::format("every eigenvalue of the compliance is above {:.3g}{} (verify --certificate)",
+                     found["lambda_min"].get<double>(), unit.is_null() ? "" : " " + unit.get<std::string>());
+}
+
 void print_table(const std::filesystem::path& file, const Json& found, std::ostream& out) {
   const auto row = [&](std::string_view name, const std::string& value) {
     fmt::print(out, "  {:<20}{}\n", name, value);
@@ -154,6 +189,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
   const auto& material = found["material"];
   const auto& scene = found["scene"];
   fmt::print(out, "{}  (format {})\n", file.string(), found["version"].get<std::string>());
+  row("problem", found["problem"].get<std::string>());
   row("nodes", fmt::format("{}, {} of them in the domain", found["nodes"].dump(), found["domain_nodes"].dump()));
   row("levels", fmt::format("{} of {}", found["levels"].dump(), found["complete_levels"].dump()));
   row("bytes", fmt::format("{}: {} times fewer than the dense matrix ({})", bytes_text(found["bytes"]),
@@ -161,15 +197,12 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
   row("kept blocks", fmt::format("{} of {}: {} times fewer", found["kept_blocks"].dump(), found["dense_blocks"].dump(),
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
   row("wavelet", found["wavelet"].get<std::string>());
-  row("field", fmt::format("{} RMS, {} in the worst column; summed of {} blocks, at most {} by a force on one node",
-                           percent(found["field_rms_error"]), percent(found["field_column_error"]),
-                           found["field_blocks"].dump(), found["longest_field_column"].dump()));
-  row("certificate", found["certificate"].get<bool>()
-                         ? fmt::format("every eigenvalue of the compliance is above {:.3g} m/N (verify --certificate)",
-                                       found["lambda_min"].get<double>())
-                         : "none");
-  row("material",
-      fmt::format("Young's modulus {} Pa, Poisson's ratio {}", material["young"].dump(), material["poisson"].dump()));
+  row("field", field_text(found));
+  row("certificate", certificate_text(found));
+  if (!material.is_null()) {
+    row("material",
+        fmt::format("Young's modulus {} Pa, Poisson's ratio {}", material["young"].dump(), material["poisson"].dump()));
+  }
   row("vertex map", found["vertices"] == 0 ? "none" : fmt::format("{} vertices", found["vertices"].dump()));
   row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),
                            scene["max_contacts"].dump(), scene["step_work"].dump()));

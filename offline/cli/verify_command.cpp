@@ -28,6 +28,11 @@ void check_claim(const std::filesystem::path& file, const ModelView& view, Json&
     verdict["ok"] = holds;
     verdict["message"] = fmt::format("{}: {}", file.string(), message);
   };
+  if (view.problem != layout::Problem::elastostatic) {
+    conclude(false, fmt::format("this is a {} model; only the certificate of an elastostatic one can be checked",
+                                problem_name(view.problem)));
+    return;
+  }
   if (view.levels < view.info->levels) {
     conclude(false, "is cut off; the certificate is that of the whole model: check that one");
     return;

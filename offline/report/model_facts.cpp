@@ -42,7 +42,8 @@ const layout::Level& finest_level(const ModelView& model) { return *model.level[
 
 /// Bytes of scales and couplings of mesh level q.
 std::uint64_t compliance_bytes(const ModelView& model, std::uint32_t q) {
-  std::uint64_t bytes = model.level[q].counts->domain_count * sizeof(layout::Scale<3>);
+  const std::uint64_t components = model.info->components;
+  std::uint64_t bytes = model.level[q].counts->domain_count * components * (components + 1) * sizeof(float);
   for (const layout::SectionEntry& entry : section_entries(model)) {
     if (entry.kind == static_cast<std::uint32_t>(SectionKind::couplings) && entry.a == q) bytes += entry.bytes;
   }
@@ -65,7 +66,8 @@ std::string coupling_bits(const ModelView& model) {
 
 std::string certificate(const ModelView& model) {
   if (!(model.info->lambda_min > 0)) return "none";
-  return fmt::format("every eigenvalue is above {}\u202fm/N{}", readable(model.info->lambda_min, 3),
+  return fmt::format("every eigenvalue is above {}{}{}", readable(model.info->lambda_min, 3),
+                     model.problem == layout::Problem::elastostatic ? "\u202fm/N" : "",
                      model.levels < model.info->levels ? " (of the model before it was cut off)" : "");
 }
 
@@ -82,45 +84,52 @@ FactGroup body_facts(const ModelView& model, const ModelSurface& surface) {
   const auto millimetres = [&](int axis) { return readable(1000 * (static_cast<double>(high[axis]) - low[axis]), 3); };
   std::string levels = fmt::format("{}", model.levels);
   if (model.levels < model.info->levels) levels += fmt::format(" of {}: the file is cut off", model.info->levels);
-  return {"Body",
-          {{"nodes", readable_count(model.node_count)},
-           {"moving nodes stored", readable_count(model.domain_count)},
-           {"touchable", readable_count(surface.count(layout::node_touchable))},
-           {"fixed", readable_count(surface.count(layout::node_fixed))},
-           {"read by the scene", readable_count(surface.count(layout::node_read))},
-           {"mesh levels", levels},
-           {"base mesh", fmt::format("{} nodes, {} triangles", model.level[0].counts->node_count,
-                                     model.level[0].counts->base_triangle_count)},
-           {"size", fmt::format("{} × {} × {}\u202fmm", millimetres(0), millimetres(1), millimetres(2))},
-           {"Young's modulus", with_prefix(model.info->young, "Pa")},
-           {"Poisson's ratio", readable(model.info->poisson)}}};
+  FactGroup group{"Body",
+                  {{"problem", std::string(problem_name(model.problem))},
+                   {"nodes", readable_count(model.node_count)},
+                   {"moving nodes stored", readable_count(model.domain_count)},
+                   {"touchable", readable_count(surface.count(layout::node_touchable))},
+                   {"fixed", readable_count(surface.count(layout::node_fixed))},
+                   {"read by the scene", readable_count(surface.count(layout::node_read))},
+                   {"mesh levels", levels},
+                   {"base mesh", fmt::format("{} nodes, {} triangles", model.level[0].counts->node_count,
+                                             model.level[0].counts->base_triangle_count)},
+                   {"size", fmt::format("{} × {} × {}\u202fmm", millimetres(0), millimetres(1), millimetres(2))}}};
+  if (model.problem == layout::Problem::elastostatic) {
+    group.facts.push_back({"Young's modulus", with_prefix(model.info->young, "Pa")});
+    group.facts.push_back({"Poisson's ratio", readable(model.info->poisson)});
+  }
+  return group;
 }
 
 FactGroup compression_facts(const ModelView& model) {
   const layout::Level& finest = finest_level(model);
   const auto dense = static_cast<double>(dense_bytes(model)), file = static_cast<double>(model.header->file_bytes);
   const double kept = static_cast<double>(std::max<std::uint64_t>(finest.kept_blocks, 1));
-  const FieldSize field = field_size(model);
-  return {
-      "Compression",
-      {{"model file", readable_bytes(file)},
-       {"dense compliance, float32", readable_bytes(dense)},
-       {"smaller by", times(dense / file)},
-       {"blocks kept",
-        fmt::format("{} of {}", readable_count(finest.kept_blocks), readable_count(finest.dense_blocks))},
-       {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
-       {"wavelet", std::string(wavelet_name(model.info->wavelet))},
-       {"couplings by bits per value", coupling_bits(model)},
-       {"RMS error", readable_percent(finest.rms_error)},
-       {"worst column's error", readable_percent(finest.worst_column_error)},
-       {"worst patch force's error", readable_percent(finest.patch_force_error)},
-       {"blocks that a field is summed of", fmt::format("{}, at most {} by a force on one node",
-                                                        readable_count(field.blocks), readable_count(field.longest))},
-       {"field's RMS error", readable_percent(finest.field_rms_error)},
-       {"field's worst column", readable_percent(finest.field_column_error)},
-       {"positive definite", certificate(model)},
-       {"threshold", readable(model.info->threshold)},
-       {"asymmetry of the exact columns", readable(model.info->store_asymmetry, 2)}}};
+  FactGroup group{"Compression",
+                  {{"model file", readable_bytes(file)},
+                   {"dense compliance, float32", readable_bytes(dense)},
+                   {"smaller by", times(dense / file)},
+                   {"blocks kept",
+                    fmt::format("{} of {}", readable_count(finest.kept_blocks), readable_count(finest.dense_blocks))},
+                   {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
+                   {"wavelet", std::string(wavelet_name(model.info->wavelet))},
+                   {"couplings by bits per value", coupling_bits(model)},
+                   {"RMS error", readable_percent(finest.rms_error)},
+                   {"worst column's error", readable_percent(finest.worst_column_error)},
+                   {"worst patch force's error", readable_percent(finest.patch_force_error)},
+                   {"field's RMS error", readable_percent(finest.field_rms_error)},
+                   {"field's worst column", readable_percent(finest.field_column_error)},
+                   {"positive definite", certificate(model)},
+                   {"threshold", readable(model.info->threshold)},
+                   {"asymmetry of the exact columns", readable(model.info->store_asymmetry, 2)}}};
+  if (model.problem == layout::Problem::elastostatic) {
+    const FieldSize field = field_size(model);
+    group.facts.push_back(
+        {"blocks that a field is summed of", fmt::format("{}, at most {} by a force on one node",
+                                                         readable_count(field.blocks), readable_count(field.longest))});
+  }
+  return group;
 }
 
 FactGroup loop_facts(const ModelView& model) {
@@ -151,7 +160,9 @@ std::vector<KindBytes> bytes_by_kind(const ModelView& model) {
   return kinds;
 }
 
-std::uint64_t dense_bytes(const ModelView& model) { return finest_level(model).dense_blocks * 9 * sizeof(float); }
+std::uint64_t dense_bytes(const ModelView& model) {
+  return finest_level(model).dense_blocks * model.info->components * model.info->components * sizeof(float);
+}
 
 std::vector<FactGroup> model_facts(const ModelView& model, const ModelSurface& surface) {
   return {body_facts(model, surface), compression_facts(model), loop_facts(model)};

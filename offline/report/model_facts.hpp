@@ -35,7 +35,7 @@ struct LevelErrors {
 /// Couplings by layer. By decreasing size, what lies between the sections last; their sum is the file's length.
 [[nodiscard]] std::vector<KindBytes> bytes_by_kind(const ModelView& model);
 
-/// Bytes of the compliance of the finest level present as dense 3 x 3 blocks of float32.
+/// Bytes of the compliance of the finest level present as dense blocks of float32.
 [[nodiscard]] std::uint64_t dense_bytes(const ModelView& model);
 
 /// Body, material, compression and what the scene asked of the loop.

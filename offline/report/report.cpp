@@ -140,8 +140,9 @@ std::vector<MissingInput> missing_inputs(const Material& material, const std::fi
       name, name);
   const std::string record = std::filesystem::path(model).replace_extension(".build.json").string();
   std::vector<MissingInput> missing;
-  if (!material.snapshot) missing.push_back({"The deformed body: no --snapshot was given", loop});
-  if (!material.trace) missing.push_back({"Force, work and levels over time: no --trace was given", loop});
+  const bool runs = material.model.problem == layout::Problem::elastostatic;  // in greenloop-loop
+  if (runs && !material.snapshot) missing.push_back({"The deformed body: no --snapshot was given", loop});
+  if (runs && !material.trace) missing.push_back({"Force, work and levels over time: no --trace was given", loop});
   const std::string build =
       fmt::format("greenloop build scene.toml -o {}\ngreenloop report {} --build {}", name, name, record);
   if (!material.build) {

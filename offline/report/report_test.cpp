@@ -288,6 +288,25 @@ TEST_CASE("facts say wavelet, bits, layers and certificate") {
   CHECK(fact(data, "wavelet") == "lifted linear");
 }
 
+TEST_CASE("a scalar model has no material, no unit, no loop to run; its dense matrix has a number a block") {
+  const TemporaryFolder folder("report_test");
+  ModelData data = synthetic_model({.components = 1, .levels = 3});
+  data.info.lambda_min = 2.5e-5;
+  write_file(folder.path() / "scalar.gloop", encode(data));
+  const ModelFile file = open_model_file(folder.path() / "scalar.gloop");
+  CHECK(dense_bytes(file.view) == 4 * 41 * 41);
+  const Report report =
+      make_report(file.view, {.model = folder.path() / "scalar.gloop", .trace = {}, .snapshot = {}, .build = {}});
+  CHECK(has(report.html, "scalar"));
+  CHECK(has(report.html, "every eigenvalue is above 2.5e-05<"));
+  const std::string page = without_pictures(report.html);
+  for (const char* word : {"Young", "Poisson", "m/N", "greenloop-loop"}) {
+    CAPTURE(word);
+    CHECK_FALSE(has(page, word));
+  }
+  CHECK(report.missing.size() == 1);
+}
+
 TEST_CASE("the frontier has a panel for every pair of figures that two points have") {
   BuildRecord record;
   CHECK_FALSE(has_frontier(record));

@@ -180,6 +180,7 @@ void print_table(const std::vector<FieldFigures>& all, const BackSubstitution& b
 
 int run(const Arguments& arguments) {
   const auto file = greenloop::open_model_file(arguments.model);
+  greenloop::require_problem(file.view, greenloop::layout::Problem::elastostatic, arguments.model);
   const auto opened = greenloop::Model::open(file.bytes.span());
   auto store = greenloop::GreenStore::open(arguments.store, greenloop::GreenStore::Access::kReadOnly);
   const auto back = greenloop::bench::time_back_substitution(store);

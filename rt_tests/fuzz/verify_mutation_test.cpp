@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "formats/testing/model_mutant.hpp"
+#include "formats/testing/smallest_model.hpp"
 #include "formats/write/describe.hpp"
 #include "rt_tests/fuzz/walk_view.hpp"
 
@@ -75,14 +76,8 @@ std::vector<std::byte> measured_model() {
   return encode(model);
 }
 
-TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
+void check_survival(Mutator mutator) {
   MESSAGE("seed ", seed, ", ", mutations, " mutations");
-  Mutator mutator(
-      {encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
-       encode(synthetic_model({.levels = 3, .epsilon = 0.008})),
-       encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .wavelet = layout::Wavelet::linear})),
-       encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly})), measured_model(),
-       encode(synthetic_model({.levels = 2, .vertices = 40}))});
   int accepted = 0;
   std::array<int, 64> refused{};
   for (int i = 0; i < mutations; ++i) {
@@ -103,6 +98,49 @@ TEST_CASE("verify survives random changes of valid files, and what it accepts is
     CAPTURE(rule_name(rule));
     CHECK(refused[static_cast<std::size_t>(rule)] > 0);
   }
+}
+
+TEST_CASE("verify survives random changes of valid files, and what it accepts is sound") {
+  check_survival(Mutator(
+      {encode(synthetic_model({.levels = 1})), encode(synthetic_model({.levels = 2})),
+       encode(synthetic_model({.levels = 3, .epsilon = 0.008})),
+       encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .wavelet = layout::Wavelet::linear})),
+       encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly})), measured_model(),
+       encode(synthetic_model({.levels = 2, .vertices = 40}))}));
+}
+
+TEST_CASE("verify survives random changes of scalar models, and what it accepts is sound") {
+  check_survival(Mutator({encode(smallest_scalar_model()), encode(synthetic_model({.components = 1, .levels = 2})),
+                          encode(synthetic_model({.components = 1, .levels = 3, .epsilon = 0.008})),
+                          encode(synthetic_model({.components = 1,
+                                                  .levels = 2,
+                                                  .coarsest_constraint_level = 1,
+                                                  .wavelet = layout::Wavelet::equilibrated,
+                                                  .vertices = 40}))}));
+}
+
+TEST_CASE("walk_view sees scalar blocks and scales that verify must prevent") {
+  ModelMutant mutant(SyntheticOptions{.components = 1, .levels = 3});
+  REQUIRE(mutant.verdict().ok());
+  const ModelView view = mutant.view();
+  CHECK(walk_view(mutant.bytes(), view));
+  float& scale = mutant.records<float>(layout::SectionKind::scales, 2)[7];
+  const float right_scale = std::exchange(scale, -1.0F);
+  CHECK_FALSE(walk_view(mutant.bytes(), view));
+  scale = right_scale;
+  for (const std::uint32_t layer : {2u, 3u}) {
+    const auto& header = *mutant.records<layout::CouplingsHeader>(layout::SectionKind::couplings, 2, layer);
+    REQUIRE(header.block_count > 0);
+    auto* value = mutant.records<std::uint8_t>(layout::SectionKind::couplings, 2, layer, header.value_offset);
+    std::uint8_t& last = value[header.block_count - 1];
+    const std::uint8_t right = std::exchange(last, std::uint8_t{0x80});
+    CHECK_FALSE(walk_view(mutant.bytes(), view));
+    last = right;
+  }
+  CHECK(walk_view(mutant.bytes(), view));
+  ModelView other = view;
+  other.problem = layout::Problem::elastostatic;
+  CHECK_FALSE(walk_view(mutant.bytes(), other));
 }
 
 TEST_CASE("walk_view sees stencils that verify must prevent") {

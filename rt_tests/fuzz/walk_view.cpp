@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 
 #include "formats/testing/reseal.hpp"
 #include "formats/verify.hpp"
@@ -17,8 +18,8 @@ class Walk {
   Walk(std::span<const std::byte> file, const ModelView& view) : file_(file), view_(view) {}
 
   bool whole_view() {
-    if (!array(view_.header, 1) || !array(view_.info, 1) || !array(view_.base_triangles, triangle_corners()) ||
-        !array(view_.provenance.data(), view_.provenance.size())) {
+    if (!array(view_.header, 1) || !array(view_.info, 1) || components() != layout::components_of(view_.problem) ||
+        !array(view_.base_triangles, triangle_corners()) || !array(view_.provenance.data(), view_.provenance.size())) {
       return false;
     }
     if (!all(view_.base_triangles, triangle_corners(), [&](auto corner) { return corner < count(0); })) return false;
@@ -37,6 +38,7 @@ class Walk {
   [[nodiscard]] std::uint32_t count(std::uint32_t q) const { return view_.level[q].counts->node_count; }
   [[nodiscard]] std::uint32_t domain(std::uint32_t q) const { return view_.level[q].counts->domain_count; }
   [[nodiscard]] std::uint32_t domain_of_mesh(std::uint32_t q) const { return view_.level[q].domain_begin + domain(q); }
+  [[nodiscard]] std::uint32_t components() const { return view_.info->components; }
   [[nodiscard]] std::size_t triangle_corners() const {
     return std::size_t{3} * view_.level[0].counts->base_triangle_count;
   }
@@ -72,8 +74,8 @@ class Walk {
     const std::uint32_t stencils = level.stencils == nullptr ? 0 : level.counts->domain_count;
     if (!array(level.stencils, stencils) || !all(level.stencils, stencils, known)) return false;
     return all(level.nodes, count(q), [](const auto& node) { return std::isfinite(node.position[2] + node.area); }) &&
-           (q == 0 || all(level.refinement, count(q), coarser)) && predictions(q) && scales(q) && all_couplings(q) &&
-           patterns(q);
+           (q == 0 || all(level.refinement, count(q), coarser)) && predictions(q) &&
+           (components() == 1 ? scales<1>(q) : scales<3>(q)) && all_couplings(q) && patterns(q);
   }
 
   bool predictions(std::uint32_t q) const {
@@ -107,12 +109,14 @@ class Walk {
            all(view_.vertices.data(), view_.vertices.size(), right);
   }
 
+  template <unsigned N>
   bool scales(std::uint32_t q) const {
-    const LevelView& level = view_.level[q];
-    const auto right = [](const layout::Scale<3>& scale) {
-      return scale.root[0] > 0 && scale.diagonal[0] > 0 && std::isfinite(scale.root[5] + scale.diagonal[5]);
+    const layout::Scale<N>* const scales = view_.level[q].scales_of<N>();
+    const auto right = [](const layout::Scale<N>& scale) {
+      return scale.root[0] > 0 && scale.diagonal[0] > 0 &&
+             std::isfinite(*std::prev(std::end(scale.root)) + *std::prev(std::end(scale.diagonal)));
     };
-    return array(level.scales_of<3>(), domain(q)) && all(level.scales_of<3>(), domain(q), right);
+    return array(scales, domain(q)) && all(scales, domain(q), right);
   }
 
   bool representatives(std::uint32_t c, std::uint32_t q) const {
@@ -173,13 +177,14 @@ class Walk {
     const auto negatable = [](std::byte pair) {
       return (pair & std::byte{15}) != std::byte{8} && (pair >> 4) != std::byte{8};
     };
-    return array(value, 5 * block_count + 16) && all(value, 5 * block_count, negatable);
+    const std::uint64_t bytes = layout::block_bytes(components(), 4) * block_count;
+    return array(value, bytes + 16) && all(value, bytes, negatable);
   }
 
   // a kernel may load 16 bytes beyond the last value
   template <class Value>
   bool values(const Value* value, std::uint64_t block_count) const {
-    const std::uint64_t read = 9 * block_count + 16 / sizeof(Value);
+    const std::uint64_t read = std::uint64_t{components()} * components() * block_count + 16 / sizeof(Value);
     return array(value, read) && all(value, read, [](Value v) { return static_cast<Value>(-v) == -v; });
   }
 

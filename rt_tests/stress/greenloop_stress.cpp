@@ -69,6 +69,7 @@ StressReport stress(const Arguments& arguments) {
   if (!opened) {
     throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
   }
+  greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
   StressReport report{.model = arguments.model, .options = arguments.options, .result = {}};
   greenloop::StressOptions& options = report.options;
   if (options.contacts == 0) {

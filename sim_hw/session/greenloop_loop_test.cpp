@@ -254,6 +254,11 @@ TEST_CASE("a file that is no model, and words that are no options, are refused")
   CHECK(no_model.exit_status == 1);
   CHECK(contains(no_model.errors, broken));
   CHECK(run_program(GREENLOOP_LOOP, {workspace().file("absent.gloop")}).exit_status == 1);
+  const std::string scalar = workspace().file("scalar.gloop");
+  write_file(scalar, encode(synthetic_model({.components = 1, .levels = 2})));
+  const ProgramRun another_problem = run_program(GREENLOOP_LOOP, {scalar});
+  CHECK(another_problem.exit_status == 1);
+  CHECK(contains(another_problem.errors, scalar + ": this is a scalar model; only elastostatic ones are taken here"));
   CHECK(run_text({"--inject-delay", "7"}).exit_status == 2);
   CHECK(run_text({"--starve", "0"}).exit_status == 2);
   CHECK(run_text({"--starve", "1.5"}).exit_status == 2);
