@@ -239,7 +239,7 @@ double least_eigenvalue(const ModelData& data) {
   const AlignedBytes bytes(encode(data));
   ModelView view;
   REQUIRE(verify(bytes.span(), view).ok());
-  const CompressedCompliance compressed(view);
+  const CompressedCompliance<3> compressed(view);
   const auto rows = static_cast<Eigen::Index>(compressed.rows(compressed.finest()));
   Eigen::MatrixXd dense(3 * rows, 3 * rows);
   for (Eigen::Index j = 0; j < rows; ++j) {

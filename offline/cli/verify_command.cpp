@@ -41,7 +41,7 @@ void check_claim(const std::filesystem::path& file, const ModelView& view, Json&
     conclude(false, "carries no certificate (Info::lambda_min is 0); build the model again");
     return;
   }
-  const CompressedCompliance compressed(view);
+  const CompressedCompliance<3> compressed(view);
   const CertificateCheck check = check_certificate(compressed, lambda_min, [](double, std::string_view) {});
   found["unknowns"] = check.unknowns;
   found["shift"] = check.shift;

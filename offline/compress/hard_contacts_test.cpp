@@ -167,7 +167,7 @@ struct Rounding {
 Rounding rounding(const Case& one, const std::vector<Constraint>& contacts) {
   TestBody body(one.model, {.max_contacts = static_cast<std::uint32_t>(contacts.size()), .cached_factors = 1});
   REQUIRE(body.step(contacts, any_budget).status == Status::ok);
-  const CompressedCompliance all(one.model.view());
+  const CompressedCompliance<3> all(one.model.view());
   const auto at = unknowns(one.body, contacts);
   const auto size = static_cast<Index>(at.size()), rows = static_cast<Index>(3 * all.rows(all.finest()));
   MatrixXd capacitance(size, size);

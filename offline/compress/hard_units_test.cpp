@@ -35,7 +35,7 @@ Answers answers(const Units& units) {
   CHECK(measured.patch_force <= test::default_accuracy.patch_force);
   const TestModel model(encode(measured.built.model));
   const auto touchable = model.touchable();
-  const CompressedCompliance whole(model.view());
+  const CompressedCompliance<3> whole(model.view());
   Answers result;
   for (std::size_t j = 0; j < whole.rows(whole.finest()); j += 20) {
     for (const double u : whole.column(whole.finest(), j)) {

@@ -66,8 +66,8 @@ std::vector<std::uint8_t> read_rows(const ModelView& view) {
 
 // errors of one level, cut off after it, against its exact compliance
 ConstraintLevelReport measure_coarse(const CompressionInput& input, const SurfaceWavelet& wavelet,
-                                     const WaveletCompliance& exact, const ModelView& cut, std::size_t level) {
-  const CompressedCompliance compressed(cut);
+                                     const WaveletCompliance<3>& exact, const ModelView& cut, std::size_t level) {
+  const CompressedCompliance<3> compressed(cut);
   ContactPatches patches(row_positions(input.mesh, wavelet, level), ExactSample::most_patches);
   const auto read = read_rows(cut);
   FieldError error, field_error(read);
@@ -194,13 +194,13 @@ class Build {
   Build(const CompressionInput& input, const Progress& progress)
       : input_(input),
         progress_(progress),
-        wavelet_(make_wavelet(input.mesh, input.flags, input.area, input.wavelet, input.columns)),
+        wavelet_(make_wavelet<3>(input.mesh, input.flags, input.area, input.wavelet, input.columns)),
         sample_(checked(input, wavelet_).mesh, wavelet_, input.area),
         contacts_(
             contact_patterns(TouchedSurface(input.mesh, input.flags, input.area, wavelet_), input.facts.max_contacts,
                              wavelet_.rows() > many_rows ? few_pattern_sites : pattern_sites),
             row_positions(input.mesh, wavelet_, wavelet_.finest())) {
-    model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, input.facts);
+    model_ = describe_mesh(input.mesh, input.flags, input.area, wavelet_, layout::Problem::elastostatic, input.facts);
     model_.provenance = input.provenance;
     add_representatives(input.mesh, input.flags, model_);
     for (const std::size_t node : wavelet_.nodes()) {
@@ -233,7 +233,7 @@ class Build {
     };
   }
 
-  [[nodiscard]] WaveletCompliance transform(double floor) {
+  [[nodiscard]] WaveletCompliance<3> transform(double floor) {
     const ExactColumns columns = [&](std::size_t first, std::size_t count) {
       Eigen::MatrixXd block = input_.columns(first, count);
       const bool fits = block.rows() == static_cast<Eigen::Index>(3 * wavelet_.rows());
@@ -241,7 +241,7 @@ class Build {
       if (floor == first_floor && fits) contacts_.add(block, first);
       return block;
     };
-    WaveletCompliance compliance = transform_compliance(wavelet_, columns, floor, part(0, 0.25));
+    WaveletCompliance<3> compliance = transform_compliance<3>(wavelet_, columns, floor, part(0, 0.25));
     if (floor == first_floor) solve_contacts();
     return compliance;
   }
@@ -259,7 +259,7 @@ class Build {
 
   // searches and measures until an encoding meets the accuracy on everything; false: none does with this floor
   [[nodiscard]] bool meets_with(double floor) {
-    const WaveletCompliance compliance = transform(floor);
+    const WaveletCompliance<3> compliance = transform(floor);
     const TrialBench bench{compliance, model_, sample_.columns(), input_.accuracy, input_.step_work};
     std::vector<std::size_t> searched = worst_patches(bench, sample_.patches(), search_patches, ranking_threshold);
     Accuracy aim = input_.accuracy;
@@ -294,14 +294,14 @@ class Build {
       const auto errors = summarise(answer_errors(bench, contacts_, encoding_at(floor)));
       closest_pattern_ = worst_pattern(errors, input_.accuracy);
     } else if (found->encoding.threshold != chosen.encoding.threshold) {
-      chosen = measure_trial(bench, patches, found->encoding, found->model, CompressedCompliance(found->model.view));
+      chosen = measure_trial(bench, patches, found->encoding, found->model, CompressedCompliance<3>(found->model.view));
     }
     return found;
   }
 
   [[nodiscard]] Measured measure(const ModelFile& encoded, const Trial& chosen) {
     Measured measured{.trial = chosen, .patterns = {}, .field = FieldError(read_), .worst_patches = {}};
-    const CompressedCompliance all(encoded.view);
+    const CompressedCompliance<3> all(encoded.view);
     FieldError error;
     visit_exact_columns(input_, part(0.65, 0.75), [&](std::size_t row, const auto& exact, double area) {
       const auto found = all.column(all.finest(), row);
@@ -341,8 +341,8 @@ class Build {
     report_.patches = sample_.patches().size();
   }
 
-  void describe_levels(const WaveletCompliance& compliance, const Measured& finest, const ModelFile& encoded) {
-    const CompressedCompliance complete(encoded.view);
+  void describe_levels(const WaveletCompliance<3>& compliance, const Measured& finest, const ModelFile& encoded) {
+    const CompressedCompliance<3> complete(encoded.view);
     const AnsweredContacts answered(encoded.view, complete, contacts_);
     for (std::uint32_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
       const AlignedBytes bytes(truncate_to_level({encoded.bytes.span().begin(), encoded.bytes.span().end()}, level));

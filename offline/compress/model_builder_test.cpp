@@ -143,7 +143,7 @@ TEST_CASE("forces of all patches meet their accuracy, and it is used up") {
   const SurfaceWavelet wavelet(body().mesh, body().flags, body().area, layout::Wavelet::lifted_linear);
   ContactPatches patches(row_positions(body().mesh, wavelet, 3), ExactSample::most_patches);
   patches.add(body().compliance, 0);
-  const double error = patches.worst_force_error(CompressedCompliance(file().view), 3);
+  const double error = patches.worst_force_error(CompressedCompliance<3>(file().view), 3);
   CHECK(error <= accuracy.patch_force);
   CHECK(error > 0.3 * accuracy.patch_force);
   CHECK(built().report.levels.back().patch_force_error == doctest::Approx(error).epsilon(1e-6));
@@ -178,7 +178,7 @@ TEST_CASE("cut off after any level it is a valid model, as accurate as reported"
 TEST_CASE("the report counts what is in the file") {
   const auto& report = built().report;
   for (const auto& level : report.levels) {
-    CHECK(level.nodes == CompressedCompliance(file().view).rows(level.level));
+    CHECK(level.nodes == CompressedCompliance<3>(file().view).rows(level.level));
     CHECK(level.dense_blocks == level.nodes * level.nodes);
     CHECK(level.kept_blocks == file().view.level[level.level].counts->kept_blocks);
   }

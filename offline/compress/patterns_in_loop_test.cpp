@@ -109,7 +109,7 @@ void visit_budgets(const test::Body& body, const ExactContacts& exact, const Mod
 
 void check_loop(const test::Body& body, const ExactContacts& exact, layout::Wavelet wavelet) {
   const test::File file(test::model_of(body, wavelet, {.threshold = 0.01, .quantum = 0.005}));
-  const CompressedCompliance compressed(file.view);
+  const CompressedCompliance<3> compressed(file.view);
   const AnsweredContacts measured(file.view, compressed, exact);
   const auto opened = Model::open(file.bytes.span());
   REQUIRE(opened);
@@ -148,7 +148,7 @@ TEST_CASE("the loop answers patterns with the errors that are measured for its c
 // the worst errors of the sites that the loop is given below
 void measure(const ExactContacts& exact, ModelData& model) {
   const test::File file(model);
-  const CompressedCompliance compressed(file.view);
+  const CompressedCompliance<3> compressed(file.view);
   const AnsweredContacts measured(file.view, compressed, exact);
   const auto worst = [&](std::uint32_t level, std::uint32_t details, double AnswerError::*which) {
     double result = 0;

@@ -14,20 +14,20 @@ ModelData tables_of(const ExactBody& body, const SurfaceWavelet& wavelet) {
   facts.rate = 1000;
   facts.max_contacts = 16;
   facts.step_work = 1;
-  ModelData tables = describe_mesh(body.mesh, body.flags, body.area, wavelet, facts);
+  ModelData tables = describe_mesh(body.mesh, body.flags, body.area, wavelet, layout::Problem::elastostatic, facts);
   tables.provenance = "{}";
   add_representatives(body.mesh, body.flags, tables);
   return tables;
 }
 
-WaveletCompliance transformed(const ExactBody& body, const SurfaceWavelet& wavelet, double floor, ExactSample& sample,
-                              const Progress& progress) {
+WaveletCompliance<3> transformed(const ExactBody& body, const SurfaceWavelet& wavelet, double floor,
+                                 ExactSample& sample, const Progress& progress) {
   const ExactColumns columns = [&](std::size_t first, std::size_t count) {
     Eigen::MatrixXd block = body.columns(first, count);
     sample.add(block, first);
     return block;
   };
-  return transform_compliance(wavelet, columns, floor, progress);
+  return transform_compliance<3>(wavelet, columns, floor, progress);
 }
 
 ContactPatches first_patches(const ContactPatches& patches) {

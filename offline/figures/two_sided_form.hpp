@@ -36,7 +36,7 @@ class TwoSidedForm {
 
   SurfaceWavelet wavelet_;
   ExactSample sample_;
-  WaveletCompliance compliance_;
+  WaveletCompliance<3> compliance_;
   ModelData tables_;
   ContactPatches patches_;
   std::vector<LevelSample> coarse_;

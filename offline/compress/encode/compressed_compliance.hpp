@@ -11,11 +11,13 @@
 
 namespace greenloop::offline {
 
-/// The compliance that a model file stands for, in double precision: what the loop's answers are measured with and
-/// certified on. Two-sided wavelet form, see formats/layout.hpp. Offline only.
+/// The compliance that a model file of N components, 1 or 3, stands for, in double precision: what the loop's answers
+/// are measured with and certified on. Two-sided wavelet form, see formats/layout.hpp. Offline only.
+template <unsigned N>
 class CompressedCompliance {
  public:
-  /// The view may go. Memory: about 80 bytes per coupling.
+  /// The view may go. Memory: about 80 bytes per coupling, 50 of scalars. Throws std::invalid_argument if the model's
+  /// components are not N.
   explicit CompressedCompliance(const ModelView& view);
 
   [[nodiscard]] std::size_t finest() const { return wavelet_.finest(); }
@@ -23,23 +25,23 @@ class CompressedCompliance {
   [[nodiscard]] const SurfaceWavelet& wavelet() const { return wavelet_; }
 
   /// x = U^_level f: `columns` displacement fields (m) for as many force patterns (N) on the averages of `level` (on
-  /// the nodes, if it is the finest). f, x: rows(level) * columns * 3 numbers, by row, then by column. Zero forces are
-  /// skipped. Work: 9 * columns per coupling of coefficients that feel a force.
+  /// the nodes, if it is the finest). f, x: rows(level) * columns * N numbers, by row, then by column. Zero forces are
+  /// skipped. Work: N N * columns per coupling of coefficients that feel a force.
   void apply(std::size_t level, std::size_t columns, const double* f, double* x) const;
 
   /// The same in wavelet coefficients: (W U^ W^T)_level T^-T f, which T_1^-1 .. T_level^-1 turn into displacements.
   void apply_to_coefficients(std::size_t level, std::size_t columns, const double* f, double* y) const;
 
   /// What forces on the averages of `level` move on the whole surface, with the details of levels 0 .. `details`: x has
-  /// rows(finest()) * columns * 3 numbers, f as above. With all details its averages of `level` are U^_level f. Work:
+  /// rows(finest()) * columns * N numbers, f as above. With all details its averages of `level` are U^_level f. Work:
   /// as apply, and an inverse transform.
   void displace(std::size_t level, std::size_t details, std::size_t columns, const double* f, double* x) const;
 
-  /// U^_level between some of its nodes: 3 nodes.size() squared, m/N. Work: 9 per coupling of the coefficients that
+  /// U^_level between some of its nodes: N nodes.size() squared, m/N. Work: N N per coupling of the coefficients that
   /// they feel, and per node that feels one of them.
   [[nodiscard]] Eigen::MatrixXd between(std::size_t level, const std::vector<std::size_t>& nodes) const;
 
-  /// Block column j of U^_level: rows(level) blocks of 9 numbers, 3 c + r.
+  /// Block column j of U^_level: rows(level) blocks of N N numbers, N c + r.
   [[nodiscard]] std::vector<double> column(std::size_t level, std::size_t j) const;
 
  private:
@@ -48,7 +50,8 @@ class CompressedCompliance {
     std::uint32_t block;
     bool transposed;
   };
-  using Ends = std::pair<std::uint32_t, std::uint32_t>;  // row, column
+  static constexpr std::size_t numbers = std::size_t{N} * N;  // of a block
+  using Ends = std::pair<std::uint32_t, std::uint32_t>;       // row, column
 
   template <class Weight>
   [[nodiscard]] Eigen::MatrixXd between(std::size_t level, const std::vector<std::size_t>& nodes) const;
@@ -57,8 +60,8 @@ class CompressedCompliance {
   void link(const std::vector<Ends>& ends);
 
   SurfaceWavelet wavelet_;
-  std::vector<float> root_, diagonal_;   // [coefficient] 9 numbers
-  std::vector<float> block_;             // [coupling] 9 numbers
+  std::vector<float> root_, diagonal_;   // [coefficient] N N numbers
+  std::vector<float> block_;             // [coupling] N N numbers
   std::vector<std::size_t> link_begin_;  // [coefficient + 1]
   std::vector<Link> links_;              // by coefficient
 };

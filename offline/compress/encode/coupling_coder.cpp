@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -11,22 +12,22 @@
 namespace greenloop::offline {
 namespace {
 
-constexpr std::size_t width = 9;
-
-using Values = std::array<double, width>;  // of a scaled block
+template <unsigned N>
+using Values = std::array<double, N * N>;  // of a scaled block
 
 double largest_value(std::uint32_t layer) { return std::ldexp(1, static_cast<int>(layout::value_bits[layer]) - 1) - 1; }
 
-double largest(const Values& values) {
+double largest(std::span<const double> values) {
   double most = 0;
   for (const double value : values) most = std::max(most, std::abs(value));
   return most;
 }
 
 // stores the multiples of a layer's quantum nearest to the values, unless all are zero; what is left of the values
-Values add_block(Values values, float quantum, std::uint32_t row, CouplingsData& layer) {
-  std::array<std::int16_t, width> block{};
-  for (std::size_t k = 0; k < width; ++k) {
+template <unsigned N>
+Values<N> add_block(Values<N> values, float quantum, std::uint32_t row, CouplingsData& layer) {
+  std::array<std::int16_t, N * N> block{};
+  for (std::size_t k = 0; k < block.size(); ++k) {
     block[k] = static_cast<std::int16_t>(std::lround(values[k] / static_cast<double>(quantum)));
     values[k] -= static_cast<double>(quantum) * block[k];
   }
@@ -38,7 +39,8 @@ Values add_block(Values values, float quantum, std::uint32_t row, CouplingsData&
 }
 
 // the common quantum; in the first layer one that holds the largest value
-void choose_quanta(const WaveletCompliance& compliance, const Encoding& encoding, layout::Info& info) {
+template <unsigned N>
+void choose_quanta(const WaveletCompliance<N>& compliance, const Encoding& encoding, layout::Info& info) {
   const double quantum = encoding.quantum;
   std::fill(std::begin(info.quantum), std::end(info.quantum), static_cast<float>(quantum));
   double most = 0;
@@ -54,7 +56,7 @@ void choose_quanta(const WaveletCompliance& compliance, const Encoding& encoding
 }
 
 // the layer of fewest bits that holds a block; the first holds all
-std::uint32_t layer_of(const Values& values, const layout::Info& info) {
+std::uint32_t layer_of(std::span<const double> values, const layout::Info& info) {
   std::uint32_t layer = layout::layers - 1;
   while (layer > 0 && largest(values) >= (largest_value(layer) + 0.5) * static_cast<double>(info.quantum[layer]))
     --layer;
@@ -63,30 +65,34 @@ std::uint32_t layer_of(const Values& values, const layout::Info& info) {
 
 }  // namespace
 
-void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model) {
+template <unsigned N>
+void encode_couplings(const WaveletCompliance<N>& compliance, const Encoding& encoding, ModelData& model) {
   choose_quanta(compliance, encoding, model.info);
   std::size_t column = 0;
   for (std::size_t level = 0; level < compliance.couplings.size(); ++level) {
-    const CouplingCandidates& from = compliance.couplings[level];
+    const CouplingCandidates<N>& from = compliance.couplings[level];
     LevelData& to = model.levels[level];
     to.scales = {};
     for (auto& layer : to.couplings) layer = {.begin = {0}, .index = {}, .value = {}};
     for (std::size_t j = 0; j + 1 < from.begin.size(); ++j, ++column) {
-      to.scales.push_back<3>(compliance.scales[column].stored(encoding.quantum));
+      to.scales.push_back<N>(compliance.scales[column].stored(encoding.quantum));
       for (std::size_t b = from.begin[j]; b < from.begin[j + 1]; ++b) {
         if (static_cast<double>(from.norm[b]) < encoding.threshold) continue;
-        Values values;
-        std::copy_n(from.value.begin() + static_cast<std::ptrdiff_t>(width * b), width, values.begin());
+        Values<N> values;
+        std::copy_n(from.value.begin() + static_cast<std::ptrdiff_t>(values.size() * b), values.size(), values.begin());
         std::uint32_t layer = layer_of(values, model.info);
         if (layer == 0) {  // too coarse alone: what is left of the block stands in a finer layer
-          values = add_block(values, model.info.quantum[0], from.row[b], to.couplings[0]);
+          values = add_block<N>(values, model.info.quantum[0], from.row[b], to.couplings[0]);
           layer = layer_of(values, model.info);
         }
-        (void)add_block(values, model.info.quantum[layer], from.row[b], to.couplings[layer]);
+        (void)add_block<N>(values, model.info.quantum[layer], from.row[b], to.couplings[layer]);
       }
       for (auto& layer : to.couplings) layer.begin.push_back(static_cast<std::uint32_t>(layer.index.size()));
     }
   }
 }
+
+template void encode_couplings(const WaveletCompliance<1>&, const Encoding&, ModelData&);
+template void encode_couplings(const WaveletCompliance<3>&, const Encoding&, ModelData&);
 
 }  // namespace greenloop::offline

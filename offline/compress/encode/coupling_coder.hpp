@@ -10,13 +10,14 @@ namespace greenloop::offline {
 /// How couplings are thresholded and quantised. All are right to half a quantum and take as few bits as hold them; what
 /// 16 bits do not hold stands in the first layer, of a coarser quantum, and what is left of it in another one.
 struct Encoding {
-  double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root 3) are dropped
+  double threshold = 0;  ///< scaled blocks of smaller norm (Frobenius over root N) are dropped
   double quantum = 0;    ///< of scaled values
 };
 
 /// Fills in quanta, scales and couplings of every level. `model.levels` must have one entry per level of the
-/// compliance, with its nodes. Throws std::runtime_error if a scaled value is above 32767. Work: linear in the
-/// candidates.
-void encode_couplings(const WaveletCompliance& compliance, const Encoding& encoding, ModelData& model);
+/// compliance, with its nodes. N: numbers of a node, 1 or 3. Throws std::runtime_error if a scaled value is above
+/// 32767. Work: linear in the candidates.
+template <unsigned N>
+void encode_couplings(const WaveletCompliance<N>& compliance, const Encoding& encoding, ModelData& model);
 
 }  // namespace greenloop::offline

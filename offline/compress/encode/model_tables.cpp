@@ -38,12 +38,13 @@ std::vector<layout::RefinementRecord> refinement_records(const SemiRegularMesh& 
 }  // namespace
 
 ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
-                        const std::vector<double>& area, const SurfaceWavelet& wavelet, const layout::Info& facts) {
+                        const std::vector<double>& area, const SurfaceWavelet& wavelet, layout::Problem problem,
+                        const layout::Info& facts) {
   ModelData model;
   model.info = facts;
-  model.info.problem = static_cast<std::uint32_t>(layout::Problem::elastostatic);
+  model.info.problem = static_cast<std::uint32_t>(problem);
   model.info.wavelet = static_cast<std::uint32_t>(wavelet.kind());
-  model.info.components = 3;
+  model.info.components = layout::components_of(problem);
   for (const auto& triangle : mesh.base_triangles) {
     for (const int corner : triangle) model.base_triangles.push_back(static_cast<std::uint32_t>(corner));
   }

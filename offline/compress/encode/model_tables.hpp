@@ -11,11 +11,11 @@
 namespace greenloop::offline {
 
 /// The part of a model that does not depend on its columns: info (`facts` completed), nodes, base triangles and
-/// refinement. encode fills in the counts. `flags` and `area` per node; a fixed node is not touchable in the model.
-/// Work: linear in the nodes. Offline only.
+/// refinement. encode fills in the counts. `problem`: elastostatic, or scalar with Equilibrated predictions of numbers.
+/// `flags` and `area` per node; a fixed node is not touchable in the model. Work: linear in the nodes. Offline only.
 [[nodiscard]] ModelData describe_mesh(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
                                       const std::vector<double>& area, const SurfaceWavelet& wavelet,
-                                      const layout::Info& facts);
+                                      layout::Problem problem, const layout::Info& facts);
 
 /// Adds the representatives of every constraint level from model.info.coarsest_constraint_level on, and moves that up
 /// to the first level where a touchable node has one. Throws std::invalid_argument if there is none. Work: that of

@@ -36,7 +36,7 @@ double least_ritz_value(const std::vector<double>& diagonal, const std::vector<d
 
 }  // namespace
 
-double estimate_least_eigenvalue(const CompressedCompliance& compressed, const Progress& progress) {
+double estimate_least_eigenvalue(const CompressedCompliance<3>& compressed, const Progress& progress) {
   const auto size = static_cast<Eigen::Index>(3 * compressed.rows(compressed.finest()));
   const Eigen::Index steps = std::min(most_steps, size);
   Eigen::MatrixXd basis(size, steps);
@@ -65,12 +65,12 @@ double estimate_least_eigenvalue(const CompressedCompliance& compressed, const P
   return estimate;
 }
 
-std::size_t certificate_check_bytes(const CompressedCompliance& compressed) {
+std::size_t certificate_check_bytes(const CompressedCompliance<3>& compressed) {
   const std::size_t n = 3 * compressed.rows(compressed.finest());
   return n * n * sizeof(double);
 }
 
-CertificateCheck check_certificate(const CompressedCompliance& compressed, double lambda_min,
+CertificateCheck check_certificate(const CompressedCompliance<3>& compressed, double lambda_min,
                                    const Progress& progress) {
   const std::size_t finest = compressed.finest(), rows = compressed.rows(finest);
   const auto n = static_cast<Eigen::Index>(3 * rows);

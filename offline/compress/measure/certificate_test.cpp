@@ -19,7 +19,7 @@ struct Case {
                   .eigenvalues()
                   .minCoeff()) {}
   test::File file;
-  CompressedCompliance compressed;
+  CompressedCompliance<3> compressed;
   double least;  // eigenvalue, m/N
 };
 

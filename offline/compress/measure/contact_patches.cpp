@@ -59,13 +59,13 @@ void ContactPatches::add(const Eigen::MatrixXd& block, std::size_t first) {
   }
 }
 
-double ContactPatches::force_error(const CompressedCompliance& compressed, std::size_t level,
+double ContactPatches::force_error(const CompressedCompliance<3>& compressed, std::size_t level,
                                    std::size_t number) const {
   const Patch& patch = patches_[number];
   return holding_force_error(patch.compliance, compressed.between(level, patch.rows));
 }
 
-std::vector<ContactPatches::Error> ContactPatches::force_errors(const CompressedCompliance& compressed,
+std::vector<ContactPatches::Error> ContactPatches::force_errors(const CompressedCompliance<3>& compressed,
                                                                 std::size_t level) const {
   std::vector<Error> errors;
   errors.reserve(patches_.size());
@@ -75,7 +75,7 @@ std::vector<ContactPatches::Error> ContactPatches::force_errors(const Compressed
   return errors;
 }
 
-double ContactPatches::worst_force_error(const CompressedCompliance& compressed, std::size_t level) const {
+double ContactPatches::worst_force_error(const CompressedCompliance<3>& compressed, std::size_t level) const {
   return patches_.empty() ? 0 : force_errors(compressed, level).front().force;
 }
 

@@ -29,17 +29,18 @@ class ContactPatches {
   /// Relative error ||f^ - f|| / ||f|| of the nodal forces that hold a patch displaced as a whole along x, y or z (so
   /// pressed and sheared), the worst of the three, with the compliance of `level`; infinite if the compressed patch is
   /// not positive definite. Work: 64 columns.
-  [[nodiscard]] double force_error(const CompressedCompliance& compressed, std::size_t level, std::size_t patch) const;
+  [[nodiscard]] double force_error(const CompressedCompliance<3>& compressed, std::size_t level,
+                                   std::size_t patch) const;
 
   struct Error {
     double force = 0;  ///< force_error
     std::size_t patch = 0;
   };
   /// The errors of all patches, the worst first.
-  [[nodiscard]] std::vector<Error> force_errors(const CompressedCompliance& compressed, std::size_t level) const;
+  [[nodiscard]] std::vector<Error> force_errors(const CompressedCompliance<3>& compressed, std::size_t level) const;
 
   /// The worst over all patches.
-  [[nodiscard]] double worst_force_error(const CompressedCompliance& compressed, std::size_t level) const;
+  [[nodiscard]] double worst_force_error(const CompressedCompliance<3>& compressed, std::size_t level) const;
 
   /// The worst over all patches, with the symmetric part of a compliance whose columns were added to `found`, which has
   /// the same patches.

@@ -15,7 +15,7 @@ namespace {
 struct Case {
   test::Body body = test::make_body(3);
   test::File file{test::model_of(body, layout::Wavelet::lifted_linear, {.threshold = 0.004, .quantum = 0.002})};
-  CompressedCompliance compressed{file.view};
+  CompressedCompliance<3> compressed{file.view};
   std::vector<Eigen::MatrixXd> dense = test::dense_compliances(file.view);  // what the file stands for
 };
 
@@ -119,7 +119,7 @@ TEST_CASE("a patch that is not positive definite has an infinite error") {
   auto model = test::model_of(given().body, layout::Wavelet::lifted_linear, {.threshold = 0.004, .quantum = 0.002});
   for (float& quantum : model.info.quantum) quantum *= 20;
   const test::File file(model);
-  const CompressedCompliance indefinite(file.view);
+  const CompressedCompliance<3> indefinite(file.view);
   const auto patches = patches_of(given().body.compliance, 3, 10);
   CHECK(std::isinf(patches.worst_force_error(indefinite, 3)));
 }

@@ -89,7 +89,7 @@ Quantiles quantiles(std::vector<double> values) {
   return {at(0.5), at(0.95), values.back()};
 }
 
-AnsweredContacts::AnsweredContacts(const ModelView& view, const CompressedCompliance& compressed,
+AnsweredContacts::AnsweredContacts(const ModelView& view, const CompressedCompliance<3>& compressed,
                                    const ExactContacts& exact)
     : view_(view), compressed_(compressed), exact_(exact), place_(view.node_count, layout::none) {
   for (std::uint32_t q = 0; q < view.levels; ++q) {

@@ -45,7 +45,7 @@ struct PatternErrors {
 class AnsweredContacts {
  public:
   /// The referenced objects must outlive this. `exact` has been solved for the domain rows of the same body.
-  AnsweredContacts(const ModelView& view, const CompressedCompliance& compressed, const ExactContacts& exact);
+  AnsweredContacts(const ModelView& view, const CompressedCompliance<3>& compressed, const ExactContacts& exact);
 
   /// The errors of the answers at constraint level `level`, with the details of levels 0 .. `details` in the field, to
   /// one site's samples, in their order. Work: `between` of its contacts and a field each.
@@ -61,7 +61,7 @@ class AnsweredContacts {
                       std::vector<AnswerError>& errors) const;
 
   const ModelView& view_;
-  const CompressedCompliance& compressed_;
+  const CompressedCompliance<3>& compressed_;
   const ExactContacts& exact_;
   std::vector<std::uint32_t> place_;  // by file index: in the domain
   std::vector<double> area_;          // by row: m^2

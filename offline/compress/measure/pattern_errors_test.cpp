@@ -47,7 +47,7 @@ const ExactContacts& exact() {
 struct Model {
   explicit Model(const ModelData& data) : file(data) {}
   test::File file;
-  CompressedCompliance compressed{file.view};
+  CompressedCompliance<3> compressed{file.view};
   AnsweredContacts answered{file.view, compressed, exact()};
 };
 

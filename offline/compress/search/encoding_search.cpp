@@ -14,7 +14,7 @@ namespace {
 constexpr double quantum_per_threshold = 0.5;
 constexpr int bisections = 9;
 
-FieldError column_error(const TrialBench& bench, const CompressedCompliance& compressed) {
+FieldError column_error(const TrialBench& bench, const CompressedCompliance<3>& compressed) {
   FieldError error;
   for (const auto& column : bench.columns) {
     error.add(compressed.column(compressed.finest(), column.row), column.exact.data(), column.area);
@@ -35,7 +35,7 @@ ModelData encoded_model(const TrialBench& bench, const Encoding& encoding) {
 }
 
 Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding,
-                    const ModelFile& model, const CompressedCompliance& compressed) {
+                    const ModelFile& model, const CompressedCompliance<3>& compressed) {
   Trial trial{.encoding = encoding, .bytes = model.bytes.size()};
   trial.blocks = model.view.level[model.view.levels - 1].counts->kept_blocks;
   trial.patch_force = patches.worst_force_error(compressed, compressed.finest());
@@ -48,13 +48,13 @@ Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, cons
 
 Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding) {
   const ModelFile model = encoded_file(encoded_model(bench, encoding));
-  return measure_trial(bench, patches, encoding, model, CompressedCompliance(model.view));
+  return measure_trial(bench, patches, encoding, model, CompressedCompliance<3>(model.view));
 }
 
 std::vector<std::size_t> worst_patches(const TrialBench& bench, const ContactPatches& patches, std::size_t count,
                                        double threshold) {
   const ModelFile model = encoded_file(encoded_model(bench, encoding_at(threshold)));
-  const CompressedCompliance compressed(model.view);
+  const CompressedCompliance<3> compressed(model.view);
   std::vector<std::size_t> worst;
   for (const auto& error : patches.force_errors(compressed, compressed.finest())) {
     if (worst.size() < count) worst.push_back(error.patch);

@@ -52,7 +52,7 @@ using LevelWork = std::function<std::vector<std::uint64_t>(std::span<const std::
 
 /// What trials are made and measured with. The referenced objects must outlive the search.
 struct TrialBench {
-  const WaveletCompliance& compliance;
+  const WaveletCompliance<3>& compliance;
   const ModelData& tables;  ///< the model without scales and couplings
   const std::vector<SampleColumn>& columns;
   Accuracy accuracy;    ///< asked for
@@ -67,7 +67,7 @@ struct TrialBench {
 
 /// What an encoding comes to, by the model that it makes. Work: 64 columns a patch and the sample's columns.
 [[nodiscard]] Trial measure_trial(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding,
-                                  const ModelFile& model, const CompressedCompliance& compressed);
+                                  const ModelFile& model, const CompressedCompliance<3>& compressed);
 
 /// Encodes and measures one trial.
 [[nodiscard]] Trial try_encoding(const TrialBench& bench, const ContactPatches& patches, const Encoding& encoding);

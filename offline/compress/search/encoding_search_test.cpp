@@ -17,7 +17,8 @@ constexpr Accuracy asked{.rms = 0.02, .worst_column = 0.1, .patch_force = 0.2};
 struct Bench {
   test::Body body = test::make_body(2);
   SurfaceWavelet wavelet{body.mesh, body.flags, body.area, layout::Wavelet::lifted_linear};
-  WaveletCompliance compliance = transform_compliance(wavelet, test::columns_of(body.compliance), candidate_floor, {});
+  WaveletCompliance<3> compliance =
+      transform_compliance<3>(wavelet, test::columns_of(body.compliance), candidate_floor, {});
   ModelData tables = test::model_of(body, layout::Wavelet::lifted_linear, {.threshold = 0.1, .quantum = 0.05});
   ExactSample sample{body.mesh, wavelet, body.area};
   Bench() { sample.add(body.compliance, 0); }
@@ -39,7 +40,7 @@ TEST_CASE("a trial says what its file is") {
   const test::File file(test::model_of(bench().body, layout::Wavelet::lifted_linear, encoding));
   CHECK(std::abs(static_cast<double>(trial.bytes) / static_cast<double>(file.bytes.size()) - 1) < 0.02);
   CHECK(trial.step_work == trial.bytes + 7);
-  const CompressedCompliance compressed(file.view);
+  const CompressedCompliance<3> compressed(file.view);
   CHECK(trial.patch_force == doctest::Approx(bench().sample.patches().worst_force_error(compressed, 2)).epsilon(0.05));
   const Eigen::MatrixXd found = test::dense_compliances(file.view).back();
   const double error = (found - bench().body.compliance).norm() / bench().body.compliance.norm();
@@ -78,7 +79,7 @@ TEST_CASE("the worst patches are those with the largest errors") {
   REQUIRE(worst.size() == 5);
   const test::File file(
       test::model_of(bench().body, layout::Wavelet::lifted_linear, {.threshold = 0.005, .quantum = 0.0025}));
-  const CompressedCompliance compressed(file.view);
+  const CompressedCompliance<3> compressed(file.view);
   std::vector<double> errors;
   errors.reserve(patches.size());
   for (std::size_t p = 0; p < patches.size(); ++p) errors.push_back(patches.force_error(compressed, 2, p));

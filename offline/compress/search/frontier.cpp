@@ -12,7 +12,7 @@
 namespace greenloop::offline {
 namespace {
 
-LevelSample sample_level(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet, const WaveletCompliance& exact,
+LevelSample sample_level(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet, const WaveletCompliance<3>& exact,
                          std::size_t level) {
   LevelSample sample{.level = level,
                      .patches = ContactPatches(row_positions(mesh, wavelet, level), LevelSample::most_patches),
@@ -35,7 +35,7 @@ LevelSample sample_level(const SemiRegularMesh& mesh, const SurfaceWavelet& wave
   return sample;
 }
 
-void measure_level(const LevelSample& sample, const CompressedCompliance& compressed, LevelTrial& trial) {
+void measure_level(const LevelSample& sample, const CompressedCompliance<3>& compressed, LevelTrial& trial) {
   FieldError error;
   for (const auto& column : sample.columns) {
     error.add(compressed.column(sample.level, column.row), column.exact.data(), column.area);
@@ -48,7 +48,7 @@ void measure_level(const LevelSample& sample, const CompressedCompliance& compre
 void measure_levels(const TrialBench& bench, const ContactPatches& patches, const std::vector<LevelSample>& samples,
                     Trial& trial) {
   const ModelFile model = encoded_file(encoded_model(bench, trial.encoding));
-  const CompressedCompliance compressed(model.view);
+  const CompressedCompliance<3> compressed(model.view);
   if (trial.bytes == 0) trial = measure_trial(bench, patches, trial.encoding, model, compressed);
   trial.levels = level_costs(model, bench.step_work);
   for (std::size_t i = 0; i < samples.size(); ++i) measure_level(samples[i], compressed, trial.levels[i]);
@@ -73,7 +73,7 @@ std::size_t bytes_up_to(const ModelFile& model, std::uint32_t level) {
 }  // namespace
 
 std::vector<LevelSample> sample_levels(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,
-                                       const WaveletCompliance& exact, std::size_t coarsest) {
+                                       const WaveletCompliance<3>& exact, std::size_t coarsest) {
   std::vector<LevelSample> samples;
   for (std::size_t level = coarsest; level < wavelet.finest(); ++level) {
     samples.push_back(sample_level(mesh, wavelet, exact, level));

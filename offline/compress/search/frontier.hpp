@@ -27,7 +27,7 @@ struct LevelSample {
 /// Samples of the constraint levels from `coarsest` up to, not including, the finest. Work: at most 1088 times
 /// exact_column per level.
 [[nodiscard]] std::vector<LevelSample> sample_levels(const SemiRegularMesh& mesh, const SurfaceWavelet& wavelet,
-                                                     const WaveletCompliance& exact, std::size_t coarsest);
+                                                     const WaveletCompliance<3>& exact, std::size_t coarsest);
 
 /// Bytes, blocks and, unless `work` is empty, work of an encoded model cut off after each constraint level; errors 0.
 /// Encodes nothing.

@@ -17,7 +17,7 @@ constexpr std::size_t coarsest = 1, finest = 2;
 struct Bench {
   test::Body body = test::make_body(2);
   SurfaceWavelet wavelet{body.mesh, body.flags, body.area, layout::Wavelet::lifted_linear};
-  WaveletCompliance compliance = transform_compliance(wavelet, test::columns_of(body.compliance), 0.0005, {});
+  WaveletCompliance<3> compliance = transform_compliance<3>(wavelet, test::columns_of(body.compliance), 0.0005, {});
   ModelData tables = test::model_of(body, layout::Wavelet::lifted_linear, {.threshold = 0.1, .quantum = 0.05});
   ExactSample sample{body.mesh, wavelet, body.area};
   ContactPatches patches{{}, 0};
@@ -133,7 +133,7 @@ TEST_CASE("a level's errors are those of the model cut off after it") {
   ModelView view;
   REQUIRE(verify(cut.span(), view).ok());
   CHECK(point.levels[0].blocks == view.level[coarsest].counts->kept_blocks);
-  const CompressedCompliance compressed(view);
+  const CompressedCompliance<3> compressed(view);
   CHECK(point.levels[0].patch_force == samples[0].patches.worst_force_error(compressed, coarsest));
   const Eigen::MatrixXd exact = test::level_compliances(bench().wavelet, bench().body.compliance)[coarsest];
   const double error = (test::dense_compliances(view).back() - exact).norm() / exact.norm();

@@ -38,7 +38,7 @@ Sites all_sites(const ExactContacts& contacts) {
 }
 
 std::vector<AnswerError> errors_of(const ModelFile& model, const ExactContacts& contacts, const Sites& sites) {
-  const CompressedCompliance compressed(model.view);
+  const CompressedCompliance<3> compressed(model.view);
   const AnsweredContacts answered(model.view, compressed, contacts);
   std::vector<AnswerError> all;
   for (const std::size_t site : sites) {

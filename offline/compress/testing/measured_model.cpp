@@ -23,7 +23,7 @@ MeasuredModel measure_model(const Body& body, layout::Wavelet wavelet) {
                               {}},
                              {});
   const File file(result.built.model);
-  const CompressedCompliance compressed(file.view);
+  const CompressedCompliance<3> compressed(file.view);
   ContactPatches patches(row_positions(body.mesh, compressed.wavelet(), compressed.finest()),
                          ExactSample::most_patches);
   patches.add(body.compliance, 0);

@@ -97,6 +97,54 @@ Eigen::MatrixXd kelvin_matrix(const SemiRegularMesh& mesh, const std::vector<std
   return matrix;
 }
 
+// between the nodes of the finest level (Pinkall & Polthier 1993)
+Eigen::MatrixXd cotangent_laplacian(const SemiRegularMesh& mesh) {
+  const auto count = static_cast<Eigen::Index>(mesh.positions.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(count, count);
+  for (const auto& triangle : triangles_of_level(mesh, mesh.finest_level())) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int apex = triangle[k], a = triangle[(k + 1) % 3], b = triangle[(k + 2) % 3];
+      const auto arm = [&](int node) -> Eigen::Vector3d {
+        return mesh.positions[static_cast<std::size_t>(node)] - mesh.positions[static_cast<std::size_t>(apex)];
+      };
+      const double weight = 0.5 * arm(a).dot(arm(b)) / arm(a).cross(arm(b)).norm();
+      matrix(a, a) += weight;
+      matrix(b, b) += weight;
+      matrix(a, b) -= weight;
+      matrix(b, a) -= weight;
+    }
+  }
+  return matrix;
+}
+
+std::vector<std::size_t> fixed_nodes(const Body& body) {
+  std::vector<std::size_t> fixed;
+  for (std::size_t node = 0; node < body.flags.size(); ++node) {
+    if ((body.flags[node] & layout::node_fixed) != 0) fixed.push_back(node);
+  }
+  return fixed;
+}
+
+// without its compliance
+Body held_blob(int levels) {
+  const auto mesh = blob(levels);
+  std::vector<std::uint32_t> flags;
+  for (const auto& position : mesh.positions) {
+    const bool fixed = position.normalized().y() < -0.6;
+    flags.push_back(fixed ? layout::node_fixed : layout::node_touchable | layout::node_read);
+  }
+  flags = mark_domain(mesh, flags);
+  auto ordered = order_nodes(mesh, flags);
+  Body body;
+  body.flags = ordered.reorder(flags);
+  body.mesh = std::move(ordered.mesh);
+  body.area = nodal_area(body.mesh);
+  for (std::size_t node = 0; node < body.flags.size(); ++node) {
+    if ((body.flags[node] & layout::node_fixed) == 0) body.column_nodes.push_back(node);
+  }
+  return body;
+}
+
 }  // namespace
 
 SemiRegularMesh icosphere(int levels) {
@@ -155,24 +203,10 @@ std::vector<double> nodal_area(const SemiRegularMesh& mesh) {
   return area;
 }
 
-Body make_body(int levels) {
-  const auto mesh = blob(levels);
-  std::vector<std::uint32_t> flags;
-  for (const auto& position : mesh.positions) {
-    const bool fixed = position.normalized().y() < -0.6;
-    flags.push_back(fixed ? layout::node_fixed : layout::node_touchable | layout::node_read);
-  }
-  flags = mark_domain(mesh, flags);
-  auto ordered = order_nodes(mesh, flags);
-  Body body;
-  body.flags = ordered.reorder(flags);
-  body.mesh = std::move(ordered.mesh);
-  body.area = nodal_area(body.mesh);
-
-  std::vector<std::size_t> fixed;
-  for (std::size_t node = 0; node < body.flags.size(); ++node) {
-    ((body.flags[node] & layout::node_fixed) != 0 ? fixed : body.column_nodes).push_back(node);
-  }
+template <>
+Body make_body<3>(int levels) {
+  Body body = held_blob(levels);
+  const auto fixed = fixed_nodes(body);
   double total = 0;
   for (const double area : body.area) total += area;
   const double core = 0.5 * std::sqrt(total / static_cast<double>(body.area.size()));
@@ -180,6 +214,20 @@ Body make_body(int levels) {
   const Eigen::LLT<Eigen::MatrixXd> support(kelvin_matrix(body.mesh, fixed, fixed, core));
   body.compliance = kelvin_matrix(body.mesh, body.column_nodes, body.column_nodes, core) -
                     free_fixed * support.solve(free_fixed.transpose());
+  return body;
+}
+
+template <>
+Body make_body<1>(int levels) {
+  Body body = held_blob(levels);
+  Eigen::MatrixXd conductance = cotangent_laplacian(body.mesh);
+  for (std::size_t node = 0; node < body.area.size(); ++node) {
+    const auto at = static_cast<Eigen::Index>(node);
+    conductance(at, at) += body.area[node] / (screening_length * screening_length);
+  }
+  const Eigen::MatrixXd free = conductance(body.column_nodes, body.column_nodes);
+  const Eigen::MatrixXd inverse = free.llt().solve(Eigen::MatrixXd::Identity(free.rows(), free.cols()));
+  body.compliance = 0.5 * (inverse + inverse.transpose());
   return body;
 }
 

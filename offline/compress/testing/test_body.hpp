@@ -2,11 +2,16 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 
 namespace greenloop::offline::test {
+
+// Numbers of a node, as the types of test cases that hold for both.
+using Scalars = std::integral_constant<unsigned, 1>;
+using Vectors = std::integral_constant<unsigned, 3>;
 
 /// An icosahedron split `levels` times and projected onto the unit sphere.
 [[nodiscard]] SemiRegularMesh icosphere(int levels);
@@ -28,15 +33,20 @@ inline constexpr double torus_tube = 0.5;
 /// A third of the area of the finest triangles around each node [m^2].
 [[nodiscard]] std::vector<double> nodal_area(const SemiRegularMesh& mesh);
 
-/// A lobed body held on its underside, ordered, with a made-up but physical compliance: regularised Kelvin solutions
-/// (de Goes & James 2017, equation 6) with the fixed nodes constrained to zero. Symmetric positive definite.
+/// A lobed body held on its underside, ordered, with a symmetric positive definite compliance of N numbers a node.
 struct Body {
   SemiRegularMesh mesh;
   std::vector<std::uint32_t> flags;
   std::vector<double> area;
   std::vector<std::size_t> column_nodes;  ///< every free node
-  Eigen::MatrixXd compliance;             ///< m/N, 3 per domain node
+  Eigen::MatrixXd compliance;             ///< m/N, N per domain node
 };
+
+/// N = 3: made-up but physical, regularised Kelvin solutions (de Goes & James 2017, equation 6) with the fixed nodes
+/// constrained to zero. N = 1: the inverse of the cotangent Laplacian plus a lumped mass, that is a potential on the
+/// surface that leaks within about `screening_length` and is zero at the fixed nodes; of the order of 1.
+template <unsigned N = 3>
 [[nodiscard]] Body make_body(int levels);
+inline constexpr double screening_length = 1;  // m
 
 }  // namespace greenloop::offline::test

@@ -13,9 +13,10 @@ namespace {
 constexpr std::size_t most_neighbours = 64;
 
 // All couplings, scaled by the roots of the diagonal blocks.
+template <unsigned N>
 class ScaledCouplings {
  public:
-  ScaledCouplings(const std::vector<Eigen::Matrix3d>& diagonal, const std::vector<CouplingCandidates>& levels) {
+  ScaledCouplings(const std::vector<SquareMatrix<N>>& diagonal, const std::vector<CouplingCandidates<N>>& levels) {
     for (std::size_t i = 0; i < diagonal.size(); ++i) scales_.emplace_back(diagonal[i], diagonal[i], i);
     for (const auto& level : levels) {
       for (std::size_t j = 0; j + 1 < level.begin.size(); ++j) columns_.push_back({&level, j});
@@ -23,17 +24,17 @@ class ScaledCouplings {
   }
 
   [[nodiscard]] std::size_t size() const { return scales_.size(); }
-  [[nodiscard]] const Eigen::Matrix3d& root(std::size_t i) const { return scales_[i].root(); }
+  [[nodiscard]] const SquareMatrix<N>& root(std::size_t i) const { return scales_[i].root(); }
 
   /// Zero where there is none.
-  [[nodiscard]] Eigen::Matrix3d block(std::size_t i, std::size_t j) const {
+  [[nodiscard]] SquareMatrix<N> block(std::size_t i, std::size_t j) const {
     if (i > j) return block(j, i).transpose();
     const auto [level, column] = columns_[j];
     const auto rows = level->row.begin();
     const auto begin = rows + static_cast<std::ptrdiff_t>(level->begin[column]);
     const auto end = rows + static_cast<std::ptrdiff_t>(level->begin[column + 1]);
     const auto it = std::lower_bound(begin, end, i);
-    if (it == end || *it != i) return Eigen::Matrix3d::Zero();
+    if (it == end || *it != i) return SquareMatrix<N>::Zero();
     return scaled(i, j, static_cast<std::size_t>(it - rows));
   }
 
@@ -62,57 +63,65 @@ class ScaledCouplings {
 
  private:
   struct Column {
-    const CouplingCandidates* level;
+    const CouplingCandidates<N>* level;
     std::size_t column;
   };
 
-  [[nodiscard]] Eigen::Matrix3d scaled(std::size_t i, std::size_t j, std::size_t b) const {
+  [[nodiscard]] SquareMatrix<N> scaled(std::size_t i, std::size_t j, std::size_t b) const {
     return scales_[i].inverse() *
-           Eigen::Map<const Eigen::Matrix3f>(columns_[j].level->value.data() + 9 * b).cast<double>() *
+           Eigen::Map<const SquareMatrixF<N>>(columns_[j].level->value.data() + N * N * b).template cast<double>() *
            scales_[j].inverse();
   }
 
-  std::vector<CoefficientScale> scales_;
+  std::vector<CoefficientScale<N>> scales_;
   std::vector<Column> columns_;
 };
 
 // scaled; fewer neighbours where what the candidates leave out makes their matrix indefinite
-Eigen::Matrix3d conditional(const ScaledCouplings& couplings, std::size_t own,
+template <unsigned N>
+SquareMatrix<N> conditional(const ScaledCouplings<N>& couplings, std::size_t own,
                             const std::vector<std::size_t>& neighbours) {
+  constexpr Eigen::Index n = N;
   for (std::size_t count = neighbours.size(); count > 0; count /= 2) {
     std::vector<std::size_t> members = {own};
     members.insert(members.end(), neighbours.begin(), neighbours.begin() + static_cast<std::ptrdiff_t>(count));
     const auto size = static_cast<Eigen::Index>(members.size());
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(3 * size, 3 * size);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n * size, n * size);
     for (Eigen::Index a = 0; a < size; ++a) {
       for (Eigen::Index b = 0; b < a; ++b) {
-        const Eigen::Matrix3d block =
+        const SquareMatrix<N> block =
             couplings.block(members[static_cast<std::size_t>(a)], members[static_cast<std::size_t>(b)]);
-        matrix.block<3, 3>(3 * a, 3 * b) = block;
-        matrix.block<3, 3>(3 * b, 3 * a) = block.transpose();
+        matrix.template block<N, N>(n * a, n * b) = block;
+        matrix.template block<N, N>(n * b, n * a) = block.transpose();
       }
     }
     const Eigen::LLT<Eigen::MatrixXd> factor(matrix);
     if (factor.info() != Eigen::Success) continue;
-    const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(3 * size, 3));
-    return inverse.topRows<3>().inverse();
+    const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(n * size, n));
+    return inverse.template topRows<N>().inverse();
   }
-  return Eigen::Matrix3d::Identity();
+  return SquareMatrix<N>::Identity();
 }
 
 }  // namespace
 
-std::vector<Eigen::Matrix3d> conditional_compliance(const std::vector<Eigen::Matrix3d>& diagonal,
-                                                    const std::vector<CouplingCandidates>& couplings) {
-  const ScaledCouplings scaled(diagonal, couplings);
+template <unsigned N>
+std::vector<SquareMatrix<N>> conditional_compliance(const std::vector<SquareMatrix<N>>& diagonal,
+                                                    const std::vector<CouplingCandidates<N>>& couplings) {
+  const ScaledCouplings<N> scaled(diagonal, couplings);
   const auto neighbours = scaled.strongest();
-  std::vector<Eigen::Matrix3d> result;
+  std::vector<SquareMatrix<N>> result;
   result.reserve(scaled.size());
   for (std::size_t i = 0; i < scaled.size(); ++i) {
-    const Eigen::Matrix3d block = conditional(scaled, i, neighbours[i]);
+    const SquareMatrix<N> block = conditional<N>(scaled, i, neighbours[i]);
     result.push_back(scaled.root(i) * (0.5 * (block + block.transpose())) * scaled.root(i));
   }
   return result;
 }
+
+template std::vector<SquareMatrix<1>> conditional_compliance<1>(const std::vector<SquareMatrix<1>>&,
+                                                                const std::vector<CouplingCandidates<1>>&);
+template std::vector<SquareMatrix<3>> conditional_compliance<3>(const std::vector<SquareMatrix<3>>&,
+                                                                const std::vector<CouplingCandidates<3>>&);
 
 }  // namespace greenloop::offline

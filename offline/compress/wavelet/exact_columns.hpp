@@ -6,7 +6,8 @@
 
 namespace greenloop::offline {
 
-/// Reads exact columns [first, first + count) of the compliance, m/N: 3 rows per domain node and 3 columns per column.
+/// Reads exact columns [first, first + count) of the compliance, m/N, between nodes of N numbers each: N rows per
+/// domain node and N columns per column.
 using ExactColumns = std::function<Eigen::MatrixXd(std::size_t first, std::size_t count)>;
 
 }  // namespace greenloop::offline

@@ -44,11 +44,12 @@ void predict(const SurfaceWavelet& wavelet, std::size_t level, double sign, std:
   }
 }
 
+template <unsigned N>
 PredictionsData load_predictions(const LevelView& level) {
   PredictionsData data{.terms = level.predictions.terms, .index = {}, .weight = {}};
   for (std::size_t k = 0; k < std::size_t{data.terms} * level.counts->domain_count; ++k) {
     data.index.push_back(stored_source(level.predictions, k));
-    for (std::uint32_t e = 0; e < 9; ++e) data.weight.push_back(stored_weight<3>(level.predictions, k, e));
+    for (std::uint32_t e = 0; e < N * N; ++e) data.weight.push_back(stored_weight<N>(level.predictions, k, e));
   }
   return data;
 }
@@ -63,8 +64,11 @@ bool all_nodes(const Nodes& nodes, Test test) {
 SurfaceWavelet::SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
                                const std::vector<double>& area, layout::Wavelet kind)
     : kind_(kind), predictions_(mesh.vertex_end.size()) {
-  if (has_blocks()) throw std::invalid_argument("wavelet: equilibrated prediction is given by its weights");
+  if (kind == layout::Wavelet::equilibrated) {
+    throw std::invalid_argument("wavelet: equilibrated prediction is given by its weights");
+  }
   describe(mesh, flags, area);
+  integrate(area);
 }
 
 void SurfaceWavelet::describe(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
@@ -78,21 +82,22 @@ void SurfaceWavelet::describe(const SemiRegularMesh& mesh, const std::vector<std
   number_rows(mesh, flags, area);
   if (layout::is_butterfly(kind_)) find_stencils(mesh, flags);
   find_parents(mesh, flags);
-  integrate(area);
 }
 
 SurfaceWavelet::SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags,
-                               const std::vector<double>& area, std::vector<PredictionsData> predictions)
+                               const std::vector<double>& area, std::vector<PredictionsData> predictions,
+                               std::uint32_t components)
     : kind_(layout::Wavelet::equilibrated), predictions_(std::move(predictions)) {
   describe(mesh, flags, area);
-  decode_predictions();
+  decode_predictions(components);
+  integrate(area);
 }
 
 SurfaceWavelet::SurfaceWavelet(const ModelView& view) : kind_(static_cast<layout::Wavelet>(view.info->wavelet)) {
   row_of_node_.assign(view.node_count, no_row);
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& at = view.level[level];
-    predictions_.push_back(load_predictions(at));
+    predictions_.push_back(view.info->components == 1 ? load_predictions<1>(at) : load_predictions<3>(at));
     if (at.stencils != nullptr) stencils_.insert(stencils_.end(), at.stencils, at.stencils + at.counts->domain_count);
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
       row_of_node_[at.node_begin + i] = static_cast<std::uint32_t>(nodes_.size());
@@ -105,36 +110,61 @@ SurfaceWavelet::SurfaceWavelet(const ModelView& view) : kind_(static_cast<layout
       std::copy_n(lift, 2, odds_.back().lift);
     }
   }
-  if (has_blocks()) decode_predictions();
+  if (kind_ == layout::Wavelet::equilibrated) decode_predictions(view.info->components);
 }
 
-void SurfaceWavelet::decode_predictions() {
+void SurfaceWavelet::decode_predictions(std::uint32_t components) {
   if (predictions_.size() != row_end_.size()) {
     throw std::invalid_argument("wavelet: predictions of " + std::to_string(predictions_.size()) + " levels for " +
                                 std::to_string(row_end_.size()));
   }
-  block_begin_ = {0};
+  if (components != 1) block_begin_ = {0};
   for (std::size_t level = 1; level <= finest(); ++level) {
-    const PredictionsData& data = predictions_[level];
-    const std::size_t terms = data.terms, nodes = row_end_[level] - row_end_[level - 1];
-    if (data.index.size() != terms * nodes || data.weight.size() != 9 * terms * nodes) {
-      throw std::invalid_argument("wavelet: predictions of level " + std::to_string(level) + " are not of its " +
-                                  std::to_string(nodes) + " domain nodes");
+    require_fit(level, std::size_t{components} * components);
+    has_blocks() ? decode_blocks(level) : decode_numbers(level);
+  }
+}
+
+// weights: numbers of one
+void SurfaceWavelet::require_fit(std::size_t level, std::size_t weights) const {
+  const PredictionsData& data = predictions_[level];
+  const std::size_t nodes = row_end_[level] - row_end_[level - 1], terms = data.terms * nodes;
+  if (data.terms > layout::most_prediction_terms || data.index.size() != terms ||
+      data.weight.size() != weights * terms) {
+    throw std::invalid_argument("wavelet: predictions of level " + std::to_string(level) + " are not of its " +
+                                std::to_string(nodes) + " domain nodes");
+  }
+  for (const std::uint32_t row : data.index) {
+    if (row >= row_end_[level - 1]) {
+      throw std::invalid_argument("wavelet: row " + std::to_string(row) + " predicts one of level " +
+                                  std::to_string(level) + " but is not of a coarser one");
     }
-    for (std::size_t k = 0; k < terms * nodes; ++k) {
-      BlockTerm term{.row = data.index[k], .weight = {}};
-      if (term.row >= row_end_[level - 1]) {
-        throw std::invalid_argument("wavelet: row " + std::to_string(term.row) + " predicts one of level " +
-                                    std::to_string(level) + " but is not of a coarser one");
-      }
-      for (Eigen::Index e = 0; e < 9; ++e) {
-        const std::int16_t weight = data.weight[9 * k + static_cast<std::size_t>(e)];
-        term.weight(e % 3, e / 3) = double{layout::prediction_unit} * weight;
-      }
-      block_terms_.push_back(term);
-      if ((k + 1) % terms == 0) block_begin_.push_back(block_terms_.size());
+  }
+}
+
+void SurfaceWavelet::decode_numbers(std::size_t level) {
+  const PredictionsData& data = predictions_[level];
+  for (std::size_t r = row_end_[level - 1], k = 0; r < row_end_[level]; ++r) {
+    auto& odd = odds_[r - row_end_[0]];
+    odd.terms = data.terms;
+    for (std::uint32_t t = 0; t < data.terms; ++t, ++k) {
+      odd.term[t] = {.row = data.index[k], .weight = double{layout::prediction_unit} * data.weight[k]};
     }
-    if (terms == 0) block_begin_.resize(block_begin_.size() + nodes, block_terms_.size());
+  }
+}
+
+void SurfaceWavelet::decode_blocks(std::size_t level) {
+  const PredictionsData& data = predictions_[level];
+  for (std::size_t k = 0; k < data.index.size(); ++k) {
+    BlockTerm term{.row = data.index[k], .weight = {}};
+    for (Eigen::Index e = 0; e < 9; ++e) {
+      const std::int16_t weight = data.weight[9 * k + static_cast<std::size_t>(e)];
+      term.weight(e % 3, e / 3) = double{layout::prediction_unit} * weight;
+    }
+    block_terms_.push_back(term);
+  }
+  for (std::size_t r = row_end_[level - 1]; r < row_end_[level]; ++r) {
+    block_begin_.push_back(block_begin_.back() + data.terms);
   }
 }
 

@@ -15,9 +15,10 @@ namespace greenloop::offline {
 
 /// The wavelet transforms on the domain nodes of a semi-regular surface (James & Pai 2003, section 4.3; Schröder &
 /// Sweldens 1995; docs/theory.md section 3): Linear or Butterfly prediction, then, if lifted, one step that gives each
-/// wavelet zero mean; or Equilibrated prediction with 3x3 weights (docs/fields.md). Rows are the domain nodes in node
-/// order, so that K(l) is the first row_end(l) rows. Nodal arrays hold `width` numbers per row; the steps mix rows
-/// only, and with 3x3 weights the three numbers of a vector, so that `width` is then a multiple of 3. Offline only.
+/// wavelet zero mean; or Equilibrated prediction (docs/fields.md), whose weights are 3x3 between vectors and numbers
+/// between scalars. Rows are the domain nodes in node order, so that K(l) is the first row_end(l) rows. Nodal arrays
+/// hold `width` numbers per row; the steps mix rows only, and with 3x3 weights the three numbers of a vector, so that
+/// `width` is then a multiple of 3. Offline only.
 class SurfaceWavelet {
  public:
   static constexpr std::uint32_t no_row = layout::none;
@@ -36,13 +37,14 @@ class SurfaceWavelet {
 
   /// One odd node: its row, its parents' rows (no_row: outside the domain, where values are 0), its lifting weights
   /// towards them (0 towards no_row, and everywhere if unlifted), and what predicts it with numbers as weights: the
-  /// parents first. Equilibrated: that is what integrals follow from; block_prediction() predicts.
+  /// parents first, unless it is Equilibrated. If has_blocks, that is what integrals follow from: half of each parent;
+  /// block_prediction() predicts.
   struct Odd {
     std::uint32_t row = 0;
     std::uint32_t parent[2] = {};
     float lift[2] = {};
     std::uint32_t terms = 0;
-    std::array<Term, 8> term{};
+    std::array<Term, layout::most_prediction_terms> term{};
 
     [[nodiscard]] std::span<const Term> prediction() const { return std::span(term).first(terms); }
   };
@@ -56,10 +58,11 @@ class SurfaceWavelet {
   SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, const std::vector<double>& area,
                  layout::Wavelet kind);
 
-  /// Of Equilibrated wavelets; predictions: of each level, none of level 0, as equilibrated_predictions makes them.
-  /// Throws as above, and std::invalid_argument if they are not of the mesh's levels and nodes.
+  /// Of Equilibrated wavelets of fields with 1 or 3 `components` a node; predictions: of each level, none of level 0,
+  /// as equilibrated_predictions makes them. Throws as above, and std::invalid_argument if they are not of the mesh's
+  /// levels and nodes and of so many components.
   SurfaceWavelet(const SemiRegularMesh& mesh, const std::vector<std::uint32_t>& flags, const std::vector<double>& area,
-                 std::vector<PredictionsData> predictions);
+                 std::vector<PredictionsData> predictions, std::uint32_t components);
 
   /// The transform of a verified model. Integrals are not stored there: `integrals` may not be called.
   explicit SurfaceWavelet(const ModelView& view);
@@ -74,11 +77,11 @@ class SurfaceWavelet {
   /// The stencils of M(level) by row, of nodes; empty if prediction is Linear.
   [[nodiscard]] std::span<const layout::StencilRecord> stencils(std::size_t level) const;
 
-  /// The predictions of M(level) as they are stored; none if weights are numbers.
+  /// The predictions of M(level) as they are stored; none unless Equilibrated.
   [[nodiscard]] const PredictionsData& predictions(std::size_t level) const { return predictions_[level]; }
 
   /// Whether weights are 3x3.
-  [[nodiscard]] bool has_blocks() const { return kind_ == layout::Wavelet::equilibrated; }
+  [[nodiscard]] bool has_blocks() const { return !block_begin_.empty(); }
 
   /// What predicts an odd node if has_blocks, else nothing.
   [[nodiscard]] std::span<const BlockTerm> block_prediction(const Odd& odd) const;
@@ -87,7 +90,8 @@ class SurfaceWavelet {
   [[nodiscard]] const std::vector<double>& integrals(std::size_t level) const { return integrals_[level]; }
 
   /// One forward step T_l in place on the rows of K(level): values to averages on K(level-1) and details on M(level).
-  /// Work: 4 (Linear), 10 (Butterfly) or 18 (Equilibrated) * width multiply-adds per odd row, as in the two below.
+  /// Work: 4 (Linear), 10 (Butterfly), 6 or, with 3x3 weights, 18 (Equilibrated) * width multiply-adds per odd row, as
+  /// in the two below.
   void split(std::size_t level, std::size_t width, double* x) const;
 
   /// T_l^-1: averages and details to values.
@@ -105,7 +109,10 @@ class SurfaceWavelet {
   [[nodiscard]] Odd make_odd(std::size_t row, std::size_t a, std::size_t b) const;
   void integrate(const std::vector<double>& area);
   void lift_level(std::size_t level, const std::vector<double>& integral);
-  void decode_predictions();
+  void decode_predictions(std::uint32_t components);
+  void require_fit(std::size_t level, std::size_t weights) const;
+  void decode_numbers(std::size_t level);
+  void decode_blocks(std::size_t level);
 
   layout::Wavelet kind_;
   std::vector<std::size_t> nodes_;
@@ -114,7 +121,7 @@ class SurfaceWavelet {
   std::vector<layout::StencilRecord> stencils_;  // of the rows above level 0
   std::vector<PredictionsData> predictions_;     // by level
   std::vector<BlockTerm> block_terms_;           // of the odd nodes, one after the other
-  std::vector<std::size_t> block_begin_;         // [odd nodes + 1]; empty if weights are numbers
+  std::vector<std::size_t> block_begin_;         // [odd nodes + 1]; empty unless has_blocks
   std::vector<Odd> odds_;
   std::vector<std::vector<double>> integrals_;
 };

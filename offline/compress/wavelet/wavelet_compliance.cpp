@@ -12,32 +12,34 @@
 namespace greenloop::offline {
 namespace {
 
-constexpr std::size_t width = 9;
-constexpr std::size_t stream_columns = 64;  // columns read at a time
+template <unsigned N>
+constexpr std::size_t width = std::size_t{N} * N;  // numbers of a block
+constexpr std::size_t stream_columns = 64;         // columns read at a time
 
 using Values = std::vector<double>;
 
 // hands the exact columns over one by one, in order
+template <unsigned N>
 class ColumnReader {
  public:
   ColumnReader(const ExactColumns& source, std::size_t count) : source_(&source), count_(count) {}
 
-  // rows x 9
+  // rows x N N
   void next(Values& x) {
     if (at_ == first_ + held_) {
       first_ = at_;
       held_ = std::min(stream_columns, count_ - at_);
       block_ = (*source_)(first_, held_);
-      if (block_.rows() != static_cast<Eigen::Index>(3 * count_) || !block_.allFinite()) {
+      if (block_.rows() != block_begin<N>(count_) || !block_.allFinite()) {
         throw std::invalid_argument("compression: exact columns " + std::to_string(first_) + " to " +
-                                    std::to_string(first_ + held_ - 1) + " are not " + std::to_string(3 * count_) +
+                                    std::to_string(first_ + held_ - 1) + " are not " + std::to_string(N * count_) +
                                     " finite numbers each");
       }
     }
-    x.resize(width * count_);
-    const auto column = static_cast<Eigen::Index>(3 * (at_ - first_));
+    x.resize(width<N> * count_);
+    const auto column = block_begin<N>(at_ - first_);
     for (std::size_t i = 0; i < count_; ++i) {
-      Eigen::Map<Eigen::Matrix3d>(x.data() + width * i) = block_.block<3, 3>(static_cast<Eigen::Index>(3 * i), column);
+      Eigen::Map<SquareMatrix<N>>(x.data() + width<N> * i) = block_.block<N, N>(block_begin<N>(i), column);
     }
     ++at_;
   }
@@ -48,11 +50,15 @@ class ColumnReader {
   Eigen::MatrixXd block_;
 };
 
-Eigen::Matrix3d block_of(const double* x, std::size_t row) {
-  return Eigen::Map<const Eigen::Matrix3d>(x + width * row);
+template <unsigned N>
+SquareMatrix<N> block_of(const double* x, std::size_t row) {
+  return Eigen::Map<const SquareMatrix<N>>(x + width<N> * row);
 }
 
-Eigen::Matrix3d symmetric(const Eigen::Matrix3d& block) { return 0.5 * (block + block.transpose()); }
+template <unsigned N>
+SquareMatrix<N> symmetric(const SquareMatrix<N>& block) {
+  return 0.5 * (block + block.transpose());
+}
 
 // x -= the prediction from the columns of even rows
 template <class Column>
@@ -62,7 +68,7 @@ void predict(const SurfaceWavelet& wavelet, const SurfaceWavelet::Odd& odd, std:
     for (const auto& [row, weight] : wavelet.block_prediction(odd)) {
       const float* from = column(row);
       const Eigen::Matrix3d right = weight.transpose();
-      for (std::size_t k = 0; k < count; k += width) {
+      for (std::size_t k = 0; k < count; k += width<3>) {
         Eigen::Map<Eigen::Matrix3d>(x + k) -= Eigen::Map<const Eigen::Matrix3f>(from + k).cast<double>() * right;
       }
     }
@@ -75,18 +81,20 @@ void predict(const SurfaceWavelet& wavelet, const SurfaceWavelet::Odd& odd, std:
 }
 
 // the columns of the parents += their shares of the detail's
-void lift(const SurfaceWavelet::Odd& odd, const double* detail, BlockMatrix& columns) {
+template <unsigned N>
+void lift(const SurfaceWavelet::Odd& odd, const double* detail, BlockMatrix<N>& columns) {
   for (int side = 0; side < 2; ++side) {
     if (odd.lift[side] == 0) continue;
     float* to = columns.column(odd.parent[side]);
     const auto weight = static_cast<double>(odd.lift[side]);
-    for (std::size_t k = 0; k < width * columns.rows(); ++k) to[k] += static_cast<float>(weight * detail[k]);
+    for (std::size_t k = 0; k < width<N> * columns.rows(); ++k) to[k] += static_cast<float>(weight * detail[k]);
   }
 }
 
 // V W^T in place, of levels `finest` and coarser
-void transform_columns(const SurfaceWavelet& wavelet, std::size_t finest, BlockMatrix& matrix) {
-  Values detail(width * matrix.rows());
+template <unsigned N>
+void transform_columns(const SurfaceWavelet& wavelet, std::size_t finest, BlockMatrix<N>& matrix) {
+  Values detail(width<N> * matrix.rows());
   for (std::size_t level = finest; level > 0; --level) {
     // predict all before any is lifted
     for (const auto& odd : wavelet.odds(level)) {
@@ -104,13 +112,15 @@ void transform_columns(const SurfaceWavelet& wavelet, std::size_t finest, BlockM
 }
 
 // the reciprocal of the least root of a diagonal block that is only known roughly
-double rough_inverse_root(const Eigen::Matrix3d& block) {
-  const Eigen::Vector3d values =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(symmetric(block), Eigen::EigenvaluesOnly).eigenvalues();
-  const double least = std::max(values.minCoeff(), 0.05 * values.cwiseAbs().sum() / 3);
+template <unsigned N>
+double rough_inverse_root(const SquareMatrix<N>& block) {
+  const Eigen::Matrix<double, N, 1> values =
+      Eigen::SelfAdjointEigenSolver<SquareMatrix<N>>(symmetric<N>(block), Eigen::EigenvaluesOnly).eigenvalues();
+  const double least = std::max(values.minCoeff(), 0.05 * values.cwiseAbs().sum() / N);
   return least > 0 ? 1 / std::sqrt(least) : 0;
 }
 
+template <unsigned N>
 class Transform {
  public:
   Transform(const SurfaceWavelet& wavelet, double floor)
@@ -118,13 +128,13 @@ class Transform {
     result_.couplings.resize(wavelet.finest() + 1);
   }
 
-  [[nodiscard]] WaveletCompliance run(const ExactColumns& columns, const Progress& progress) {
+  [[nodiscard]] WaveletCompliance<N> run(const ExactColumns& columns, const Progress& progress) {
     const std::size_t finest = wavelet_->finest(), evens = finest > 0 ? wavelet_->row_end(finest - 1) : rows_;
-    ColumnReader reader(columns, rows_);
+    ColumnReader<N> reader(columns, rows_);
     Values x;
     for (std::size_t j = 0; j < rows_; ++j) {
       reader.next(x);
-      for (std::size_t level = finest; level > 0; --level) wavelet_->split(level, width, x.data());
+      for (std::size_t level = finest; level > 0; --level) wavelet_->split(level, width<N>, x.data());
       if (j < evens) even_columns_.emplace_back(x.begin(), x.end());
       if (j + 1 == evens) guess_scales(evens);
       if (j >= evens) add_finest_detail(wavelet_->odds(finest)[j - evens], x);
@@ -141,7 +151,7 @@ class Transform {
  private:
   void copy_evens(std::size_t evens) {
     for (std::size_t j = 0; j < evens; ++j) {
-      std::copy_n(even_columns_[j].begin(), width * evens, result_.coarse.column(j));
+      std::copy_n(even_columns_[j].begin(), width<N> * evens, result_.coarse.column(j));
     }
   }
 
@@ -149,11 +159,11 @@ class Transform {
   // alone say enough to leave out what is far below the floor.
   void guess_scales(std::size_t evens) {
     const std::size_t finest = wavelet_->finest();
-    result_.coarse = BlockMatrix(evens);
+    result_.coarse = BlockMatrix<N>(evens);
     copy_evens(evens);
     if (finest == 0) return;
     transform_columns(*wavelet_, finest - 1, result_.coarse);
-    for (std::size_t i = 0; i < evens; ++i) inverse_root_[i] = rough_inverse_root(result_.coarse.block(i, i));
+    for (std::size_t i = 0; i < evens; ++i) inverse_root_[i] = rough_inverse_root<N>(result_.coarse.block(i, i));
     copy_evens(evens);  // what details are lifted into
   }
 
@@ -161,7 +171,7 @@ class Transform {
     predict(
         *wavelet_, odd, x.size(), [&](std::uint32_t row) { return even_columns_[row].data(); }, x.data());
     lift(odd, x.data(), result_.coarse);
-    add_column(wavelet_->finest(), odd.row, [&](std::size_t i) { return block_of(x.data(), i); });
+    add_column(wavelet_->finest(), odd.row, [&](std::size_t i) { return block_of<N>(x.data(), i); });
   }
 
   void add_coarse_columns(std::size_t evens) {
@@ -178,32 +188,32 @@ class Transform {
   // not scaled yet
   template <class Block>
   void add_column(std::size_t level, std::size_t j, Block block) {
-    diagonal_[j] = symmetric(block(j));
-    inverse_root_[j] = rough_inverse_root(diagonal_[j]);
-    CouplingCandidates& kept = result_.couplings[level];
+    diagonal_[j] = symmetric<N>(block(j));
+    inverse_root_[j] = rough_inverse_root<N>(diagonal_[j]);
+    CouplingCandidates<N>& kept = result_.couplings[level];
     for (std::size_t i = 0; i < j; ++i) {
-      const Eigen::Matrix3d value = block(i);
+      const SquareMatrix<N> value = block(i);
       const double norm = value.norm() * inverse_root_[i] * inverse_root_[j];
       if (norm < floor_) continue;
       kept.row.push_back(static_cast<std::uint32_t>(i));
-      for (int k = 0; k < 9; ++k) kept.value.push_back(static_cast<float>(value.data()[k]));
+      for (std::size_t k = 0; k < width<N>; ++k) kept.value.push_back(static_cast<float>(value.data()[k]));
     }
     kept.begin.push_back(kept.row.size());
   }
 
   // by conditional compliances
   void scale() {
-    const auto conditional = conditional_compliance(diagonal_, result_.couplings);
+    const auto conditional = conditional_compliance<N>(diagonal_, result_.couplings);
     for (std::size_t i = 0; i < rows_; ++i) result_.scales.emplace_back(diagonal_[i], conditional[i], i);
     std::size_t column = 0;
-    for (CouplingCandidates& couplings : result_.couplings) {
+    for (CouplingCandidates<N>& couplings : result_.couplings) {
       for (std::size_t j = 0; j + 1 < couplings.begin.size(); ++j, ++column) {
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-          Eigen::Map<Eigen::Matrix3f> block(couplings.value.data() + width * b);
-          const Eigen::Matrix3d scaled =
-              result_.scales[couplings.row[b]].inverse() * block.cast<double>() * result_.scales[column].inverse();
-          block = scaled.cast<float>();
-          couplings.norm.push_back(static_cast<float>(scaled.norm() / std::sqrt(3.0)));
+          Eigen::Map<SquareMatrixF<N>> block(couplings.value.data() + width<N> * b);
+          const SquareMatrix<N> scaled = result_.scales[couplings.row[b]].inverse() * block.template cast<double>() *
+                                         result_.scales[column].inverse();
+          block = scaled.template cast<float>();
+          couplings.norm.push_back(static_cast<float>(scaled.norm() / std::sqrt(double{N})));
         }
       }
     }
@@ -213,33 +223,44 @@ class Transform {
   double floor_;
   std::size_t rows_;
   std::vector<std::vector<float>> even_columns_;  // transformed by rows, not by columns
-  std::vector<Eigen::Matrix3d> diagonal_;
+  std::vector<SquareMatrix<N>> diagonal_;
   std::vector<double> inverse_root_;  // of the diagonal, the largest; a guess until the column is there
-  WaveletCompliance result_;
+  WaveletCompliance<N> result_;
 };
 
 }  // namespace
 
-WaveletCompliance transform_compliance(const SurfaceWavelet& wavelet, const ExactColumns& columns, double floor,
-                                       const Progress& progress) {
-  return Transform(wavelet, floor).run(columns, progress);
+template <unsigned N>
+WaveletCompliance<N> transform_compliance(const SurfaceWavelet& wavelet, const ExactColumns& columns, double floor,
+                                          const Progress& progress) {
+  if (N != 3 && wavelet.has_blocks()) {
+    throw std::invalid_argument("compression: 3x3 weights do not predict " + std::to_string(N) + " number a node");
+  }
+  return Transform<N>(wavelet, floor).run(columns, progress);
 }
 
-std::vector<double> exact_column(const SurfaceWavelet& wavelet, const WaveletCompliance& compliance, std::size_t level,
-                                 std::size_t j) {
-  const std::size_t size = width * wavelet.row_end(level);
+template <unsigned N>
+std::vector<double> exact_column(const SurfaceWavelet& wavelet, const WaveletCompliance<N>& compliance,
+                                 std::size_t level, std::size_t j) {
+  const std::size_t size = width<N> * wavelet.row_end(level);
   Values f(size, 0.0), x(size, 0.0);
-  for (std::size_t c = 0; c < 3; ++c) f[width * j + 4 * c] = 1;
-  for (std::size_t l = level; l > 0; --l) wavelet.split_forces(l, width, f.data());
+  for (std::size_t c = 0; c < N; ++c) f[width<N> * j + (N + 1) * c] = 1;
+  for (std::size_t l = level; l > 0; --l) wavelet.split_forces(l, width<N>, f.data());
   for (std::size_t i = 0; i < wavelet.row_end(level); ++i) {
-    const Eigen::Matrix3d force = block_of(f.data(), i);
+    const SquareMatrix<N> force = block_of<N>(f.data(), i);
     if (force.isZero(0)) continue;
     for (std::size_t row = 0; row < wavelet.row_end(level); ++row) {
-      Eigen::Map<Eigen::Matrix3d>(x.data() + width * row) += compliance.coarse.block(row, i) * force;
+      Eigen::Map<SquareMatrix<N>>(x.data() + width<N> * row) += compliance.coarse.block(row, i) * force;
     }
   }
-  for (std::size_t l = 1; l <= level; ++l) wavelet.merge(l, width, x.data());
+  for (std::size_t l = 1; l <= level; ++l) wavelet.merge(l, width<N>, x.data());
   return x;
 }
+
+template WaveletCompliance<1> transform_compliance(const SurfaceWavelet&, const ExactColumns&, double, const Progress&);
+template WaveletCompliance<3> transform_compliance(const SurfaceWavelet&, const ExactColumns&, double, const Progress&);
+
+template std::vector<double> exact_column(const SurfaceWavelet&, const WaveletCompliance<1>&, std::size_t, std::size_t);
+template std::vector<double> exact_column(const SurfaceWavelet&, const WaveletCompliance<3>&, std::size_t, std::size_t);
 
 }  // namespace greenloop::offline

@@ -14,26 +14,34 @@
 namespace greenloop::offline {
 namespace {
 
+using test::Scalars;
+using test::Vectors;
+
+template <unsigned N>
 const test::Body& body() {
-  static const test::Body value = test::make_body(3);
+  static const test::Body value = test::make_body<N>(3);
   return value;
 }
 
+template <unsigned N>
 SurfaceWavelet wavelet_of(const test::Body& b, layout::Wavelet kind) {
-  return make_wavelet(b.mesh, b.flags, b.area, kind, test::columns_of(b.compliance));
+  return make_wavelet<N>(b.mesh, b.flags, b.area, kind, test::columns_of<N>(b.compliance));
 }
 
-WaveletCompliance transformed(layout::Wavelet kind, double floor) {
-  return transform_compliance(wavelet_of(body(), kind), test::columns_of(body().compliance), floor, {});
+template <unsigned N>
+WaveletCompliance<N> transformed(layout::Wavelet kind, double floor) {
+  const test::Body& own = body<N>();
+  return transform_compliance<N>(wavelet_of<N>(own, kind), test::columns_of<N>(own.compliance), floor, {});
 }
 
-Eigen::Matrix3d block(const Eigen::MatrixXd& matrix, std::size_t i, std::size_t j) {
-  return matrix.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j));
+template <unsigned N>
+SquareMatrix<N> block(const Eigen::MatrixXd& matrix, std::size_t i, std::size_t j) {
+  return matrix.block<N, N>(block_begin<N>(i), block_begin<N>(j));
 }
 
 // calls visit(row, column, place among the level's candidates, the level's candidates)
-template <class Visit>
-void visit_candidates(const WaveletCompliance& compliance, Visit visit) {
+template <unsigned N, class Visit>
+void visit_candidates(const WaveletCompliance<N>& compliance, Visit visit) {
   std::size_t column = 0;
   for (const auto& level : compliance.couplings) {
     for (std::size_t j = 0; j + 1 < level.begin.size(); ++j, ++column) {
@@ -43,60 +51,63 @@ void visit_candidates(const WaveletCompliance& compliance, Visit visit) {
 }
 
 // with the scales taken out again, m/N
-Eigen::MatrixXd unscaled(const WaveletCompliance& compliance) {
-  const auto size = static_cast<Eigen::Index>(3 * compliance.scales.size());
+template <unsigned N>
+Eigen::MatrixXd unscaled(const WaveletCompliance<N>& compliance) {
+  const Eigen::Index size = block_begin<N>(compliance.scales.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
   for (std::size_t i = 0; i < compliance.scales.size(); ++i) {
     const auto& scale = compliance.scales[i];
-    const auto place = static_cast<Eigen::Index>(3 * i);
-    matrix.block<3, 3>(place, place) = scale.root() * scale.diagonal() * scale.root();
+    matrix.block<N, N>(block_begin<N>(i), block_begin<N>(i)) = scale.root() * scale.diagonal() * scale.root();
   }
-  visit_candidates(compliance, [&](std::size_t i, std::size_t j, std::size_t b, const CouplingCandidates& level) {
-    const Eigen::Matrix3d value = Eigen::Map<const Eigen::Matrix3f>(level.value.data() + 9 * b).cast<double>();
-    CHECK(static_cast<double>(level.norm[b]) == doctest::Approx(value.norm() / std::sqrt(3.0)).epsilon(1e-5));
-    const Eigen::Matrix3d coupling = compliance.scales[i].root() * value * compliance.scales[j].root();
-    matrix.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j)) = coupling;
-    matrix.block<3, 3>(static_cast<Eigen::Index>(3 * j), static_cast<Eigen::Index>(3 * i)) = coupling.transpose();
+  visit_candidates(compliance, [&](std::size_t i, std::size_t j, std::size_t b, const CouplingCandidates<N>& level) {
+    const SquareMatrix<N> value =
+        Eigen::Map<const SquareMatrixF<N>>(level.value.data() + N * N * b).template cast<double>();
+    CHECK(static_cast<double>(level.norm[b]) == doctest::Approx(value.norm() / std::sqrt(double{N})).epsilon(1e-5));
+    const SquareMatrix<N> coupling = compliance.scales[i].root() * value * compliance.scales[j].root();
+    matrix.block<N, N>(block_begin<N>(i), block_begin<N>(j)) = coupling;
+    matrix.block<N, N>(block_begin<N>(j), block_begin<N>(i)) = coupling.transpose();
   });
   return matrix;
 }
 
-TEST_CASE("with nothing left out it is W U W^T") {
+TEST_CASE_TEMPLATE("with nothing left out it is W U W^T", T, Scalars, Vectors) {
+  constexpr unsigned N = T::value;
   for (const layout::Wavelet kind : layout::wavelets) {
     CAPTURE(kind);
-    const auto wavelet = wavelet_of(body(), kind);
-    const auto step = test::forward_transform(wavelet, 3);
-    const Eigen::MatrixXd exact = step * body().compliance * step.transpose();
-    const auto found = transformed(kind, 0.0);
+    const auto wavelet = wavelet_of<N>(body<N>(), kind);
+    const auto step = test::forward_transform<N>(wavelet, 3);
+    const Eigen::MatrixXd exact = step * body<N>().compliance * step.transpose();
+    const auto found = transformed<N>(kind, 0.0);
     REQUIRE(found.couplings.size() == 4);
     REQUIRE(found.scales.size() == wavelet.rows());
-    const double tolerance = 2e-6 * body().compliance.cwiseAbs().maxCoeff();  // columns are held in single precision
+    const double tolerance = 2e-6 * body<N>().compliance.cwiseAbs().maxCoeff();  // columns are held in single precision
     CHECK((unscaled(found) - exact).cwiseAbs().maxCoeff() < tolerance);
     REQUIRE(found.coarse.rows() == wavelet.row_end(2));
     double worst = 0;
     for (std::size_t j = 0; j < found.coarse.rows(); ++j) {
       for (std::size_t i = 0; i < found.coarse.rows(); ++i) {
-        worst = std::max(worst, (found.coarse.block(i, j) - block(exact, i, j)).cwiseAbs().maxCoeff());
+        worst = std::max(worst, (found.coarse.block(i, j) - block<N>(exact, i, j)).cwiseAbs().maxCoeff());
       }
     }
     CHECK(worst < tolerance);
   }
 }
 
-TEST_CASE("exact columns of coarse levels") {
+TEST_CASE_TEMPLATE("exact columns of coarse levels", T, Scalars, Vectors) {
+  constexpr unsigned N = T::value;
   for (const layout::Wavelet kind : layout::wavelets) {
-    const auto wavelet = wavelet_of(body(), kind);
-    const auto exact = test::level_compliances(wavelet, body().compliance);
-    const auto found = transformed(kind, 0.1);
+    const auto wavelet = wavelet_of<N>(body<N>(), kind);
+    const auto exact = test::level_compliances<N>(wavelet, body<N>().compliance);
+    const auto found = transformed<N>(kind, 0.1);
     for (std::size_t level = 0; level < 3; ++level) {
       CAPTURE(level);
       double worst = 0;
       for (std::size_t j = 0; j < wavelet.row_end(level); j += 7) {
         const auto column = exact_column(wavelet, found, level, j);
-        REQUIRE(column.size() == 9 * wavelet.row_end(level));
+        REQUIRE(column.size() == N * N * wavelet.row_end(level));
         for (std::size_t i = 0; i < wavelet.row_end(level); ++i) {
-          const Eigen::Map<const Eigen::Matrix3d> value(column.data() + 9 * i);
-          worst = std::max(worst, (value - block(exact[level], i, j)).cwiseAbs().maxCoeff());
+          const Eigen::Map<const SquareMatrix<N>> value(column.data() + N * N * i);
+          worst = std::max(worst, (value - block<N>(exact[level], i, j)).cwiseAbs().maxCoeff());
         }
       }
       CHECK(worst < 2e-6 * exact[level].cwiseAbs().maxCoeff());
@@ -104,14 +115,16 @@ TEST_CASE("exact columns of coarse levels") {
   }
 }
 
-TEST_CASE("scales lie between the diagonal block and what is left when all others are held") {
-  const auto step = test::forward_transform(wavelet_of(body(), layout::Wavelet::lifted_linear), 3);
-  const Eigen::MatrixXd exact = step * body().compliance * step.transpose(), inverse = exact.inverse();
-  const auto found = transformed(layout::Wavelet::lifted_linear, 1e-4);
+TEST_CASE_TEMPLATE("scales lie between the diagonal block and what is left when all others are held", T, Scalars,
+                   Vectors) {
+  constexpr unsigned N = T::value;
+  const auto step = test::forward_transform<N>(wavelet_of<N>(body<N>(), layout::Wavelet::lifted_linear), 3);
+  const Eigen::MatrixXd exact = step * body<N>().compliance * step.transpose(), inverse = exact.inverse();
+  const auto found = transformed<N>(layout::Wavelet::lifted_linear, 1e-4);
   double closest = 1;
   for (std::size_t i = 0; i < found.scales.size(); ++i) {
     const double conditional = (found.scales[i].root() * found.scales[i].root()).trace();
-    const double least = block(inverse, i, i).inverse().trace(), most = block(exact, i, i).trace();
+    const double least = block<N>(inverse, i, i).inverse().trace(), most = block<N>(exact, i, i).trace();
     CHECK(conditional > 0.99 * least);
     CHECK(conditional < 1.0001 * most);
     closest = std::min(closest, least / conditional);
@@ -119,9 +132,10 @@ TEST_CASE("scales lie between the diagonal block and what is left when all other
   CHECK(closest > 0.7);
 }
 
-TEST_CASE("a floor leaves out couplings, and only small ones") {
-  const auto all = transformed(layout::Wavelet::lifted_linear, 0.0),
-             some = transformed(layout::Wavelet::lifted_linear, 0.02);
+TEST_CASE_TEMPLATE("a floor leaves out couplings, and only small ones", T, Scalars, Vectors) {
+  constexpr unsigned N = T::value;
+  const auto all = transformed<N>(layout::Wavelet::lifted_linear, 0.0),
+             some = transformed<N>(layout::Wavelet::lifted_linear, 0.02);
   for (std::size_t level = 0; level < 4; ++level) {
     CAPTURE(level);
     const auto &a = all.couplings[level], &s = some.couplings[level];
@@ -143,12 +157,13 @@ TEST_CASE("a floor leaves out couplings, and only small ones") {
   }
 }
 
-TEST_CASE("the exact columns are read once and in order") {
-  const auto wavelet = wavelet_of(body(), layout::Wavelet::lifted_linear);
+TEST_CASE_TEMPLATE("the exact columns are read once and in order", T, Scalars, Vectors) {
+  constexpr unsigned N = T::value;
+  const auto wavelet = wavelet_of<N>(body<N>(), layout::Wavelet::lifted_linear);
   std::size_t next = 0;
-  const auto columns = test::columns_of(body().compliance);
+  const auto columns = test::columns_of<N>(body<N>().compliance);
   double last = 0;
-  (void)transform_compliance(
+  (void)transform_compliance<N>(
       wavelet,
       [&](std::size_t first, std::size_t count) {
         CHECK(first == next);
@@ -164,37 +179,45 @@ TEST_CASE("the exact columns are read once and in order") {
   CHECK(last == 1.0);
 }
 
-TEST_CASE("a mesh of one level has averages only") {
-  const auto b = test::make_body(0);
-  const auto wavelet = wavelet_of(b, layout::Wavelet::lifted_linear);
-  const auto found = transform_compliance(wavelet, test::columns_of(b.compliance), 0.0, {});
+TEST_CASE_TEMPLATE("a mesh of one level has averages only", T, Scalars, Vectors) {
+  constexpr unsigned N = T::value;
+  const auto b = test::make_body<N>(0);
+  const auto wavelet = wavelet_of<N>(b, layout::Wavelet::lifted_linear);
+  const auto found = transform_compliance<N>(wavelet, test::columns_of<N>(b.compliance), 0.0, {});
   REQUIRE(found.couplings.size() == 1);
   CHECK((unscaled(found) - b.compliance).cwiseAbs().maxCoeff() < 1e-6 * b.compliance.cwiseAbs().maxCoeff());
   const auto column = exact_column(wavelet, found, 0, 1);
-  CHECK((Eigen::Map<const Eigen::Matrix3d>(column.data()) - block(b.compliance, 0, 1)).norm() <
+  CHECK((Eigen::Map<const SquareMatrix<N>>(column.data()) - block<N>(b.compliance, 0, 1)).norm() <
         1e-6 * b.compliance.norm());
 }
 
-TEST_CASE("columns that are not those of an elastic body are refused") {
-  auto b = test::make_body(2);
+TEST_CASE_TEMPLATE("columns that are not those of an elastic body are refused", T, Scalars, Vectors) {
+  constexpr unsigned N = T::value;
+  auto b = test::make_body<N>(2);
   const auto build = [&](const ExactColumns& columns) {
-    return transform_compliance(wavelet_of(b, layout::Wavelet::lifted_linear), columns, 0.01, {});
+    return transform_compliance<N>(wavelet_of<N>(b, layout::Wavelet::lifted_linear), columns, 0.01, {});
   };
   SUBCASE("not a number") {
-    b.compliance(5, 200) = std::numeric_limits<double>::quiet_NaN();
-    CHECK_THROWS_WITH_AS((void)build(test::columns_of(b.compliance)), doctest::Contains("finite numbers"),
+    b.compliance(5, 70) = std::numeric_limits<double>::quiet_NaN();
+    CHECK_THROWS_WITH_AS((void)build(test::columns_of<N>(b.compliance)), doctest::Contains("finite numbers"),
                          std::invalid_argument);
   }
   SUBCASE("of another size") {
-    const Eigen::MatrixXd cut = b.compliance.topRows(b.compliance.rows() - 3);
-    CHECK_THROWS_WITH_AS((void)build(test::columns_of(cut)), doctest::Contains("finite numbers"),
+    const Eigen::MatrixXd cut = b.compliance.topRows(b.compliance.rows() - N);
+    CHECK_THROWS_WITH_AS((void)build(test::columns_of<N>(cut)), doctest::Contains("finite numbers"),
                          std::invalid_argument);
   }
   SUBCASE("a negative detail") {
     const Eigen::MatrixXd negative = -b.compliance;
-    CHECK_THROWS_WITH_AS((void)build(test::columns_of(negative)), doctest::Contains("not positive definite"),
+    CHECK_THROWS_WITH_AS((void)build(test::columns_of<N>(negative)), doctest::Contains("not positive definite"),
                          std::invalid_argument);
   }
+}
+
+TEST_CASE("weights of vectors do not predict scalars") {
+  const auto wavelet = wavelet_of<3>(body<3>(), layout::Wavelet::equilibrated);
+  CHECK_THROWS_AS((void)transform_compliance<1>(wavelet, test::columns_of<1>(body<1>().compliance), 0.1, {}),
+                  std::invalid_argument);
 }
 
 }  // namespace
