@@ -25,7 +25,10 @@ struct Arguments {
   std::string model;
   greenloop::StressOptions options;
   bool json = false;
-  bool count_instructions = true;
+  std::uint64_t counted_steps = 0;
+  double rate = 0;
+  double share = 1;
+  bool judge_time = false;
 };
 
 std::map<std::string, ScriptKind> script_kinds() {
@@ -51,8 +54,23 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--histogram", options.histogram_bins, "bins of the histogram, one microsecond each")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  app.add_flag("--instructions,!--no-instructions", arguments.count_instructions,
-               "count those of the heaviest kind of step, of which each takes microseconds: a minute or more");
+  app.add_option(
+         "--instructions", arguments.counted_steps,
+         "count those of so many steps of each script, and of the heaviest kind of step; each instruction takes "
+         "microseconds: minutes")
+      ->expected(0, 1)
+      ->default_str("20")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32));
+  app.add_flag_callback(
+      "--no-instructions", [&arguments] { arguments.counted_steps = 0; }, "count none, which is the default");
+  app.add_option("--rate", arguments.rate, "Hz, whose period steps are compared with; else the model's")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--share", arguments.share, "of the period that a step may take")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  app.add_flag("--judge-time", arguments.judge_time,
+               "fail if a step takes longer, or if this machine cannot tell: it takes a thread that is pinned to one "
+               "isolated processor");
   app.add_flag("--json", arguments.json, "machine-readable result");
   const std::map<std::string, InjectedFault> faults = {{"allocation", InjectedFault::allocation},
                                                        {"lock", InjectedFault::lock},
@@ -69,7 +87,8 @@ StressReport stress(const Arguments& arguments) {
   if (!opened) {
     throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
   }
-  StressReport report{.model = arguments.model, .options = arguments.options, .result = {}};
+  StressReport report{.model = arguments.model, .options = arguments.options};
+  report.judge_time = arguments.judge_time;
   greenloop::StressOptions& options = report.options;
   if (options.contacts == 0) {
     options.contacts = opened.model.view().info->max_contacts;
@@ -84,11 +103,16 @@ StressReport stress(const Arguments& arguments) {
   const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
   report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
   bar.end(fmt::format("{} cycles", report.result.cycles));
-  if (arguments.count_instructions) {
+  const double rate = arguments.rate > 0 ? arguments.rate : double{opened.model.view().info->rate};
+  report.time = greenloop::judge_times(report.result.times, rate, arguments.share);
+  report.starved =
+      greenloop::starved_steps<ElastostaticDriver>(opened.model, options.contacts, options.factors, 1600, options.seed);
+  if (arguments.counted_steps > 0) {
     bar.begin("instructions");
+    report.predicted = greenloop::compare_work<ElastostaticDriver>(opened.model, options, arguments.counted_steps);
     report.instructions_max =
         greenloop::instructions_of_heaviest_step<ElastostaticDriver>(opened.model, options.contacts, options.factors);
-    bar.end("of the heaviest step");
+    bar.end("of counted steps");
   }
   return report;
 }
@@ -108,7 +132,7 @@ int main(int argc, char** argv) {
     } else {
       report.print();
     }
-    return report.result.held() ? 0 : 1;
+    return report.held() ? 0 : 1;
   } catch (const std::exception& error) {
     fmt::print(stderr, "greenloop-stress: {}\n", error.what());
     return 2;
