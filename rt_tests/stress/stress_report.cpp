@@ -185,11 +185,9 @@ nlohmann::json StressReport::json() const {
   if (!result.watches_system_calls) {
     all["syscalls"] = nullptr;
   }
-  if (instructions_max >= 0) {
-    all["instructions_max"] = instructions_max;
-  }
   if (predicted) {
     all["predicted_over_instructions"] = as_json(*predicted);
+    all["instructions_max"] = predicted->heaviest_instructions;
   }
   for (const ScriptResult& script : result.scripts) {
     all["scripts"].push_back(as_json(script));
@@ -216,13 +214,11 @@ void StressReport::print() const {
   print_counts(result);
   fmt::print("worst work {} of {} declared units: declared {:.2f} times the worst\n", result.counts.worst_work,
              result.declared_work, declared_over_worst());
-  if (instructions_max >= 0) {
-    fmt::print("instructions of the heaviest kind of step {}\n", instructions_max);
+  if (predicted) {
+    fmt::print("instructions of the heaviest kind of step {}\n", predicted->heaviest_instructions);
+    print_predicted(*predicted);
   } else {
     fmt::print("instructions not counted (--instructions)\n");
-  }
-  if (predicted) {
-    print_predicted(*predicted);
   }
   if (!result.watches_system_calls) {
     fmt::print("system calls not watched: this kernel has no Syscall User Dispatch\n");

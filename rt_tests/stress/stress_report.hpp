@@ -21,7 +21,6 @@ struct StressReport {
   bool judge_time = false;
   StarvedSteps starved{};
   std::optional<PredictedWork> predicted = std::nullopt;  ///< if instructions were counted
-  std::int64_t instructions_max = -1;                     ///< -1: not counted
   double minutes_per_million = 0;                         ///< of cycles, by the wall clock
 
   /// What the body declares: "HELD", or "VIOLATED: work_overruns 3, locks 1".
