@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <string>
 
 #include "rt_tests/harness/answer_counts.hpp"
 #include "rt_tests/harness/script_bounds.hpp"
@@ -21,6 +22,8 @@ concept Driver = requires(std::uint32_t count, const typename D::Solver::Limits&
   { D::declared_work(requirement, report) } -> std::same_as<std::uint64_t>;
   // adds a step to the counts; the second report is of the step before
   D::count(report, report, counts);
+  // in words how an answered step was answered, with a field or not
+  { D::way(report, bool{}) } -> std::convertible_to<std::string>;
   // words that say what was answered, and all that is known of how
   D::facts(report);
   D::all_facts(report);

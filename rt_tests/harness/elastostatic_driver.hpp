@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <iterator>
+#include <string>
 
 #include "rt_tests/harness/driver.hpp"
 #include "runtime/elastostatic.hpp"
@@ -45,6 +46,14 @@ struct ElastostaticDriver {
     counts.mixed += details.finer_level > report.constraint_level ? 1 : 0;
     const bool finer = report.constraint_level > last.constraint_level;
     counts.refined += finer && last.details.pending_work > 0 && details.cached_factor ? 1 : 0;
+  }
+
+  static std::string way(const StepReport& report, bool with_field) {
+    const Elastostatic::StepDetails& details = report.details;
+    std::string way = details.cached_factor ? "cached" : details.changed_nodes > 0 ? "changed" : "fresh";
+    way += details.finer_level > report.constraint_level ? ", mixed" : "";
+    way += details.pending_work > 0 ? ", preparing" : "";
+    return way + (with_field ? ", field" : "");
   }
 
   static std::array<std::uint64_t, 6> facts(const StepReport& report) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,20 @@ class TimeHistogram {
   [[nodiscard]] const std::vector<std::uint64_t>& count() const { return count_; }
   [[nodiscard]] std::uint64_t overflows() const { return overflows_; }
   [[nodiscard]] std::uint64_t total() const { return total_; }
+  /// Upper end, in microseconds, of the bin that a share of the times, 0..1, lies at or below; the largest time if it
+  /// lies beyond the bins.
+  [[nodiscard]] double quantile(double share) const {
+    const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_)));
+    std::uint64_t seen = 0;
+    for (std::size_t bin = 0; bin < count_.size(); ++bin) {
+      seen += count_[bin];
+      if (seen >= wanted) {
+        return std::min(static_cast<double>(bin + 1), most_);
+      }
+    }
+    return most_;
+  }
+
   [[nodiscard]] double least() const { return least_; }
   [[nodiscard]] double average() const { return total_ == 0 ? 0 : sum_ / static_cast<double>(total_); }
   [[nodiscard]] double most() const { return most_; }

@@ -5,13 +5,17 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <iostream>
 #include <map>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/pipeline/progress_bar.hpp"
 #include "rt_tests/harness/elastostatic_driver.hpp"
-#include "rt_tests/stress/heaviest_step.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 
 namespace {
@@ -25,7 +29,10 @@ struct Arguments {
   std::string model;
   greenloop::StressOptions options;
   bool json = false;
-  bool count_instructions = true;
+  bool count_instructions = false, list_steps = false;
+  double rate = 0;
+  double share = 1;
+  bool judge_time = false;
 };
 
 std::map<std::string, ScriptKind> script_kinds() {
@@ -52,7 +59,16 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_flag("--instructions,!--no-instructions", arguments.count_instructions,
-               "count those of the heaviest kind of step, of which each takes microseconds: a minute or more");
+               "count those of every step, and of the heaviest kind of step, by Valgrind: some fifty times as long");
+  app.add_flag("--list-steps", arguments.list_steps, "only run the steps, and print what each reports")->group("");
+  app.add_option("--rate", arguments.rate, "Hz, whose period steps are compared with; else the model's")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--share", arguments.share, "of the period that a step may take")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  app.add_flag("--judge-time", arguments.judge_time,
+               "fail if a step takes longer, or if this machine cannot tell: it takes a thread that is pinned to one "
+               "isolated processor");
   app.add_flag("--json", arguments.json, "machine-readable result");
   const std::map<std::string, InjectedFault> faults = {{"allocation", InjectedFault::allocation},
                                                        {"lock", InjectedFault::lock},
@@ -63,33 +79,59 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->transform(CLI::CheckedTransformer(faults, CLI::ignore_case));
 }
 
-StressReport stress(const Arguments& arguments) {
-  const greenloop::AlignedBytes bytes = greenloop::load_file(arguments.model);
-  const auto opened = greenloop::Model::open(bytes.span());
-  if (!opened) {
-    throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
+// of the same steps in another process
+greenloop::PredictedWork count_instructions(const Arguments& arguments, const greenloop::StressOptions& options) {
+  std::vector<std::string> command = {std::filesystem::read_symlink("/proc/self/exe").string(),
+                                      arguments.model,
+                                      "--list-steps",
+                                      "--cycles",
+                                      std::to_string(options.cycles),
+                                      "--seed",
+                                      std::to_string(options.seed),
+                                      "--contacts",
+                                      std::to_string(options.contacts),
+                                      "--factors",
+                                      std::to_string(options.factors)};
+  if (options.script) {
+    command.insert(command.end(), {"--script", greenloop::name(*options.script)});
   }
-  greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
-  StressReport report{.model = arguments.model, .options = arguments.options, .result = {}};
-  greenloop::StressOptions& options = report.options;
+  std::string out;
+  const std::vector<std::uint64_t> instructions = greenloop::count_step_instructions(command, out);
+  std::istringstream lines(out);
+  return greenloop::compare(greenloop::read_steps(lines), instructions);
+}
+
+// the options for a model
+greenloop::StressOptions options_for(const greenloop::Model& model, const Arguments& arguments) {
+  greenloop::StressOptions options = arguments.options;
   if (options.contacts == 0) {
-    options.contacts = opened.model.view().info->max_contacts;
+    options.contacts = model.view().info->max_contacts;
   }
+  return options;
+}
+
+StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
+  StressReport report{.model = arguments.model, .options = options_for(model, arguments)};
+  report.judge_time = arguments.judge_time;
+  greenloop::StressOptions& options = report.options;
   greenloop::offline::ProgressBar bar(arguments.json);
   bar.begin("stress");
   options.progress = [&](ScriptKind kind, std::uint64_t done) {
     bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
   };
   const auto begin = std::chrono::steady_clock::now();
-  report.result = greenloop::run_stress<ElastostaticDriver>(opened.model, options);
+  report.result = greenloop::run_stress<ElastostaticDriver>(model, options);
   const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
   report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
   bar.end(fmt::format("{} cycles", report.result.cycles));
+  const double rate = arguments.rate > 0 ? arguments.rate : double{model.view().info->rate};
+  report.time = greenloop::judge_times(report.result.times, rate, arguments.share);
+  report.starved =
+      greenloop::starved_steps<ElastostaticDriver>(model, options.contacts, options.factors, 1600, options.seed);
   if (arguments.count_instructions) {
     bar.begin("instructions");
-    report.instructions_max =
-        greenloop::instructions_of_heaviest_step<ElastostaticDriver>(opened.model, options.contacts, options.factors);
-    bar.end("of the heaviest step");
+    report.predicted = count_instructions(arguments, options);
+    bar.end(fmt::format("of {} steps", report.predicted->all.steps));
   }
   return report;
 }
@@ -103,13 +145,24 @@ int main(int argc, char** argv) {
   declare(app, arguments);
   CLI11_PARSE(app, argc, argv);
   try {
-    const StressReport report = stress(arguments);
+    const greenloop::AlignedBytes bytes = greenloop::load_file(arguments.model);
+    const auto opened = greenloop::Model::open(bytes.span());
+    if (!opened) {
+      throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
+    }
+    greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
+    if (arguments.list_steps) {
+      const auto options = options_for(opened.model, arguments);
+      greenloop::write_steps(greenloop::run_plainly<ElastostaticDriver>(opened.model, options), std::cout);
+      return 0;
+    }
+    const StressReport report = stress(opened.model, arguments);
     if (arguments.json) {
       fmt::print("{}\n", report.json().dump(2));
     } else {
       report.print();
     }
-    return report.result.held() ? 0 : 1;
+    return report.held() ? 0 : 1;
   } catch (const std::exception& error) {
     fmt::print(stderr, "greenloop-stress: {}\n", error.what());
     return 2;

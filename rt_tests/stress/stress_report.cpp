@@ -47,6 +47,27 @@ json as_json(const TimeHistogram& times) {
           {"avg", times.average()}, {"max", times.most()}};
 }
 
+json as_json(const RatioQuantiles& ratios) {
+  return {{"steps", ratios.steps},   {"least", ratios.least}, {"p05", ratios.p05},
+          {"median", ratios.median}, {"p95", ratios.p95},     {"most", ratios.most}};
+}
+
+json as_json(const PredictedWork& predicted) {
+  json all = as_json(predicted.all);
+  all["ways"] = json::object();
+  for (const auto& [way, ratios] : predicted.ways) {
+    all["ways"][way] = as_json(ratios);
+  }
+  return all;
+}
+
+json as_json(const TimeVerdict& time) {
+  return {{"period_us", time.period_us}, {"share", time.share},
+          {"worst_us", time.worst_us},   {"p50_us", time.p50_us},
+          {"p99_us", time.p99_us},       {"p999_us", time.p999_us},
+          {"within", time.within()},     {"can_judge", time.unfit.empty()}};
+}
+
 void print_scripts(const std::vector<ScriptResult>& scripts) {
   fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}\n", "script", "cycles", "answered",
              "coarser", "mixed", "cached", "changed", "refused", "worst work", "worst us", "force step");
@@ -71,6 +92,19 @@ void print_counts(const StressResult& result) {
     }
   }
   fmt::print("\n");
+}
+
+void print_predicted(const PredictedWork& predicted) {
+  fmt::print("units of work over instructions:\n{:<32} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "answered by a factor",
+             "steps", "least", "p05", "median", "p95", "most");
+  const auto print_row = [](const std::string& way, const RatioQuantiles& r) {
+    fmt::print("{:<32} {:>7} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g}\n", way, r.steps, r.least, r.p05, r.median,
+               r.p95, r.most);
+  };
+  for (const auto& [way, ratios] : predicted.ways) {
+    print_row(way, ratios);
+  }
+  print_row("all", predicted.all);
 }
 
 // as cyclictest prints it; empty bins are left out
@@ -103,6 +137,13 @@ std::string StressReport::verdict() const {
   return text;
 }
 
+std::string StressReport::time_verdict() const {
+  if (!judge_time || !time.unfit.empty()) {
+    return "NOT JUDGED";
+  }
+  return time.within() ? "WITHIN" : "LATE";
+}
+
 std::string StressReport::replay() const {
   if (!result.first_violation) {
     return {};
@@ -113,31 +154,40 @@ std::string StressReport::replay() const {
 }
 
 nlohmann::json StressReport::json() const {
-  nlohmann::json all = {{"model", model},
-                        {"seed", options.seed},
-                        {"contacts", options.contacts},
-                        {"factors", options.factors},
-                        {"cycles", result.cycles},
-                        {"worst_work", result.counts.worst_work},
-                        {"declared_work", result.declared_work},
-                        {"instructions_max", nullptr},
-                        {"force_step_max", result.force_step_max},
-                        {"digest", result.digest},
-                        {"create_ms", result.create_ms},
-                        {"arena_bytes", result.arena_bytes},
-                        {"minutes_per_million_cycles", minutes_per_million},
-                        {"histogram", as_json(result.times)},
-                        {"scripts", nlohmann::json::array()},
-                        {"first_violation", nullptr},
-                        {"verdict", verdict()}};
+  nlohmann::json all = {
+      {"model", model},
+      {"seed", options.seed},
+      {"contacts", options.contacts},
+      {"factors", options.factors},
+      {"cycles", result.cycles},
+      {"worst_work", result.counts.worst_work},
+      {"declared_work", result.declared_work},
+      {"declared_over_worst", declared_over_worst()},
+      {"predicted_over_instructions", nullptr},
+      {"force_step_over_finest", starved.tenth},
+      {"force_steps",
+       {{"finest_N", starved.finest}, {"tenth_over_finest", starved.tenth}, {"quarter_over_finest", starved.quarter}}},
+      {"time", as_json(time)},
+      {"time_verdict", time_verdict()},
+      {"instructions_max", nullptr},
+      {"force_step_max", result.force_step_max},
+      {"digest", result.digest},
+      {"create_ms", result.create_ms},
+      {"arena_bytes", result.arena_bytes},
+      {"minutes_per_million_cycles", minutes_per_million},
+      {"histogram", as_json(result.times)},
+      {"scripts", nlohmann::json::array()},
+      {"first_violation", nullptr},
+      {"verdict", verdict()}};
   for (const auto& [name, count] : named(result.violations)) {
     all[name] = count;
   }
   if (!result.watches_system_calls) {
     all["syscalls"] = nullptr;
   }
-  if (instructions_max >= 0) {
-    all["instructions_max"] = instructions_max;
+  if (predicted) {
+    all["predicted_over_instructions"] = as_json(*predicted);
+    all["instructions_max"] = predicted->heaviest_instructions;
   }
   for (const ScriptResult& script : result.scripts) {
     all["scripts"].push_back(as_json(script));
@@ -155,29 +205,47 @@ nlohmann::json StressReport::json() const {
 }
 
 void StressReport::print() const {
+  print_verdict();
   fmt::print("{}: {} cycles, seed {}, at most {} contacts, {} cached factors; arena {} bytes, created in {:.1f} ms\n\n",
              model, result.cycles, options.seed, options.contacts, options.factors, result.arena_bytes,
              result.create_ms);
   print_scripts(result.scripts);
   fmt::print("\n");
   print_counts(result);
-  fmt::print("worst work {} of {} declared units\n", result.counts.worst_work, result.declared_work);
-  if (instructions_max >= 0) {
-    fmt::print("instructions of the heaviest kind of step {}\n", instructions_max);
+  fmt::print("worst work {} of {} declared units: declared {:.2f} times the worst\n", result.counts.worst_work,
+             result.declared_work, declared_over_worst());
+  if (predicted) {
+    fmt::print("instructions of the heaviest kind of step {}\n", predicted->heaviest_instructions);
+    print_predicted(*predicted);
   } else {
-    fmt::print("instructions not counted\n");
+    fmt::print("instructions not counted (--instructions)\n");
   }
   if (!result.watches_system_calls) {
     fmt::print("system calls not watched: this kernel has no Syscall User Dispatch\n");
   }
   fmt::print("largest relative step of the forces by a change of level alone {:.3g}\n", result.force_step_max);
+  fmt::print(
+      "largest step of a moving tool's force at a tenth, a quarter of the finest level's work: {:.2f}, {:.2f} times "
+      "the finest level's\n",
+      starved.tenth, starved.quarter);
   fmt::print("digest {:016x}; {:.1f} minutes per million cycles\n\n", result.digest, minutes_per_million);
   print_histogram(result.times);
-  fmt::print("\n{}\n", verdict());
+}
+
+void StressReport::print_verdict() const {
+  fmt::print("{}\n", verdict());
   if (result.first_violation) {
     fmt::print("first in script {}, seed {}, cycle {}; again with\n  {}\n", name(result.first_violation->script),
                options.seed, result.first_violation->cycle, replay());
   }
+  fmt::print(
+      "time {}: p50 {:.0f}, p99 {:.0f}, p99.9 {:.0f}, worst {:.0f} us of processor time a step; the period is {:.0f} "
+      "us, of which a step may take {:.0f} %\n",
+      time_verdict(), time.p50_us, time.p99_us, time.p999_us, time.worst_us, time.period_us, 100 * time.share);
+  if (judge_time && !time.unfit.empty()) {
+    fmt::print("  {}\n", time.unfit);
+  }
+  fmt::print("\n");
 }
 
 }  // namespace greenloop

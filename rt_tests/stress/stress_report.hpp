@@ -2,9 +2,13 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "rt_tests/stress/predicted_work.hpp"
+#include "rt_tests/stress/starved_steps.hpp"
 #include "rt_tests/stress/stress_run.hpp"
+#include "rt_tests/stress/time_verdict.hpp"
 
 namespace greenloop {
 
@@ -12,20 +16,36 @@ namespace greenloop {
 struct StressReport {
   std::string model;  ///< path
   StressOptions options;
-  StressResult result;
-  std::int64_t instructions_max = -1;  ///< -1: not counted
-  double minutes_per_million = 0;      ///< of cycles, by the wall clock
+  StressResult result{};
+  TimeVerdict time{};
+  bool judge_time = false;
+  StarvedSteps starved{};
+  std::optional<PredictedWork> predicted = std::nullopt;  ///< if instructions were counted
+  double minutes_per_million = 0;                         ///< of cycles, by the wall clock
 
-  /// "HELD", or "VIOLATED: work_overruns 3, locks 1".
+  /// What the body declares: "HELD", or "VIOLATED: work_overruns 3, locks 1".
   [[nodiscard]] std::string verdict() const;
+
+  /// "WITHIN" or "LATE" where time is judged, else "NOT JUDGED".
+  [[nodiscard]] std::string time_verdict() const;
+
+  /// Whether all that was asked for holds.
+  [[nodiscard]] bool held() const { return result.held() && (!judge_time || (time.unfit.empty() && time.within())); }
+
+  [[nodiscard]] double declared_over_worst() const {
+    return static_cast<double>(result.declared_work) / static_cast<double>(result.counts.worst_work);
+  }
 
   /// The command that runs up to the first violation, if there is one.
   [[nodiscard]] std::string replay() const;
 
   [[nodiscard]] nlohmann::json json() const;
 
-  /// To standard output, for people.
+  /// To standard output, for people: the verdict first.
   void print() const;
+
+ private:
+  void print_verdict() const;
 };
 
 }  // namespace greenloop

@@ -53,13 +53,7 @@ class StressRun {
     result_.watches_system_calls = system_call_guard::install();
     result_.create_ms = time_of(1, [this] { host_.renew(); }) / 1e3;
     warm_up();
-    const std::size_t kinds = options_.script ? 1 : contact_script_names.size();
-    for (std::size_t k = 0; k < kinds; ++k) {
-      const std::uint64_t share = options_.cycles / kinds + (k < options_.cycles % kinds ? 1 : 0);
-      if (share > 0) {
-        run_script(options_.script.value_or(static_cast<ScriptKind>(k)), share);
-      }
-    }
+    visit_scripts(options_, [this](ScriptKind kind, std::uint64_t cycles) { run_script(kind, cycles); });
     result_.digest = digest_.value();
     return result_;
   }

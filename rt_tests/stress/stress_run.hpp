@@ -75,6 +75,18 @@ struct StressResult {
   [[nodiscard]] bool held() const { return violations.sum() == 0; }
 };
 
+/// Calls visit(kind, cycles) for the scripts that share the cycles.
+template <class Visit>
+void visit_scripts(const StressOptions& options, Visit visit) {
+  const std::size_t kinds = options.script ? 1 : contact_script_names.size();
+  for (std::size_t k = 0; k < kinds; ++k) {
+    const std::uint64_t share = options.cycles / kinds + (k < options.cycles % kinds ? 1 : 0);
+    if (share > 0) {
+      visit(options.script.value_or(static_cast<ScriptKind>(k)), share);
+    }
+  }
+}
+
 /// Runs a ContactScript of every kind on bodies of `model`, every step with the guards of sim_hw/guard armed, and
 /// checks each outcome against what the solver declares. Throws std::runtime_error if no body can be created.
 template <Driver D>

@@ -112,8 +112,7 @@ TEST_CASE("every fault is seen, counted and can be met again") {
                                     InjectedFault::system_call, InjectedFault::page_fault, InjectedFault::overrun}) {
     StressReport report{
         .model = "m.gloop",
-        .options = {.cycles = 300, .seed = 7, .script = ScriptKind::slide, .contacts = 4, .fault = fault},
-        .result = {}};
+        .options = {.cycles = 300, .seed = 7, .script = ScriptKind::slide, .contacts = 4, .fault = fault}};
     report.result = stress({.levels = 2}, report.options);
     const StressResult& result = report.result;
     CAPTURE(static_cast<int>(fault));

@@ -1,0 +1,101 @@
+#include "rt_tests/stress/starved_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "rt_tests/harness/elastostatic_driver.hpp"
+#include "runtime/hosted/hosted.hpp"
+#include "runtime/testing/touchable_nodes.hpp"
+#include "runtime/wavelet/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+constexpr std::uint64_t cycles_of_press = 32, cycles_of_node = 16;
+constexpr float depth = 1e-3F;  // m
+constexpr std::size_t most_contacts = 16;
+
+double square_distance(const float* a, const float* b) {
+  double sum = 0;
+  for (int r = 0; r < 3; ++r) sum += double{a[r] - b[r]} * double{a[r] - b[r]};
+  return sum;
+}
+
+// nodes in the order that a tool meets them which starts at one and always takes the nearest that it has not met
+std::vector<std::uint32_t> path_over(const ModelView& view, std::uint64_t seed) {
+  std::vector<std::uint32_t> left = touchable_nodes(view), path;
+  std::mt19937_64 random(seed);
+  std::swap(left[random() % left.size()], left.back());
+  while (!left.empty()) {
+    path.push_back(left.back());
+    left.pop_back();
+    const float* here = node_record(view, path.back()).position;
+    const auto nearest = std::min_element(left.begin(), left.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return square_distance(node_record(view, a).position, here) <
+             square_distance(node_record(view, b).position, here);
+    });
+    if (nearest != left.end()) std::iter_swap(nearest, left.end() - 1);
+  }
+  return path;
+}
+
+// the tool's constraints in a cycle
+std::vector<Constraint> held_in(const std::vector<std::uint32_t>& path, std::size_t contacts, std::uint64_t cycle) {
+  const float share = std::min(1.0F, static_cast<float>(cycle + 1) / static_cast<float>(cycles_of_press));
+  std::vector<Constraint> held;
+  for (std::size_t i = 0; i < std::min(contacts, path.size()); ++i) {
+    held.push_back({path[(cycle / cycles_of_node + i) % path.size()], {0, 0, -depth * share}});
+  }
+  return held;
+}
+
+struct Motion {
+  double largest_step = 0;  // N
+  std::uint64_t worst_work = 0;
+};
+
+template <Driver D>
+Motion move_tool(Hosted<typename D::Solver>& host, const std::vector<std::uint32_t>& path, std::size_t contacts,
+                 std::uint64_t cycles, std::uint64_t budget) {
+  host.renew();
+  Motion motion;
+  double last[3] = {};
+  for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
+    const auto report = host.step(held_in(path, contacts, cycle), budget, false);
+    motion.worst_work = std::max(motion.worst_work, report.work);
+    double total[3] = {}, change = 0;
+    for (std::size_t i = 0; i < host.force().size(); ++i) total[i % 3] += double{host.force()[i]};
+    for (int r = 0; r < 3; ++r) {
+      change += (total[r] - last[r]) * (total[r] - last[r]);
+      last[r] = total[r];
+    }
+    if (cycle > 0) motion.largest_step = std::max(motion.largest_step, std::sqrt(change));
+  }
+  return motion;
+}
+
+}  // namespace
+
+template <Driver D>
+StarvedSteps starved_steps(const Model& model, std::uint32_t contacts, std::uint32_t factors, std::uint64_t cycles,
+                           std::uint64_t seed) {
+  const std::size_t held = std::min<std::size_t>(contacts, most_contacts);
+  Hosted<typename D::Solver> host(model, D::limits(static_cast<std::uint32_t>(held), factors));
+  const std::vector<std::uint32_t> path = path_over(model.view(), seed);
+  const Motion finest = move_tool<D>(host, path, held, cycles, any_budget);
+  const std::uint64_t least = D::bounds(host.limits(), host.requirement()).least_work;
+  const auto starved = [&](std::uint64_t part) {
+    const std::uint64_t budget = std::max(least, finest.worst_work / part);
+    return finest.largest_step > 0 ? move_tool<D>(host, path, held, cycles, budget).largest_step / finest.largest_step
+                                   : 0;
+  };
+  return {finest.largest_step, starved(10), starved(4)};
+}
+
+template StarvedSteps starved_steps<ElastostaticDriver>(const Model&, std::uint32_t, std::uint32_t, std::uint64_t,
+                                                        std::uint64_t);
+
+}  // namespace greenloop
