@@ -32,6 +32,7 @@ Rooms<N>::Rooms(const ModelView& of_model, std::uint32_t set_columns, bool keeps
     : view(of_model), stored(view.domain_count), index_of_place(view.domain_count, layout::none) {
   counts.cached_factors = 2;
   counts.keeps_capacitance = keeps_capacitance;
+  counts.prices = N == 1 ? scalar_prices() : Prices{};
   counts.prediction = prediction_of(view);
   Arena counting;
   carve(counting, set_columns);
@@ -67,6 +68,7 @@ void Rooms<N>::carve_capacitance(Arena& arena, std::uint32_t set_columns) {
   const std::uint64_t slots = most_slots(view, set_columns);
   const std::uint64_t longest = std::uint64_t{view.domain_count} + 1;
   counts.capacitance_room = slots * pairs(std::min(set_columns, least_batch));
+  capacitance.prices = &counts.prices;
   capacitance.room = counts.capacitance_room;
   capacitance.touched.carve(arena, view);
   capacitance.sorted = arena.take<std::uint32_t>(set_columns);

@@ -11,7 +11,7 @@ namespace greenloop {
 /// x_k over the level's terms, those of even number and those of odd number each added up by themselves. sources:
 /// [domain nodes
 /// * terms] byte offsets of the nodes k in x; x: by node; those of coarser levels are read. For the loop; work:
-/// Prediction::node_work units per node, in the inverse transform.
+/// node_price per node, in the inverse transform.
 template <unsigned N>
 using PredictBlocks = void (*)(const LevelView& level, const std::uint32_t* sources, Vector<N>* x) noexcept;
 
