@@ -39,7 +39,7 @@ std::int16_t stored_value(const CouplingsView& view, std::uint32_t value_bits, s
     const int nibble = k % 2 == 0 ? byte & 15 : byte >> 4;
     return static_cast<std::int16_t>(nibble < 8 ? nibble : nibble - 16);
   }
-  const std::size_t at = std::size_t{N * N} * block + k;
+  const std::size_t at = std::size_t{N} * N * block + k;
   if (value_bits == 8) {
     return static_cast<std::int8_t>(view.value[at]);
   }
@@ -58,7 +58,7 @@ inline std::uint32_t stored_source(const PredictionsView& view, std::size_t term
 template <unsigned N>
 std::int16_t stored_weight(const PredictionsView& view, std::size_t term, std::uint32_t k) {
   std::int16_t value;
-  std::memcpy(&value, view.weight + 2 * (N * N * term + k), sizeof value);
+  std::memcpy(&value, view.weight + 2 * (std::size_t{N} * N * term + k), sizeof value);
   return value;
 }
 

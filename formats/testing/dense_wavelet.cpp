@@ -16,7 +16,7 @@ template <unsigned N, class Values>
 Eigen::Matrix<double, N, N> block_of(const Values& values, std::size_t block, double unit) {
   Eigen::Matrix<double, N, N> matrix;
   for (Index k = 0; k < matrix.size(); ++k) {
-    matrix(k % N, k / N) = unit * values[N * N * block + static_cast<std::size_t>(k)];
+    matrix(k % N, k / N) = unit * values[std::size_t{N} * N * block + static_cast<std::size_t>(k)];
   }
   return matrix;
 }
@@ -56,7 +56,7 @@ MatrixXd stored_form(const ModelData& model, const DenseWavelet& wavelet) {
 // The rows of a matrix as vectors of N at the domain nodes, and what a weight makes of one.
 template <unsigned N>
 struct Rows {
-  Eigen::Ref<MatrixXd> matrix;
+  Eigen::Ref<MatrixXd>& matrix;
 
   auto at(Index i) { return matrix.middleRows<N>(N * i); }
   MatrixXd predicted(const Matrix3d& weight, Index i) { return weight.topLeftCorner<N, N>() * at(i); }
@@ -65,7 +65,7 @@ struct Rows {
 // Its columns as such vectors.
 template <unsigned N>
 struct Columns {
-  Eigen::Ref<MatrixXd> matrix;
+  Eigen::Ref<MatrixXd>& matrix;
 
   auto at(Index i) { return matrix.middleCols<N>(N * i); }
   MatrixXd predicted(const Matrix3d& weight, Index i) { return at(i) * weight.topLeftCorner<N, N>().transpose(); }

@@ -245,7 +245,7 @@ PredictionsData make_predictions(const Sphere& sphere, std::uint32_t q, std::uin
       predictions.index.push_back(inside ? domain_place(sphere, from[k]) : 0);
       for (std::uint32_t e = 0; e < components * components; ++e) {
         const int near = k < 2 && e % (components + 1) == 0 ? half : 0;
-        const int weight = near + static_cast<int>((37 * i + 11 * k) * (e + 1)) % spread - spread / 2;
+        const int weight = near + static_cast<int>((37 * std::size_t{i} + 11 * k) * (e + 1)) % spread - spread / 2;
         predictions.weight.push_back(static_cast<std::int16_t>(inside ? weight : 0));
       }
     }

@@ -33,11 +33,11 @@ struct ScalesData {
 
   template <unsigned N>
   [[nodiscard]] std::span<layout::Scale<N>> of() {
-    return {reinterpret_cast<layout::Scale<N>*>(numbers.data()), numbers.size() / (N * (N + 1))};
+    return {reinterpret_cast<layout::Scale<N>*>(numbers.data()), numbers.size() / (std::size_t{N} * (N + 1))};
   }
   template <unsigned N>
   [[nodiscard]] std::span<const layout::Scale<N>> of() const {
-    return {reinterpret_cast<const layout::Scale<N>*>(numbers.data()), numbers.size() / (N * (N + 1))};
+    return {reinterpret_cast<const layout::Scale<N>*>(numbers.data()), numbers.size() / (std::size_t{N} * (N + 1))};
   }
   template <unsigned N>
   void push_back(const layout::Scale<N>& scale) {

@@ -168,8 +168,8 @@ std::string bytes_text(const Json& value) {
 }
 
 std::string field_text(const Json& found) {
-  const std::string errors = fmt::format("{} RMS, {} in the worst column", percent(found["field_rms_error"]),
-                                         percent(found["field_column_error"]));
+  std::string errors = fmt::format("{} RMS, {} in the worst column", percent(found["field_rms_error"]),
+                                   percent(found["field_column_error"]));
   if (found["field_blocks"].is_null()) return errors;
   return fmt::format("{}; summed of {} blocks, at most {} by a force on one node", errors, found["field_blocks"].dump(),
                      found["longest_field_column"].dump());

@@ -32,18 +32,23 @@ void append(const SquareMatrix<N>& matrix, std::vector<float>& matrices) {
 
 template <unsigned N>
 SquareMatrix<N> matrix(const std::vector<float>& matrices, std::size_t i) {
-  return Eigen::Map<const SquareMatrixF<N>>(matrices.data() + std::size_t{N * N} * i).template cast<double>();
+  return Eigen::Map<const SquareMatrixF<N>>(matrices.data() + block_numbers<N> * i).template cast<double>();
 }
 
 using RowBlocks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A coefficient that forces on some nodes reach, and what all forces do to it. Weight: of a force on a node in the
-// coefficient's, a number or a matrix.
+// of the weight of a force on a node in that on a coefficient: a number or a matrix
+template <class Weight>
+constexpr std::size_t weight_numbers = Weight::SizeAtCompileTime;
+template <>
+constexpr std::size_t weight_numbers<double> = 1;
+
+// A coefficient that forces on some nodes reach, and what all forces do to it.
 template <unsigned N, class Weight>
 class FeltCoefficient {
  public:
   FeltCoefficient(const double* weights, std::size_t nodes) : displacement_(RowBlocks::Zero(N, block_begin<N>(nodes))) {
-    constexpr std::size_t numbers = sizeof(Weight) / sizeof(double);
+    constexpr std::size_t numbers = weight_numbers<Weight>;
     for (std::size_t k = 0; k < nodes; ++k) {
       const double* const own = weights + numbers * k;
       if (any(own, numbers)) reach_.emplace_back(static_cast<Eigen::Index>(k), load(own, Weight()));
@@ -168,19 +173,20 @@ void CompressedCompliance<N>::couple(std::size_t level, std::size_t to_level, st
     const double* own = force.data() + i * width;
     if (!any(own, width)) continue;
     std::fill(scaled.begin(), scaled.end(), 0.0);
-    multiply<N>(root_.data() + numbers * i, false, columns, own, scaled.data());
-    if (i < moved) multiply<N>(diagonal_.data() + numbers * i, false, columns, scaled.data(), sum.data() + i * width);
+    multiply<N>(root_.data() + block_numbers<N> * i, false, columns, own, scaled.data());
+    if (i < moved)
+      multiply<N>(diagonal_.data() + block_numbers<N> * i, false, columns, scaled.data(), sum.data() + i * width);
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
       const Link& link = links_[at];
       if (link.other >= moved) continue;
-      multiply<N>(block_.data() + numbers * link.block, link.transposed, columns, scaled.data(),
+      multiply<N>(block_.data() + block_numbers<N> * link.block, link.transposed, columns, scaled.data(),
                   sum.data() + std::size_t{link.other} * width);
     }
   }
 
   std::fill_n(y, moved * width, 0.0);
   for (std::size_t i = 0; i < moved; ++i) {
-    multiply<N>(root_.data() + numbers * i, false, columns, sum.data() + i * width, y + i * width);
+    multiply<N>(root_.data() + block_numbers<N> * i, false, columns, sum.data() + i * width, y + i * width);
   }
 }
 
@@ -192,7 +198,7 @@ Eigen::MatrixXd CompressedCompliance<N>::between(std::size_t level, const std::v
 template <unsigned N>
 template <class Weight>
 Eigen::MatrixXd CompressedCompliance<N>::between(std::size_t level, const std::vector<std::size_t>& nodes) const {
-  constexpr std::size_t of_weight = sizeof(Weight) / sizeof(double);  // numbers
+  constexpr std::size_t of_weight = weight_numbers<Weight>;
   const std::size_t count = rows(level), width = of_weight * nodes.size();
   std::vector<double> weights(count * width, 0.0);  // [coefficient][node]
   for (std::size_t k = 0; k < nodes.size(); ++k) {  // ones, or unit matrices
@@ -230,8 +236,8 @@ Eigen::MatrixXd CompressedCompliance<N>::between(std::size_t level, const std::v
 
 template <unsigned N>
 std::vector<double> CompressedCompliance<N>::column(std::size_t level, std::size_t j) const {
-  std::vector<double> f(numbers * rows(level), 0.0), x(numbers * rows(level));
-  for (std::size_t c = 0; c < N; ++c) f[numbers * j + (N + 1) * c] = 1;
+  std::vector<double> f(block_numbers<N> * rows(level), 0.0), x(block_numbers<N> * rows(level));
+  for (std::size_t c = 0; c < N; ++c) f[block_numbers<N> * j + (N + 1) * c] = 1;
   apply(level, N, f.data(), x.data());
   return x;
 }

@@ -50,8 +50,7 @@ class CompressedCompliance {
     std::uint32_t block;
     bool transposed;
   };
-  static constexpr std::size_t numbers = std::size_t{N} * N;  // of a block
-  using Ends = std::pair<std::uint32_t, std::uint32_t>;       // row, column
+  using Ends = std::pair<std::uint32_t, std::uint32_t>;  // row, column
 
   template <class Weight>
   [[nodiscard]] Eigen::MatrixXd between(std::size_t level, const std::vector<std::size_t>& nodes) const;

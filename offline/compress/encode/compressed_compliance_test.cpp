@@ -44,10 +44,10 @@ Eigen::MatrixXd all_columns(const CompressedCompliance<N>& compressed, std::size
   Eigen::MatrixXd matrix(block_begin<N>(rows), block_begin<N>(rows));
   for (std::size_t j = 0; j < rows; ++j) {
     const auto column = compressed.column(level, j);
-    REQUIRE(column.size() == N * N * rows);
+    REQUIRE(column.size() == block_numbers<N> * rows);
     for (std::size_t i = 0; i < rows; ++i) {
       matrix.block<N, N>(block_begin<N>(i), block_begin<N>(j)) =
-          Eigen::Map<const SquareMatrix<N>>(column.data() + N * N * i);
+          Eigen::Map<const SquareMatrix<N>>(column.data() + block_numbers<N> * i);
     }
   }
   return matrix;
@@ -157,7 +157,7 @@ TEST_CASE_TEMPLATE("several force patterns at once are the same as one after the
     std::vector<double> together(3 * N * rows);
     compressed.apply(level, 3, f.data(), together.data());
     for (std::size_t pattern = 0; pattern < 3; ++pattern) {
-      std::vector<double> one(3 * rows), x(N * rows);
+      std::vector<double> one(N * rows), x(N * rows);
       for (std::size_t i = 0; i < rows; ++i) {
         for (std::size_t k = 0; k < N; ++k) one[N * i + k] = f[N * (3 * i + pattern) + k];
       }

@@ -33,7 +33,7 @@ CouplingCandidates<N> candidates(std::size_t first) {
     for (std::size_t i = 0; i < j; ++i) {
       const double size = std::pow(10.0, -5 + 7 * uniform());
       double energy = 0;
-      for (unsigned k = 0; k < N * N; ++k) {
+      for (unsigned k = 0; k < block_numbers<N>; ++k) {
         result.value.push_back(static_cast<float>(size * (2 * uniform() - 1)));
         energy += static_cast<double>(result.value.back()) * static_cast<double>(result.value.back());
       }
@@ -79,7 +79,7 @@ std::size_t find(const CouplingsData& data, std::size_t column, std::uint32_t ro
 template <unsigned N>
 double largest(const float* value) {
   double most = 0;
-  for (unsigned k = 0; k < N * N; ++k) most = std::max(most, std::abs(static_cast<double>(value[k])));
+  for (unsigned k = 0; k < block_numbers<N>; ++k) most = std::max(most, std::abs(static_cast<double>(value[k])));
   return most;
 }
 
@@ -87,9 +87,9 @@ double largest(const float* value) {
 template <unsigned N>
 std::size_t check_block(const CouplingCandidates<N>& source, std::size_t b, const LevelData& level, std::size_t j,
                         const layout::Info& info, const Encoding& encoding) {
-  const float* value = source.value.data() + N * N * b;
+  const float* value = source.value.data() + block_numbers<N> * b;
   const auto norm = static_cast<double>(source.norm[b]);
-  std::array<double, N * N> left{};
+  std::array<double, block_numbers<N>> left{};
   std::copy_n(value, left.size(), left.begin());
   std::size_t found = absent;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
@@ -98,8 +98,8 @@ std::size_t check_block(const CouplingCandidates<N>& source, std::size_t b, cons
     if (at == absent) continue;
     const auto quantum = static_cast<double>(info.quantum[layer]);
     double most = 0;
-    for (std::size_t k = 0; k < N * N; ++k) {
-      const double q = data.value[N * N * at + k];
+    for (std::size_t k = 0; k < block_numbers<N>; ++k) {
+      const double q = data.value[block_numbers<N> * at + k];
       left[k] -= q * quantum;
       CHECK(std::abs(left[k]) <= 0.5000001 * quantum);
       most = std::max(most, std::abs(q));
@@ -156,7 +156,7 @@ TEST_CASE_TEMPLATE("rows increase within a column, in every layer", T, Scalars, 
     for (const auto& data : level.couplings) {
       REQUIRE(data.begin.size() == columns + 1);
       CHECK(data.begin.back() == data.index.size());
-      CHECK(data.value.size() == N * N * data.index.size());
+      CHECK(data.value.size() == block_numbers<N> * data.index.size());
       for (std::size_t j = 0; j < columns; ++j) {
         for (std::size_t b = data.begin[j] + 1; b < data.begin[j + 1]; ++b) CHECK(data.index[b - 1] < data.index[b]);
       }
@@ -179,7 +179,7 @@ TEST_CASE_TEMPLATE("values at the edge of a layer's range never leave it", T, Sc
         from.scales.emplace_back(unit, unit, from.scales.size());
         couplings.row.push_back(0);
         couplings.norm.push_back(1);
-        couplings.value.insert(couplings.value.end(), N * N, value);
+        couplings.value.insert(couplings.value.end(), block_numbers<N>, value);
         couplings.begin.push_back(couplings.row.size());
       }
     }
@@ -199,8 +199,8 @@ TEST_CASE_TEMPLATE("blocks that round to zero are not stored", T, Scalars, Vecto
   const auto model = encoded(compliance<N>(), {.threshold = 1e-6, .quantum = 0.01});
   for (const auto& data : model.levels[2].couplings) {
     for (std::size_t b = 0; b < data.index.size(); ++b) {
-      CHECK(std::any_of(data.value.begin() + static_cast<std::ptrdiff_t>(N * N * b),
-                        data.value.begin() + static_cast<std::ptrdiff_t>(N * N * (b + 1)),
+      CHECK(std::any_of(data.value.begin() + static_cast<std::ptrdiff_t>(block_numbers<N> * b),
+                        data.value.begin() + static_cast<std::ptrdiff_t>(block_numbers<N> * (b + 1)),
                         [](std::int16_t q) { return q != 0; }));
     }
   }

@@ -57,10 +57,10 @@ double number_at(const std::byte* value, std::size_t n) {
 
 template <unsigned N>
 double value_at(const std::byte* value, std::uint32_t bits, std::size_t block, std::size_t k) {
-  if (bits == 16) return number_at<std::int16_t>(value, N * N * block + k);
-  if (bits == 8) return number_at<std::int8_t>(value, N * N * block + k);
+  if (bits == 16) return number_at<std::int16_t>(value, block_numbers<N> * block + k);
+  if (bits == 8) return number_at<std::int8_t>(value, block_numbers<N> * block + k);
   const int nibble =
-      std::to_integer<int>((value[(N * N + 1) / 2 * block + k / 2] >> (k % 2 == 0 ? 0 : 4)) & std::byte{15});
+      std::to_integer<int>((value[(block_numbers<N> + 1) / 2 * block + k / 2] >> (k % 2 == 0 ? 0 : 4)) & std::byte{15});
   return nibble > 7 ? nibble - 16 : nibble;
 }
 
@@ -82,8 +82,8 @@ Eigen::MatrixXd stored_form(const ModelView& view) {
       const CouplingsView& couplings = from.couplings[layer];
       for (std::size_t j = 0; j < couplings.columns; ++j) {
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-          double element[N * N];
-          for (std::size_t k = 0; k < N * N; ++k) {
+          double element[block_numbers<N>];
+          for (std::size_t k = 0; k < block_numbers<N>; ++k) {
             element[k] = value_at<N>(couplings.value, layout::value_bits[layer], b, k);
           }
           const std::size_t row = row_at(couplings, b), column = from.domain_begin + j;

@@ -69,7 +69,8 @@ class ScaledCouplings {
 
   [[nodiscard]] SquareMatrix<N> scaled(std::size_t i, std::size_t j, std::size_t b) const {
     return scales_[i].inverse() *
-           Eigen::Map<const SquareMatrixF<N>>(columns_[j].level->value.data() + N * N * b).template cast<double>() *
+           Eigen::Map<const SquareMatrixF<N>>(columns_[j].level->value.data() + block_numbers<N> * b)
+               .template cast<double>() *
            scales_[j].inverse();
   }
 

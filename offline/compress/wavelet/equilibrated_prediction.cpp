@@ -171,7 +171,7 @@ Weights midpoint(const SurfaceWavelet::Odd& odd, std::size_t terms) {
     append_rounded<N>(0.5 * SquareMatrix<N>::Identity(), weights.weight);
   }
   weights.row.resize(terms, weights.row.empty() ? 0 : weights.row.front());
-  weights.weight.resize(N * N * terms, 0);
+  weights.weight.resize(block_numbers<N> * terms, 0);
   return weights;
 }
 

@@ -13,6 +13,10 @@ using SquareMatrix = Eigen::Matrix<double, N, N>;
 template <unsigned N>
 using SquareMatrixF = Eigen::Matrix<float, N, N>;
 
+/// Numbers of one.
+template <unsigned N>
+inline constexpr std::size_t block_numbers = std::size_t{N} * N;
+
 /// Where the numbers of node i begin.
 template <unsigned N>
 [[nodiscard]] constexpr Eigen::Index block_begin(std::size_t i) {

@@ -12,9 +12,7 @@
 namespace greenloop::offline {
 namespace {
 
-template <unsigned N>
-constexpr std::size_t width = std::size_t{N} * N;  // numbers of a block
-constexpr std::size_t stream_columns = 64;         // columns read at a time
+constexpr std::size_t stream_columns = 64;  // columns read at a time
 
 using Values = std::vector<double>;
 
@@ -36,10 +34,10 @@ class ColumnReader {
                                     " finite numbers each");
       }
     }
-    x.resize(width<N> * count_);
+    x.resize(block_numbers<N> * count_);
     const auto column = block_begin<N>(at_ - first_);
     for (std::size_t i = 0; i < count_; ++i) {
-      Eigen::Map<SquareMatrix<N>>(x.data() + width<N> * i) = block_.block<N, N>(block_begin<N>(i), column);
+      Eigen::Map<SquareMatrix<N>>(x.data() + block_numbers<N> * i) = block_.block<N, N>(block_begin<N>(i), column);
     }
     ++at_;
   }
@@ -52,7 +50,7 @@ class ColumnReader {
 
 template <unsigned N>
 SquareMatrix<N> block_of(const double* x, std::size_t row) {
-  return Eigen::Map<const SquareMatrix<N>>(x + width<N> * row);
+  return Eigen::Map<const SquareMatrix<N>>(x + block_numbers<N> * row);
 }
 
 template <unsigned N>
@@ -68,7 +66,7 @@ void predict(const SurfaceWavelet& wavelet, const SurfaceWavelet::Odd& odd, std:
     for (const auto& [row, weight] : wavelet.block_prediction(odd)) {
       const float* from = column(row);
       const Eigen::Matrix3d right = weight.transpose();
-      for (std::size_t k = 0; k < count; k += width<3>) {
+      for (std::size_t k = 0; k < count; k += block_numbers<3>) {
         Eigen::Map<Eigen::Matrix3d>(x + k) -= Eigen::Map<const Eigen::Matrix3f>(from + k).cast<double>() * right;
       }
     }
@@ -87,14 +85,14 @@ void lift(const SurfaceWavelet::Odd& odd, const double* detail, BlockMatrix<N>& 
     if (odd.lift[side] == 0) continue;
     float* to = columns.column(odd.parent[side]);
     const auto weight = static_cast<double>(odd.lift[side]);
-    for (std::size_t k = 0; k < width<N> * columns.rows(); ++k) to[k] += static_cast<float>(weight * detail[k]);
+    for (std::size_t k = 0; k < block_numbers<N> * columns.rows(); ++k) to[k] += static_cast<float>(weight * detail[k]);
   }
 }
 
 // V W^T in place, of levels `finest` and coarser
 template <unsigned N>
 void transform_columns(const SurfaceWavelet& wavelet, std::size_t finest, BlockMatrix<N>& matrix) {
-  Values detail(width<N> * matrix.rows());
+  Values detail(block_numbers<N> * matrix.rows());
   for (std::size_t level = finest; level > 0; --level) {
     // predict all before any is lifted
     for (const auto& odd : wavelet.odds(level)) {
@@ -134,7 +132,7 @@ class Transform {
     Values x;
     for (std::size_t j = 0; j < rows_; ++j) {
       reader.next(x);
-      for (std::size_t level = finest; level > 0; --level) wavelet_->split(level, width<N>, x.data());
+      for (std::size_t level = finest; level > 0; --level) wavelet_->split(level, block_numbers<N>, x.data());
       if (j < evens) even_columns_.emplace_back(x.begin(), x.end());
       if (j + 1 == evens) guess_scales(evens);
       if (j >= evens) add_finest_detail(wavelet_->odds(finest)[j - evens], x);
@@ -151,7 +149,7 @@ class Transform {
  private:
   void copy_evens(std::size_t evens) {
     for (std::size_t j = 0; j < evens; ++j) {
-      std::copy_n(even_columns_[j].begin(), width<N> * evens, result_.coarse.column(j));
+      std::copy_n(even_columns_[j].begin(), block_numbers<N> * evens, result_.coarse.column(j));
     }
   }
 
@@ -196,7 +194,7 @@ class Transform {
       const double norm = value.norm() * inverse_root_[i] * inverse_root_[j];
       if (norm < floor_) continue;
       kept.row.push_back(static_cast<std::uint32_t>(i));
-      for (std::size_t k = 0; k < width<N>; ++k) kept.value.push_back(static_cast<float>(value.data()[k]));
+      for (std::size_t k = 0; k < block_numbers<N>; ++k) kept.value.push_back(static_cast<float>(value.data()[k]));
     }
     kept.begin.push_back(kept.row.size());
   }
@@ -209,7 +207,7 @@ class Transform {
     for (CouplingCandidates<N>& couplings : result_.couplings) {
       for (std::size_t j = 0; j + 1 < couplings.begin.size(); ++j, ++column) {
         for (std::size_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-          Eigen::Map<SquareMatrixF<N>> block(couplings.value.data() + width<N> * b);
+          Eigen::Map<SquareMatrixF<N>> block(couplings.value.data() + block_numbers<N> * b);
           const SquareMatrix<N> scaled = result_.scales[couplings.row[b]].inverse() * block.template cast<double>() *
                                          result_.scales[column].inverse();
           block = scaled.template cast<float>();
@@ -242,18 +240,18 @@ WaveletCompliance<N> transform_compliance(const SurfaceWavelet& wavelet, const E
 template <unsigned N>
 std::vector<double> exact_column(const SurfaceWavelet& wavelet, const WaveletCompliance<N>& compliance,
                                  std::size_t level, std::size_t j) {
-  const std::size_t size = width<N> * wavelet.row_end(level);
+  const std::size_t size = block_numbers<N> * wavelet.row_end(level);
   Values f(size, 0.0), x(size, 0.0);
-  for (std::size_t c = 0; c < N; ++c) f[width<N> * j + (N + 1) * c] = 1;
-  for (std::size_t l = level; l > 0; --l) wavelet.split_forces(l, width<N>, f.data());
+  for (std::size_t c = 0; c < N; ++c) f[block_numbers<N> * j + (N + 1) * c] = 1;
+  for (std::size_t l = level; l > 0; --l) wavelet.split_forces(l, block_numbers<N>, f.data());
   for (std::size_t i = 0; i < wavelet.row_end(level); ++i) {
     const SquareMatrix<N> force = block_of<N>(f.data(), i);
     if (force.isZero(0)) continue;
     for (std::size_t row = 0; row < wavelet.row_end(level); ++row) {
-      Eigen::Map<SquareMatrix<N>>(x.data() + width<N> * row) += compliance.coarse.block(row, i) * force;
+      Eigen::Map<SquareMatrix<N>>(x.data() + block_numbers<N> * row) += compliance.coarse.block(row, i) * force;
     }
   }
-  for (std::size_t l = 1; l <= level; ++l) wavelet.merge(l, width<N>, x.data());
+  for (std::size_t l = 1; l <= level; ++l) wavelet.merge(l, block_numbers<N>, x.data());
   return x;
 }
 

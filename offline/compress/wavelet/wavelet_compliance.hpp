@@ -15,12 +15,12 @@ namespace greenloop::offline {
 template <unsigned N>
 class BlockMatrix {
  public:
-  explicit BlockMatrix(std::size_t rows) : rows_(rows), values_(std::size_t{N * N} * rows * rows, 0.0F) {}
+  explicit BlockMatrix(std::size_t rows) : rows_(rows), values_(block_numbers<N> * rows * rows, 0.0F) {}
   [[nodiscard]] std::size_t rows() const { return rows_; }
-  [[nodiscard]] float* column(std::size_t j) { return values_.data() + std::size_t{N * N} * rows_ * j; }
-  [[nodiscard]] const float* column(std::size_t j) const { return values_.data() + std::size_t{N * N} * rows_ * j; }
+  [[nodiscard]] float* column(std::size_t j) { return values_.data() + block_numbers<N> * rows_ * j; }
+  [[nodiscard]] const float* column(std::size_t j) const { return values_.data() + block_numbers<N> * rows_ * j; }
   [[nodiscard]] SquareMatrix<N> block(std::size_t i, std::size_t j) const {
-    return Eigen::Map<const SquareMatrixF<N>>(column(j) + std::size_t{N * N} * i).template cast<double>();
+    return Eigen::Map<const SquareMatrixF<N>>(column(j) + block_numbers<N> * i).template cast<double>();
   }
 
  private:

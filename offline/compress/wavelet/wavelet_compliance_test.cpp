@@ -61,7 +61,7 @@ Eigen::MatrixXd unscaled(const WaveletCompliance<N>& compliance) {
   }
   visit_candidates(compliance, [&](std::size_t i, std::size_t j, std::size_t b, const CouplingCandidates<N>& level) {
     const SquareMatrix<N> value =
-        Eigen::Map<const SquareMatrixF<N>>(level.value.data() + N * N * b).template cast<double>();
+        Eigen::Map<const SquareMatrixF<N>>(level.value.data() + block_numbers<N> * b).template cast<double>();
     CHECK(static_cast<double>(level.norm[b]) == doctest::Approx(value.norm() / std::sqrt(double{N})).epsilon(1e-5));
     const SquareMatrix<N> coupling = compliance.scales[i].root() * value * compliance.scales[j].root();
     matrix.block<N, N>(block_begin<N>(i), block_begin<N>(j)) = coupling;
@@ -104,9 +104,9 @@ TEST_CASE_TEMPLATE("exact columns of coarse levels", T, Scalars, Vectors) {
       double worst = 0;
       for (std::size_t j = 0; j < wavelet.row_end(level); j += 7) {
         const auto column = exact_column(wavelet, found, level, j);
-        REQUIRE(column.size() == N * N * wavelet.row_end(level));
+        REQUIRE(column.size() == block_numbers<N> * wavelet.row_end(level));
         for (std::size_t i = 0; i < wavelet.row_end(level); ++i) {
-          const Eigen::Map<const SquareMatrix<N>> value(column.data() + N * N * i);
+          const Eigen::Map<const SquareMatrix<N>> value(column.data() + block_numbers<N> * i);
           worst = std::max(worst, (value - block<N>(exact[level], i, j)).cwiseAbs().maxCoeff());
         }
       }
