@@ -12,6 +12,11 @@ namespace greenloop {
 
 #define GREENLOOP_PRICES(ROW)                                                                    \
   /* contacts and columns */                                                                     \
+  ROW(step, 0, "a step")                                                                         \
+  ROW(level, 0, "a level that is planned")                                                       \
+  ROW(factor, 0, "a factor that is made")                                                        \
+  ROW(batch, 0, "a batch of rows of a capacitance matrix")                                       \
+  ROW(field, 0, "a field")                                                                       \
   ROW(checked_contact, 4 * 256, "a contact that is checked")                                     \
   ROW(resolved_contact, 4 * 256, "a contact that is resolved at a level")                        \
   ROW(sorted, 256, "a value in a pass of a sort")                                                \

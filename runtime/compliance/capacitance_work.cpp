@@ -25,8 +25,9 @@ std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
 // what every batch of rows begins with
 std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
-  return priced(own_visits(counts), prices.listed_visit) + priced(counts.set_visits, prices.set_visit) +
-         priced(counts.slots, prices.slot) + priced(merge_sort_steps(counts.rows), prices.sorted);
+  return priced(1, prices.batch) + priced(own_visits(counts), prices.listed_visit) +
+         priced(counts.set_visits, prices.set_visit) + priced(counts.slots, prices.slot) +
+         priced(merge_sort_steps(counts.rows), prices.sorted);
 }
 
 std::uint64_t functionals_work(const CapacitanceCounts& counts) {

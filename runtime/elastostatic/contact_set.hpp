@@ -33,7 +33,7 @@ struct CheckedContacts {
 
 /// Work units of check_contacts.
 constexpr std::uint64_t check_contacts_work(const Prices& prices, std::uint64_t contacts) {
-  return priced(contacts, prices.checked_contact);
+  return priced(1, prices.step) + priced(contacts, prices.checked_contact);
 }
 
 /// Refuses contacts of another kind than hold, out of range, not touchable, not finite or named twice; the first at

@@ -24,7 +24,8 @@ std::uint64_t most_blocks(const LevelPair& pair, std::uint64_t coefficients) {
 }  // namespace
 
 std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return resolve_contacts_work(model.prices, set.contacts) + priced(set.columns, model.prices.resolved_column) +
+  return priced(1, model.prices.level) + resolve_contacts_work(model.prices, set.contacts) +
+         priced(set.columns, model.prices.resolved_column) +
          FactorCache::find_work(model.prices, model.cached_factors, set.columns);
 }
 
@@ -47,7 +48,7 @@ std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const F
                          std::uint64_t blocks) noexcept {
   const Prices& prices = model.prices;
   const std::uint64_t details = model.rows[levels.details];
-  return priced(set.columns + set.contacts, prices.force_column) +
+  return priced(1, prices.field) + priced(set.columns + set.contacts, prices.force_column) +
          priced(set.visits, force_visit_price(prices, model.prediction)) +
          priced(set.coefficients, prices.coefficient) + priced(blocks, prices.summed_block) +
          priced(details, prices.scaled_sum) +

@@ -44,7 +44,7 @@ CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts&
 
 std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexcept {
   const std::uint32_t order = model.order(set.columns);
-  return FactorCache::find_work(model.prices, model.cached_factors, set.columns) +
+  return priced(1, model.prices.factor) + FactorCache::find_work(model.prices, model.cached_factors, set.columns) +
          priced(2 * set.columns, model.prices.placed_column) +
          assemble_capacitance_work(capacitance_counts(model, set)) + kept_work(model, order) +
          cholesky_factor_work(model.prices, order);
@@ -77,7 +77,7 @@ std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set
   const std::uint64_t kept = (1 + changes.removed) * kept_work(model, order);
   const Prices& prices = model.prices;
   const std::uint64_t appended = model.keeps_capacitance ? priced(std::uint64_t{components} * order, prices.passed) : 0;
-  return kept + priced(std::uint64_t{order} * order / 2, prices.passed) +
+  return priced(1, prices.factor) + kept + priced(std::uint64_t{order} * order / 2, prices.passed) +
          changes.removed *
              (priced(set.columns, prices.placed_column) + cholesky_remove_work(prices, order, 0, components)) +
          changes.added * (appended + cholesky_append_work(prices, order, components)) +
