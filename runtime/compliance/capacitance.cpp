@@ -189,7 +189,7 @@ std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCap
   const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
   const Prices& prices = *scratch.prices;
   const std::uint64_t meetings = partial.panel ? 0 : 2 * length * partial.computed;
-  return priced(length, prices.stored_block) + priced(length, prices.scaled_block) +
+  return priced(length, prices.stored_block + prices.scaled_block) +
          priced(meetings, meeting_price(prices, refinement.prediction));
 }
 

@@ -41,7 +41,7 @@ std::uint64_t functionals_work(const CapacitanceCounts& counts) {
 
 // of the blocks in the columns of the slots
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
-  return priced(counts.stored, counts.prices->stored_block) + priced(counts.stored, counts.prices->scaled_block);
+  return priced(counts.stored, counts.prices->stored_block + counts.prices->scaled_block);
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
