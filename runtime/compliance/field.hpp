@@ -60,11 +60,11 @@ void count_field_blocks(const ModelView& view, const MirroredCouplings& mirrored
 
 /// Work units of a coefficient in sum_couplings: its scale, and where its blocks stand.
 template <unsigned N>
-inline constexpr std::uint64_t coefficient_work = 2 * N* N + 42;
+inline constexpr std::uint64_t coefficient_work = 42 + 2 * (N * N);
 
 /// Work units of a coefficient in scale_sums.
 template <unsigned N>
-inline constexpr std::uint64_t scale_work = N* N + 5;
+inline constexpr std::uint64_t scale_work = 5 + (N * N);
 
 /// sums += W U W^T times force coefficients, in units of the scales of the coefficients before `end`, which are moved.
 /// force: [domain] of touched coefficients; zero afterwards. For the loop; work: block_work units per block of

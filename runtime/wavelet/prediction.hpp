@@ -27,6 +27,6 @@ struct Prediction {
 
 /// What StoredBlock<N, 16>::load of a weight in Predictions(q) is to be multiplied with, an exact power of two.
 template <unsigned N>
-inline constexpr float weight_unit = StoredBlock<N, 16>::widening* layout::prediction_unit;
+inline constexpr float weight_unit = float{StoredBlock<N, 16>::widening} * layout::prediction_unit;
 
 }  // namespace greenloop
