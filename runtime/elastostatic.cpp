@@ -130,13 +130,14 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
   }
   ContactSet& set = body.other;
   resolve_contacts(contacts, *body.view, body.facts, {body.glide.older_level()}, body.resolution, set);
-  work += resolve_contacts_work(contacts.size()) + FactorCache::find_work(body.counts.cached_factors, set.columns);
+  work += resolve_contacts_work(body.counts.prices, contacts.size()) +
+          FactorCache::find_work(body.counts.prices, body.counts.cached_factors, set.columns);
   Factor* const factor = body.cache.find(set.all());
   if (factor == nullptr) {
     return nullptr;
   }
   body.cache.use(*factor);
-  work += solve_work(contacts.size(), set.columns);
+  work += solve_work(body.counts.prices, contacts.size(), set.columns);
   if (!solve_forces(body, contacts, set, *factor, body.other_column_force)) {
     return nullptr;
   }
@@ -164,7 +165,7 @@ void prepare_finer_level(Body& body, std::span<const Constraint> contacts, const
   }
   // the step that makes a mixed factor has had the scratch, and its share of the work
   const bool mixed = plan.resolution.fine != nullptr && plan.cached == nullptr;
-  const std::uint64_t resolving = resolve_contacts_work(contacts.size());
+  const std::uint64_t resolving = resolve_contacts_work(body.counts.prices, contacts.size());
   const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
   if (mixed || report.work + resolving > limit) {
     report.details.pending_work = pending_work(body.counts, plan.wanted.counts);
@@ -173,7 +174,8 @@ void prepare_finer_level(Body& body, std::span<const Constraint> contacts, const
   resolve_contacts(contacts, *body.view, body.facts, {plan.wanted.level}, body.resolution, body.other);
   report.work += resolving;
   const std::uint64_t left = limit - report.work;
-  const std::uint64_t most = most_slice_work(body.counts, plan.wanted.counts) + drop_batch_work(body.job);
+  const std::uint64_t most =
+      most_slice_work(body.counts, plan.wanted.counts) + drop_batch_work(body.counts.prices, body.job);
   const FactorProgress progress =
       continue_factor(body.job, body.factor_tools(), body.other.all(), plan.wanted.counts, left < most ? left : most);
   report.work += progress.work;
@@ -222,7 +224,7 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   if (factor == nullptr) {
     return held(Status::held_singular, work);
   }
-  work += force_work(plan.counts);
+  work += force_work(body.counts.prices, plan.counts);
   if (!solve_forces(body, contacts, set, *factor, body.column_force)) {
     return held(Status::held_overflow, work);
   }
@@ -256,7 +258,7 @@ Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> conta
   if (request != Status::ok) {
     return held(request, 0);
   }
-  const std::uint64_t checking = check_contacts_work(contacts.size());
+  const std::uint64_t checking = check_contacts_work(body.counts.prices, contacts.size());
   const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
   if (checked != Status::ok) {
     Elastostatic::StepReport report = held(checked, checking);

@@ -6,6 +6,7 @@
 #include "runtime/constraint.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/model.hpp"
+#include "runtime/prices.hpp"
 #include "runtime/vec.hpp"
 
 namespace greenloop {
@@ -25,6 +26,7 @@ class Elastostatic {
     bool keep_capacitance = false;     ///< capacitance matrices beside their factors, for `compliance`
     std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
+    Prices prices{};                                  ///< that make work units of what a step does
   };
 
   /// The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md).

@@ -17,8 +17,8 @@ struct ElastostaticDriver {
   using Solver = Elastostatic;
   using StepReport = Elastostatic::StepReport;
 
-  static constexpr Elastostatic::Limits limits(std::uint32_t contacts, std::uint32_t sets) {
-    return {.max_contacts = contacts, .cached_factors = sets};
+  static constexpr Elastostatic::Limits limits(std::uint32_t contacts, std::uint32_t sets, const Prices& prices = {}) {
+    return {.max_contacts = contacts, .cached_factors = sets, .prices = prices};
   }
 
   static ScriptBounds bounds(const Elastostatic::Limits& limits, const Elastostatic::Requirement& need) {

@@ -16,6 +16,7 @@
 #include "formats/write/model_file.hpp"
 #include "offline/pipeline/progress_bar.hpp"
 #include "rt_tests/harness/elastostatic_driver.hpp"
+#include "rt_tests/harness/prices_file.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 
 namespace {
@@ -33,6 +34,7 @@ struct Arguments {
   double rate = 0;
   double share = 1;
   bool judge_time = false;
+  std::string prices;
 };
 
 std::map<std::string, ScriptKind> script_kinds() {
@@ -61,6 +63,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--instructions,!--no-instructions", arguments.count_instructions,
                "count those of every step, and of the heaviest kind of step, by Valgrind: some fifty times as long");
   app.add_flag("--list-steps", arguments.list_steps, "only run the steps, and print what each reports")->group("");
+  app.add_option("--budget", options.budget, "work units of every counted step; else the scripts'")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--prices", arguments.prices, "JSON file of prices in place of the default ones")
+      ->check(CLI::ExistingFile);
   app.add_option("--rate", arguments.rate, "Hz, whose period steps are compared with; else the model's")
       ->check(CLI::PositiveNumber);
   app.add_option("--share", arguments.share, "of the period that a step may take")
@@ -92,6 +98,12 @@ greenloop::PredictedWork count_instructions(const Arguments& arguments, const gr
                                       std::to_string(options.contacts),
                                       "--factors",
                                       std::to_string(options.factors)};
+  if (!arguments.prices.empty()) {
+    command.insert(command.end(), {"--prices", arguments.prices});
+  }
+  if (options.budget > 0) {
+    command.insert(command.end(), {"--budget", std::to_string(options.budget)});
+  }
   if (options.script) {
     command.insert(command.end(), {"--script", greenloop::name(*options.script)});
   }
@@ -106,6 +118,9 @@ greenloop::StressOptions options_for(const greenloop::Model& model, const Argume
   greenloop::StressOptions options = arguments.options;
   if (options.contacts == 0) {
     options.contacts = model.view().info->max_contacts;
+  }
+  if (!arguments.prices.empty()) {
+    options.prices = greenloop::read_prices(arguments.prices);
   }
   return options;
 }

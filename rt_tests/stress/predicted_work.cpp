@@ -83,15 +83,15 @@ std::string text_of(const std::filesystem::path& path) {
 
 template <Driver D>
 std::vector<ReportedStep> run_plainly(const Model& model, const StressOptions& options) {
-  Hosted<typename D::Solver> host(model, D::limits(options.contacts, options.factors));
+  Hosted<typename D::Solver> host(model, D::limits(options.contacts, options.factors, options.prices));
   std::vector<ReportedStep> steps;
   visit_scripts(options, [&](ScriptKind kind, std::uint64_t cycles) {
     ContactScript script(model.view(), D::bounds(host.limits(), host.requirement()), kind, options.seed);
     host.renew();
     for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
       const ScriptedStep& scripted = script.next();
-      steps.push_back(
-          reported<D>(host.step(scripted.contacts, scripted.budget, scripted.with_field), scripted.with_field));
+      const std::uint64_t budget = options.budget > 0 ? options.budget : scripted.budget;
+      steps.push_back(reported<D>(host.step(scripted.contacts, budget, scripted.with_field), scripted.with_field));
     }
   });
   host.renew();

@@ -39,7 +39,7 @@ class StressRun {
   StressRun(const Model& model, const StressOptions& options)
       : view_(&model.view()),
         options_(options),
-        host_(model, D::limits(options.contacts, options.factors)),
+        host_(model, D::limits(options.contacts, options.factors, options.prices)),
         bounds_(D::bounds(host_.limits(), host_.requirement())) {
     result_.times = TimeHistogram(options.histogram_bins);
     result_.declared_work = bounds_.worst_work;

@@ -9,6 +9,7 @@
 #include "rt_tests/harness/driver.hpp"
 #include "rt_tests/harness/time_histogram.hpp"
 #include "runtime/model.hpp"
+#include "runtime/prices.hpp"
 
 namespace greenloop {
 
@@ -22,6 +23,8 @@ struct StressOptions {
   std::uint32_t contacts = 64;                      ///< most of a step
   std::uint32_t factors = 8;                        ///< sets of contacts that the body remembers
   std::size_t histogram_bins = 400;
+  std::uint64_t budget = 0;  ///< of every step; 0: the scripts'
+  Prices prices{};
   InjectedFault fault = InjectedFault::none;
   std::function<void(ScriptKind, std::uint64_t)> progress = nullptr;  ///< called every so often with the cycles done
 };

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "runtime/algebra/float4.hpp"
+#include "runtime/prices.hpp"
 
 namespace greenloop {
 
@@ -10,27 +11,29 @@ namespace greenloop {
 constexpr std::uint32_t padded_order(std::uint32_t order) { return (order + 3) / 4 * 4; }
 
 /// Work units of cholesky_factor: multiply-adds of the elimination, and two passes for padding and scaling.
-constexpr std::uint64_t cholesky_factor_work(std::uint32_t order) {
+constexpr std::uint64_t cholesky_factor_work(const Prices& prices, std::uint32_t order) {
   const std::uint64_t n = padded_order(order);
-  return n * (n + 4) * (n + 8) / 6 + 2 * n * n;
+  return priced(n * (n + 4) * (n + 8) / 6, prices.eliminated) + priced(2 * n * n, prices.passed);
 }
 
 /// Work units of cholesky_solve.
-constexpr std::uint64_t cholesky_solve_work(std::uint32_t order) {
+constexpr std::uint64_t cholesky_solve_work(const Prices& prices, std::uint32_t order) {
   const std::uint64_t n = padded_order(order);
-  return n * n + n;
+  return priced(n * n + n, prices.substituted);
 }
 
 /// Work units of cholesky_append of `added` rows to `order`.
-constexpr std::uint64_t cholesky_append_work(std::uint32_t order, std::uint32_t added) {
+constexpr std::uint64_t cholesky_append_work(const Prices& prices, std::uint32_t order, std::uint32_t added) {
   const std::uint64_t n = padded_order(order + added);
-  return added * (n * n / 2 + 6 * n) + 4 * n;
+  return priced(added * (n * n / 2 + 6 * n) + 4 * n, prices.appended);
 }
 
 /// Work units of cholesky_remove of `removed` rows from `order`, the first of them at `first`.
-constexpr std::uint64_t cholesky_remove_work(std::uint32_t order, std::uint32_t first, std::uint32_t removed) {
+constexpr std::uint64_t cholesky_remove_work(const Prices& prices, std::uint32_t order, std::uint32_t first,
+                                             std::uint32_t removed) {
   const std::uint64_t m = order - first;
-  return removed * (m * m + 8 * m) + std::uint64_t{order} * order / 2 + 4 * std::uint64_t{order};
+  return priced(removed * (m * m + 8 * m), prices.removed) +
+         priced(std::uint64_t{order} * order / 2 + 4 * std::uint64_t{order}, prices.passed);
 }
 
 // Square-root-free Cholesky factors, A = L D L^T, in place, in a fixed order of operations. A matrix stands by columns,

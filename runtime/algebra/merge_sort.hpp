@@ -4,8 +4,8 @@
 
 namespace greenloop {
 
-/// Work units of merge_sort: passes over the values, one unit each.
-constexpr std::uint64_t merge_sort_work(std::uint64_t count) {
+/// Values times passes over them.
+constexpr std::uint64_t merge_sort_steps(std::uint64_t count) {
   std::uint64_t passes = 0;
   while ((std::uint64_t{1} << passes) < count) {
     ++passes;

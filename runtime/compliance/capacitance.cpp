@@ -175,8 +175,9 @@ std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitan
   } else {
     added = refinement.prediction.blocks ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
   }
-  return 4 * std::uint64_t{column_length(couplings, column)} + scaled_block_work(N) * loaded.count +
-         refinement.prediction.weight_work * added;
+  const Prices& prices = *scratch.prices;
+  return priced(column_length(couplings, column), prices.stored_block) + priced(loaded.count, prices.scaled_block) +
+         priced(added, meeting_price(prices, refinement.prediction));
 }
 
 // bound of what add_couplings returns
@@ -186,9 +187,10 @@ std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCap
   const std::uint32_t coefficient = scratch.coefficient[partial.next];
   const LevelView& level = refinement.view->level[refinement.level[coefficient]];
   const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
-  const std::uint64_t of_block = 2 * std::uint64_t{refinement.prediction.weight_work} * partial.computed;
-  const std::uint64_t scaled = 4 + scaled_block_work(N);
-  return length * (partial.panel ? scaled : scaled + of_block);
+  const Prices& prices = *scratch.prices;
+  const std::uint64_t meetings = partial.panel ? 0 : 2 * length * partial.computed;
+  return priced(length, prices.stored_block + prices.scaled_block) +
+         priced(meetings, meeting_price(prices, refinement.prediction));
 }
 
 // the sum of a step's terms alone: details are smaller than what they are added to
@@ -384,8 +386,9 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
   }
   for (const std::uint32_t panel = partial.panel_pairs(); partial.has_blocks_left(); ++partial.transformed) {
     const bool in_panel = partial.transformed < panel;
-    const std::uint64_t pair = in_panel ? panel_pair_work(refinement.prediction, partial.own_visits, partial.computed)
-                                        : sum_pair_work(refinement.prediction, touched.visits);
+    const std::uint64_t pair =
+        in_panel ? panel_pair_work(*scratch.prices, refinement.prediction, partial.own_visits, partial.computed)
+                 : sum_pair_work(*scratch.prices, refinement.prediction, touched.visits);
     if (pair > allowance - work) {
       return work;
     }

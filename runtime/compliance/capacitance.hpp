@@ -33,6 +33,7 @@ struct CapacitanceSizes {
 /// functionals.
 template <unsigned N>
 struct CapacitanceScratch {
+  const Prices* prices = nullptr;        ///< of what it is used for
   Touched touched;                       ///< by the rows that are computed, or by one column
   std::uint32_t* sorted = nullptr;       ///< [columns] those rows
   std::uint32_t* sorting = nullptr;      ///< [columns] scratch
@@ -93,11 +94,10 @@ template <unsigned N>
 void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch<N>& scratch,
                        Vector<N>* force, PartialCapacitance& partial) noexcept;
 
-/// Adds the blocks of as many coefficients as `allowance` holds, at 4 units for each that is stored, scaled_block_work
-/// for each that is between touched coefficients and, by functionals, Prediction::weight_work for each sum that one
-/// adds to; then transforms the couplings of two coefficients at a time, for Prediction::pair_work for each visit that
-/// touching the computed rows takes and 2 N for each of these, and two of these at a time, for pair_work for each visit
-/// that the set takes. Returns the units spent. For the loop.
+/// Adds the blocks of as many coefficients as `allowance` holds, at Prices::stored_block for each that is stored,
+/// scaled_block for each that is between touched coefficients and, by functionals, meeting_price for each sum that one
+/// adds to; then transforms the couplings of two coefficients at a time, for panel_pair_work, and two of the computed
+/// rows at a time, for sum_pair_work. Returns the units spent. For the loop.
 template <unsigned N>
 std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched,
                                      CapacitanceScratch<N>& scratch, std::uint64_t allowance,

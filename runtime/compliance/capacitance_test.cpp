@@ -167,7 +167,9 @@ TEST_CASE("what bounds the work of any set bounds that of each, with a panel and
     prediction =
         prediction_of(TestModel({.components = 1, .levels = 2, .wavelet = layout::Wavelet::equilibrated}).view());
   }
-  CapacitanceCounts bounds{.prediction = prediction,
+  const Prices prices = prediction.components == 1 ? scalar_prices() : Prices{};
+  CapacitanceCounts bounds{.prices = &prices,
+                           .prediction = prediction,
                            .columns = 40,
                            .rows = 40,
                            .slots = 900,

@@ -22,31 +22,30 @@ std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
   return slots;
 }
 
-// a slot's diagonal block, scaled on both sides, and what is looked up for it
-std::uint64_t slot_work(const Prediction& prediction) {
-  const std::uint64_t n = prediction.components;
-  return 2 * n * n * n + 6;
-}
-
 // what every batch of rows begins with
 std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
-  return 4 * own_visits(counts) + 2 * counts.set_visits + slot_work(counts.prediction) * counts.slots +
-         merge_sort_work(counts.rows);
+  const Prices& prices = *counts.prices;
+  return priced(1, prices.batch) + priced(own_visits(counts), prices.listed_visit) +
+         priced(counts.set_visits, prices.set_visit) + priced(counts.slots, prices.slot) +
+         priced(merge_sort_steps(counts.rows), prices.sorted);
 }
 
 std::uint64_t functionals_work(const CapacitanceCounts& counts) {
+  const Prices& prices = *counts.prices;
   const std::uint64_t transforms = counts.prediction.blocks ? counts.prediction.components : 1;
-  const std::uint64_t visit_work = 2 + transforms * counts.prediction.force_work;
-  return visit_work * counts.visits + 16 * transforms * counts.coefficients + counts.rows * counts.slots;
+  return priced(counts.visits, prices.functional_visit) +
+         priced(transforms * counts.visits, force_visit_price(prices, counts.prediction)) +
+         priced(transforms * counts.coefficients, prices.functional) +
+         priced(counts.rows * counts.slots, prices.cleared);
 }
 
 // of the blocks in the columns of the slots
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
-  return (4 + scaled_block_work(counts.prediction.components)) * counts.stored;
+  return priced(counts.stored, counts.prices->stored_block + counts.prices->scaled_block);
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
-  return pairs(slots) * panel_pair_work(counts.prediction, own_visits(counts), counts.rows);
+  return pairs(slots) * panel_pair_work(*counts.prices, counts.prediction, own_visits(counts), counts.rows);
 }
 
 }  // namespace
@@ -79,15 +78,16 @@ ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const
 
 std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept {
   const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
-  const std::uint64_t panel = panel_of(counts) || counts.bounds ? slots * slots : 0;
+  const std::uint64_t panel = panel_of(counts) || counts.bounds ? priced(slots * slots, counts.prices->cleared) : 0;
   const std::uint64_t functionals = panel_of(counts) ? 0 : functionals_work(counts);
   return begin_batch_work(counts) + (panel > functionals ? panel : functionals);
 }
 
 std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept {
   const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
-  return stored_work(counts) + pairs(counts.rows) * sum_pair_work(counts.prediction, counts.set_visits) +
-         (panel_of(counts) ? 0 : counts.prediction.weight_work * counts.blocks) +
+  return stored_work(counts) +
+         pairs(counts.rows) * sum_pair_work(*counts.prices, counts.prediction, counts.set_visits) +
+         (panel_of(counts) ? 0 : priced(counts.blocks, meeting_price(*counts.prices, counts.prediction))) +
          (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
 }
 
@@ -100,7 +100,7 @@ std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcep
   const std::uint64_t more = batches > 1 ? batches - 1 : 0;
   return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
          more * (begin_batch_work(counts) + stored_work(counts)) +
-         counts.rows * store_capacitance_work(counts.prediction.components, counts.columns);
+         counts.rows * store_capacitance_work(*counts.prices, counts.columns);
 }
 
 std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept {

@@ -62,6 +62,7 @@ void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) 
 
 /// What the work of assemble_capacitance follows from.
 struct CapacitanceCounts {
+  const Prices* prices = nullptr;
   Prediction prediction{};
   std::uint64_t columns = 0;       ///< of the set
   std::uint64_t rows = 0;          ///< that are computed
@@ -88,13 +89,14 @@ constexpr bool has_panel(std::uint64_t room, std::uint64_t slots, std::uint64_t 
 
 /// Work units of T^-1 of the couplings of two coefficients with the computed rows, and of listing these. own_visits: of
 /// touching those.
-constexpr std::uint64_t panel_pair_work(const Prediction& prediction, std::uint64_t own_visits, std::uint64_t rows) {
-  return prediction.pair_work * own_visits + 2 * std::uint64_t{prediction.components} * rows;
+constexpr std::uint64_t panel_pair_work(const Prices& prices, const Prediction& prediction, std::uint64_t own_visits,
+                                        std::uint64_t rows) {
+  return priced(own_visits, pair_visit_price(prices, prediction)) + priced(rows, prices.panel_row);
 }
 
 /// Work units of T^-1 of two rows of sums. set_visits: of touching the set.
-constexpr std::uint64_t sum_pair_work(const Prediction& prediction, std::uint64_t set_visits) {
-  return prediction.pair_work * set_visits;
+constexpr std::uint64_t sum_pair_work(const Prices& prices, const Prediction& prediction, std::uint64_t set_visits) {
+  return priced(set_visits, pair_visit_price(prices, prediction));
 }
 
 /// Work units of begin_capacitance.
@@ -104,15 +106,8 @@ constexpr std::uint64_t sum_pair_work(const Prediction& prediction, std::uint64_
 [[nodiscard]] std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept;
 
 /// Work units of store_capacitance_row.
-constexpr std::uint64_t store_capacitance_work(std::uint32_t components, std::uint64_t columns) {
-  return std::uint64_t{components} * components * columns;
-}
-
-/// Work units of a stored block between touched coefficients: it is read, scaled on both sides and added in both
-/// directions.
-constexpr std::uint64_t scaled_block_work(std::uint32_t components) {
-  const std::uint64_t n = components;
-  return 2 * n * n * n + 3 * n * n + 3;
+constexpr std::uint64_t store_capacitance_work(const Prices& prices, std::uint64_t columns) {
+  return priced(columns, prices.stored_entry);
 }
 
 /// Work units of assemble_capacitance, or their bound.

@@ -58,23 +58,15 @@ template <unsigned N>
 void count_field_blocks(const ModelView& view, const MirroredCouplings& mirrored, const BaseColumns& base,
                         std::uint32_t* up_to) noexcept;
 
-/// Work units of a coefficient in sum_couplings: its scale, and where its blocks stand.
-template <unsigned N>
-inline constexpr std::uint64_t coefficient_work = 42 + 2 * (N * N);
-
-/// Work units of a coefficient in scale_sums.
-template <unsigned N>
-inline constexpr std::uint64_t scale_work = 5 + (N * N);
-
 /// sums += W U W^T times force coefficients, in units of the scales of the coefficients before `end`, which are moved.
-/// force: [domain] of touched coefficients; zero afterwards. For the loop; work: block_work units per block of
-/// FieldBlocks and coefficient_work per coefficient.
+/// force: [domain] of touched coefficients; zero afterwards. For the loop; work: Prices::summed_block per block of
+/// FieldBlocks and coefficient per coefficient.
 template <unsigned N>
 void sum_couplings(const FieldModel<N>& model, const Touched& touched, std::uint32_t end, Vector<N>* force,
                    const CoefficientSums<N>& sums) noexcept;
 
 /// Adds the sums of tiles to those of blocks and scales these, for the coefficients before `end`; those of tiles are
-/// zero afterwards. For the loop; work: scale_work per coefficient.
+/// zero afterwards. For the loop; work: Prices::scaled_sum per coefficient.
 template <unsigned N>
 void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums<N>& sums) noexcept;
 

@@ -55,7 +55,7 @@ void list_functionals(const Refinement& refinement, const SlottedColumns& column
                       Functionals<N>& functionals) noexcept;
 
 /// sum += weight times `block` for each row that depends on a slot; sum: of their SlotRow::first. With block
-/// predictions. For the loop; work: Prediction::weight_work per row.
+/// predictions. For the loop; work: meeting_price per row.
 template <unsigned N>
 void add_by_blocks(const Functionals<N>& functionals, std::uint32_t slot, const Block<N>& block,
                    Block<N>* sum) noexcept;

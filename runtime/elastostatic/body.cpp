@@ -223,6 +223,7 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   *tables.view = view;
   body.view = tables.view;
   body.counts = sizes.counts;
+  body.capacitance.prices = &body.counts.prices;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     body.cost.level[q] = tables.cost[q];
   }

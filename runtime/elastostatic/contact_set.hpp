@@ -9,6 +9,7 @@
 #include "runtime/constraint.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/prices.hpp"
 #include "runtime/wavelet/column.hpp"
 
 namespace greenloop {
@@ -31,7 +32,9 @@ struct CheckedContacts {
 };
 
 /// Work units of check_contacts.
-constexpr std::uint64_t check_contacts_work(std::uint64_t contacts) { return 4 * contacts; }
+constexpr std::uint64_t check_contacts_work(const Prices& prices, std::uint64_t contacts) {
+  return priced(1, prices.step) + priced(contacts, prices.checked_contact);
+}
 
 /// Refuses contacts of another kind than hold, out of range, not touchable, not finite or named twice; the first at
 /// fault decides.
@@ -86,8 +89,8 @@ struct ResolutionScratch {
 };
 
 /// Bound of the work units of resolve_contacts: linear but for a merge sort.
-constexpr std::uint64_t resolve_contacts_work(std::uint64_t contacts) {
-  return 4 * contacts + merge_sort_work(contacts);
+constexpr std::uint64_t resolve_contacts_work(const Prices& prices, std::uint64_t contacts) {
+  return priced(contacts, prices.resolved_contact) + priced(merge_sort_steps(contacts), prices.sorted);
 }
 
 /// The column that stands for a touchable node on a constraint level. For the loop; work: constant.
@@ -98,9 +101,6 @@ constexpr std::uint64_t resolve_contacts_work(std::uint64_t contacts) {
 /// are fine: then no place has two columns, since a node that can be held stands for itself on every level of its own.
 void resolve_contacts(std::span<const Constraint> contacts, const ModelView& view, const NodeFacts* facts,
                       const Resolution& resolution, ResolutionScratch& scratch, ContactSet& set) noexcept;
-
-/// Work units of average_displacements and of share_forces.
-constexpr std::uint64_t merge_work(std::uint64_t contacts, std::uint64_t columns) { return 6 * (contacts + columns); }
 
 /// displacement[3 * columns]: mean over each column's contacts.
 void average_displacements(std::span<const Constraint> contacts, const ContactSet& set, float* displacement) noexcept;

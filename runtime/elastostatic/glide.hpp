@@ -37,7 +37,9 @@ class Glide {
   [[nodiscard]] std::uint32_t older_level() const noexcept { return from_; }
 
   /// Work units of advance and blend, and of LastAnswer::remember.
-  static constexpr std::uint64_t blend_work(std::uint64_t contacts) { return 32 * contacts; }
+  static constexpr std::uint64_t blend_work(const Prices& prices, std::uint64_t contacts) {
+    return priced(contacts, prices.blended_contact);
+  }
 
   /// force: [3 * contacts] of the newer level, becomes the answer. older: of the older level, or null: they are not
   /// known. For the loop.

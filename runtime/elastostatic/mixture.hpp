@@ -19,8 +19,8 @@ class Mixture {
   void carve(Arena& arena, std::uint32_t contacts) noexcept;
 
   /// Work units of rank, and of choosing groups.
-  static constexpr std::uint64_t choose_work(std::uint64_t contacts) {
-    return 24 * contacts + merge_sort_work(contacts);
+  static constexpr std::uint64_t choose_work(const Prices& prices, std::uint64_t contacts) {
+    return priced(contacts, prices.ranked_contact) + priced(merge_sort_steps(contacts), prices.sorted);
   }
 
   /// Ranks the groups of a set of one constraint level; none is chosen. last: knows the last answer. For the loop;

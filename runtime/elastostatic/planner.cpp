@@ -22,7 +22,7 @@ void touch_set(Body& body, Plan& plan) {
   touch(body.refinement, body.planned.column, body.planned.columns, body.touched);
   plan.counts.coefficients = body.touched.coefficients();
   plan.counts.visits = body.touched.visits;
-  plan.work += touch_work(plan.counts);
+  plan.work += touch_work(body.counts.prices, plan.counts);
 }
 
 // resolves the contacts, looks for the factor, and touches the coefficients unless only forces by a cached one are
@@ -45,34 +45,36 @@ void plan_set(Body& body, const Task& task, const Resolution& resolution, Plan& 
 }
 
 // whether the answer fits, given the factor
-bool holds_answer(const Task& task, const Plan& plan) {
-  return plan.work + force_work(plan.counts) + plan.field <= task.budget;
+bool holds_answer(const Body& body, const Task& task, const Plan& plan) {
+  return plan.work + force_work(body.counts.prices, plan.counts) + plan.field <= task.budget;
 }
 
 // chooses how to make the factor of the set
 void choose_factor(Body& body, Plan& plan) {
   count_factor(body.planned.all(), body.touched, body.cost, body.stored, plan.counts);
   find_changes(body.cache, body.planned.all(), body.changes);
-  plan.work += find_changes_work(body.counts.cached_factors, plan.counts.columns);
+  plan.work += find_changes_work(body.counts.prices, body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
   if (body.changes.base != nullptr) {
     const std::uint64_t update = update_factor_work(body.counts, plan.counts, count_changes(body.changes, body.cost));
     plan.update = update < plan.factor;
     plan.factor = plan.update ? update : plan.factor;
   }
-  plan.factor += drop_batch_work(body.job);
+  plan.factor += drop_batch_work(body.counts.prices, body.job);
 }
 
 // work of the answer that is planned, deciding included
-std::uint64_t planned_work(const Plan& plan) { return plan.work + force_work(plan.counts) + plan.factor + plan.field; }
+std::uint64_t planned_work(const Body& body, const Plan& plan) {
+  return plan.work + force_work(body.counts.prices, plan.counts) + plan.factor + plan.field;
+}
 
 // decides where the factor comes from; whether all fits, or else whether the level is wanted
 void plan_factor(Body& body, const Task& task, Plan& plan) {
-  const bool holds = holds_answer(task, plan);
+  const bool holds = holds_answer(body, task, plan);
   if (plan.cached == nullptr) {
     choose_factor(body, plan);
   }
-  plan.fits = planned_work(plan) <= task.budget;
+  plan.fits = planned_work(body, plan) <= task.budget;
   if (!plan.fits && holds && !plan.wanted.exists) {
     plan.wanted = {true, plan.resolution.level, plan.counts, plan.field};
   }
@@ -100,7 +102,7 @@ std::uint32_t most_entering(const ModelCounts& model, const Plan& plan, std::uin
   std::uint32_t entering = FactorChanges::most;
   for (; entering > 0; entering /= 2) {
     const std::uint64_t factor = change_work(model, whole, entering);
-    if (plan.work + factor + force_work(whole) + plan.field <= budget) {
+    if (plan.work + factor + force_work(model.prices, whole) + plan.field <= budget) {
       break;
     }
   }
@@ -108,7 +110,7 @@ std::uint32_t most_entering(const ModelCounts& model, const Plan& plan, std::uin
 }
 
 Room room_for_mixture(const Body& body, const Task& task, const Plan& plan, bool contacts_stay) {
-  const std::uint64_t coarser = planned_work(plan) + plan_set_work(body.counts, plan.counts);
+  const std::uint64_t coarser = planned_work(body, plan) + plan_set_work(body.counts, plan.counts);
   const std::uint64_t refining = body.counts.refining_work;
   Room room;
   room.budget = task.budget < refining ? task.budget : refining;
@@ -141,7 +143,7 @@ struct Choice {
 bool holds(const Body& body, const Plan& plan, const Room& room, const Choice& choice) {
   const std::uint64_t planning = mixture_work(body.counts, choice.set);
   return choice.entering <= room.entering && planning <= room.planning &&
-         plan.work + planning + force_work(choice.set) + room.field <= room.budget;
+         plan.work + planning + force_work(body.counts.prices, choice.set) + room.field <= room.budget;
 }
 
 // a choice with one more group
@@ -167,7 +169,7 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
   if ((!room.grows && !body.mixture.has_last()) || !holds(body, plan, room, choice)) {
     return false;
   }
-  plan.work += Mixture::choose_work(task.contacts.size());
+  plan.work += Mixture::choose_work(body.counts.prices, task.contacts.size());
   body.mixture.rank(task.contacts, body.planned, body.facts, body.last);
   bool chosen = false;
   for (std::uint32_t g = 0; g < body.mixture.groups(); ++g) {
@@ -185,7 +187,7 @@ bool choose_groups(Body& body, const Task& task, const Room& room, Plan& plan) {
 std::uint64_t least_planning_work(const ModelCounts& model, std::uint64_t contacts) {
   SetCounts set;
   set.contacts = set.columns = contacts;
-  return Mixture::choose_work(contacts) + 2 * resolve_work(model, set);
+  return Mixture::choose_work(model.prices, contacts) + 2 * resolve_work(model, set);
 }
 
 // puts contacts of a coarser set to the finest level if that fits as well
@@ -212,7 +214,7 @@ void refine(Body& body, const Task& task, Plan& plan) {
     plan_set(body, task, {level, body.mixture.fine()}, plan);
     plan_factor(body, task, plan);
     // where no factor is near, slices of the finest one are worth more than a fresh one of a mixture
-    fits = planned_work(plan) <= room.budget && (plan.cached != nullptr || body.changes.base != nullptr);
+    fits = planned_work(body, plan) <= room.budget && (plan.cached != nullptr || body.changes.base != nullptr);
   }
   body.mixture.remember(fits, level, task.contacts, body.facts);
   if (!fits && (chosen || level != coarser.level)) {
@@ -224,7 +226,8 @@ void refine(Body& body, const Task& task, Plan& plan) {
 }  // namespace
 
 std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return resolve_work(model, set) + touch_work(set) + find_changes_work(model.cached_factors, set.columns);
+  return resolve_work(model, set) + touch_work(model.prices, set) +
+         find_changes_work(model.prices, model.cached_factors, set.columns);
 }
 
 std::uint64_t most_change_work(const ModelCounts& model, const SetCounts& most) noexcept {
@@ -235,7 +238,7 @@ std::uint64_t most_change_work(const ModelCounts& model, const SetCounts& most) 
 }
 
 std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return Mixture::choose_work(set.contacts) + resolve_work(model, set) + plan_set_work(model, set);
+  return Mixture::choose_work(model.prices, set.contacts) + resolve_work(model, set) + plan_set_work(model, set);
 }
 
 Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, bool wants_field,
@@ -247,7 +250,7 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t b
   plan.field_levels = {finest_displaced, finest_displaced};
   for (std::uint32_t c = finest + 1; !plan.fits && c-- > coarsest;) {
     plan_set(body, task, {c}, plan);
-    if (holds_answer(task, plan) || c == coarsest) {
+    if (holds_answer(body, task, plan) || c == coarsest) {
       plan_factor(body, task, plan);
     }
   }
@@ -257,9 +260,9 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t b
   }
   while (!plan.fits && wants_field && plan.field_levels.details > 0) {
     --plan.field_levels.details;
-    plan.work += count_field_work(plan.counts);
+    plan.work += count_field_work(body.counts.prices, plan.counts);
     plan.field = planned_field_work(body, plan);
-    plan.fits = planned_work(plan) <= budget;
+    plan.fits = planned_work(body, plan) <= budget;
   }
   return plan;
 }

@@ -18,6 +18,7 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.cached_factors = limits.cached_factors;
   counts.glide_cycles = limits.glide_cycles;
   counts.refining_work = limits.refining_work;
+  counts.prices = limits.prices;
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
   counts.mixtures = limits.mixtures;
@@ -61,17 +62,18 @@ std::uint64_t with_slices(std::uint64_t answer, std::uint64_t slices, std::uint6
 // planning a set of some level, and giving a batch of it up
 void add_set(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
   other.plans += plan_set_work(model, most);
-  other.dropped = larger(other.dropped, 2 * most.coefficients);
+  other.dropped = larger(other.dropped, priced(most.coefficients, model.prices.dropped));
 }
 
 void add_slices(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
-  const std::uint64_t slice = resolve_contacts_work(most.contacts) + most_slice_work(model, most) + other.dropped;
+  const std::uint64_t slice =
+      resolve_contacts_work(model.prices, most.contacts) + most_slice_work(model, most) + other.dropped;
   other.slices = larger(other.slices, slice);
 }
 
 // forces of a set with a fresh factor
 std::uint64_t fresh_forces_work(const ModelCounts& model, const SetCounts& most, const OtherWork& other) {
-  return other.dropped + factor_work(model, most) + force_work(most);
+  return other.dropped + factor_work(model, most) + force_work(model.prices, most);
 }
 
 void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const MostCounts* most_of,
@@ -83,25 +85,26 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     return limits.forces_only ? 0 : field_work(counts, most.set, {finest, field_level}, blocks);
   };
   // a mixed set may be planned after all levels were, whatever its own
-  std::uint64_t all_plans = check_contacts_work(limits.max_contacts);
+  std::uint64_t all_plans = check_contacts_work(counts.prices, limits.max_contacts);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     all_plans += plan_set_work(counts, most_of[c].set);
   }
   OtherWork other;
-  other.plans = check_contacts_work(limits.max_contacts);
+  other.plans = check_contacts_work(counts.prices, limits.max_contacts);
   other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const SetCounts& most = most_of[c].set;
     add_set(counts, most, other);
     // at the coarsest level the field is cut as well
-    const std::uint64_t cuts = c == view.info->coarsest_constraint_level ? finest * count_field_work(most) : 0;
+    const std::uint64_t cuts =
+        c == view.info->coarsest_constraint_level ? finest * count_field_work(counts.prices, most) : 0;
     const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
     std::uint64_t answer = forces + field(most_of[c], finest);
     std::uint64_t mixed_factor = 0;
     if (limits.mixtures && c < finest) {
       const SetCounts& mixed = mixed_of[c].set;
       other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
-      const std::uint64_t mixed_answer = all_plans + force_work(mixed) + field(mixed_of[c], finest);
+      const std::uint64_t mixed_answer = all_plans + force_work(counts.prices, mixed) + field(mixed_of[c], finest);
       mixed_factor = mixed_answer + other.dropped + most_change_work(counts, mixed);
       answer = larger(answer, mixed_answer);
     }

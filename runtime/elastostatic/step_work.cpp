@@ -24,31 +24,36 @@ std::uint64_t most_blocks(const LevelPair& pair, std::uint64_t coefficients) {
 }  // namespace
 
 std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return resolve_contacts_work(set.contacts) + 4 * set.columns +
-         FactorCache::find_work(model.cached_factors, set.columns);
+  return priced(1, model.prices.level) + resolve_contacts_work(model.prices, set.contacts) +
+         priced(set.columns, model.prices.resolved_column) +
+         FactorCache::find_work(model.prices, model.cached_factors, set.columns);
 }
 
 std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept {
-  return resolve_contacts_work(contacts) + FactorCache::find_work(model.cached_factors, contacts) +
-         solve_work(contacts, contacts);
+  return resolve_contacts_work(model.prices, contacts) +
+         FactorCache::find_work(model.prices, model.cached_factors, contacts) +
+         solve_work(model.prices, contacts, contacts);
 }
 
-std::uint64_t solve_work(std::uint64_t contacts, std::uint64_t columns) noexcept {
-  return merge_work(contacts, columns) + 6 * columns + cholesky_solve_work(static_cast<std::uint32_t>(3 * columns));
+std::uint64_t solve_work(const Prices& prices, std::uint64_t contacts, std::uint64_t columns) noexcept {
+  return priced(contacts, prices.solved_contact) + priced(columns, prices.solved_column) +
+         cholesky_solve_work(prices, static_cast<std::uint32_t>(3 * columns));
 }
 
-std::uint64_t force_work(const SetCounts& set) noexcept {
-  return solve_work(set.contacts, set.columns) + Glide::blend_work(set.contacts);
+std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept {
+  return solve_work(prices, set.contacts, set.columns) + Glide::blend_work(prices, set.contacts);
 }
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
+  const Prices& prices = model.prices;
   const std::uint64_t details = model.rows[levels.details];
-  return 4 * set.columns + model.prediction.force_work * set.visits + coefficient_work<3> * set.coefficients +
-         block_work<3> * blocks + scale_work<3> * details +
-         inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details,
-                                model.prediction) +
-         4 * set.contacts;
+  return priced(1, prices.field) + priced(set.columns + set.contacts, prices.force_column) +
+         priced(set.visits, force_visit_price(prices, model.prediction)) +
+         priced(set.coefficients, prices.coefficient) + priced(blocks, prices.summed_block) +
+         priced(details, prices.scaled_sum) +
+         inverse_transform_work(model.nodes[levels.nodes], model.rows[levels.nodes] - model.rows[0], details, prices,
+                                model.prediction);
 }
 
 std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touched,

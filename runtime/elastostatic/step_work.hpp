@@ -26,13 +26,13 @@ struct ModelCounts : FactorCounts {
 [[nodiscard]] std::uint64_t resolve_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
 /// Work units of solving for the forces of a set with its factor.
-[[nodiscard]] std::uint64_t solve_work(std::uint64_t contacts, std::uint64_t columns) noexcept;
+[[nodiscard]] std::uint64_t solve_work(const Prices& prices, std::uint64_t contacts, std::uint64_t columns) noexcept;
 
 /// Bound of the work units of the forces of the level before, if their factor is cached.
 [[nodiscard]] std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept;
 
 /// Work units of the forces, given the factor, and of their glide.
-[[nodiscard]] std::uint64_t force_work(const SetCounts& set) noexcept;
+[[nodiscard]] std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept;
 
 /// Work units of a field that sums `blocks` blocks.
 [[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,

@@ -4,6 +4,7 @@
 
 #include "runtime/factor/factor.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/prices.hpp"
 #include "runtime/wavelet/column.hpp"
 
 namespace greenloop {
@@ -22,8 +23,8 @@ class FactorCache {
   [[nodiscard]] Factor& operator[](std::uint32_t i) const noexcept { return factor_[i]; }
 
   /// Work units of find.
-  static constexpr std::uint64_t find_work(std::uint64_t factors, std::uint64_t columns) {
-    return factors + 2 * columns;
+  static constexpr std::uint64_t find_work(const Prices& prices, std::uint64_t factors, std::uint64_t columns) {
+    return priced(factors, prices.cached_factor) + priced(columns, prices.cached_column);
   }
 
   /// The factors of `set`, or null. Does not count as a use.

@@ -33,8 +33,8 @@ void list_changes(Factor& factor, ColumnSet set, FactorChanges& changes) noexcep
 void find_changes(const FactorCache& cache, ColumnSet set, FactorChanges& nearest) noexcept;
 
 /// Work units of find_changes.
-constexpr std::uint64_t find_changes_work(std::uint64_t factors, std::uint64_t columns) {
-  return factors * (2 * columns + FactorChanges::most);
+constexpr std::uint64_t find_changes_work(const Prices& prices, std::uint64_t factors, std::uint64_t columns) {
+  return priced(factors * columns, prices.near_column) + priced(factors, prices.near_factor);
 }
 
 /// What the work of an update follows from.

@@ -317,7 +317,8 @@ FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, Colu
                                std::uint64_t allowance) noexcept {
   FactorProgress progress;
   progress.pending = pending_work(tools.counts, whole);
-  const std::uint64_t compare = compare_factors_work(tools.counts.cached_factors, whole.columns) + drop_batch_work(job);
+  const std::uint64_t compare =
+      compare_factors_work(tools.counts, whole.columns) + drop_batch_work(tools.counts.prices, job);
   if (compare > allowance) {
     return progress;
   }
@@ -345,8 +346,8 @@ FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, Colu
   return progress;
 }
 
-std::uint64_t drop_batch_work(const FactorJob& job) noexcept {
-  return job.batch.computed > 0 ? 2 * job.counts.coefficients : 0;
+std::uint64_t drop_batch_work(const Prices& prices, const FactorJob& job) noexcept {
+  return job.batch.computed > 0 ? priced(job.counts.coefficients, prices.dropped) : 0;
 }
 
 template <unsigned N>

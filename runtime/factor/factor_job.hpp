@@ -83,7 +83,7 @@ FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, Colu
                                std::uint64_t allowance) noexcept;
 
 /// Work units of drop_batch.
-[[nodiscard]] std::uint64_t drop_batch_work(const FactorJob& job) noexcept;
+[[nodiscard]] std::uint64_t drop_batch_work(const Prices& prices, const FactorJob& job) noexcept;
 
 /// Forgets the batch that is at work, so that the scratch is free. For the loop.
 template <unsigned N>

@@ -47,8 +47,10 @@ std::uint64_t largest_piece(const Rooms<N>& rooms, const SetCounts& whole) {
     }
   }
   const Prediction& prediction = rooms.counts.prediction;
-  const std::uint64_t blocks = longest * (4 + scaled_block_work(N) + prediction.weight_work * 2 * whole.columns);
-  const std::uint64_t pair = prediction.pair_work * whole.visits + 2 * N * whole.columns;
+  const Prices& prices = rooms.counts.prices;
+  const std::uint64_t blocks = priced(longest, prices.stored_block) + priced(longest, prices.scaled_block) +
+                               priced(2 * longest * whole.columns, meeting_price(prices, prediction));
+  const std::uint64_t pair = panel_pair_work(prices, prediction, whole.visits, whole.columns);
   return std::max(
       {blocks, pair, begin_batch_work(rooms.counts, whole, 0), enter_work(rooms.counts, whole, whole.columns)});
 }
@@ -87,7 +89,7 @@ TEST_CASE_TEMPLATE("a factor is complete after as many slices as its work holds,
     Rooms<N> rooms(model.view(), 40);
     const SetCounts whole = rooms.touch_set(set);
     const std::uint64_t all = pending_work(rooms.counts, whole);
-    const std::uint64_t compare = compare_factors_work(rooms.counts.cached_factors, 40) + 2 * whole.coefficients;
+    const std::uint64_t compare = compare_factors_work(rooms.counts, 40) + 2 * whole.coefficients;
     const std::uint64_t piece = largest_piece<N>(rooms, whole);
     const std::uint64_t allowance = compare + piece + all / part;
     std::vector<FactorProgress> slices;
@@ -100,7 +102,7 @@ TEST_CASE_TEMPLATE("a factor is complete after as many slices as its work holds,
     std::uint64_t follows = 0;
     for (auto slice = slices.rbegin(); slice != slices.rend(); ++slice) {
       CHECK(slice->pending >= follows);
-      follows += slice->work - compare_factors_work(rooms.counts.cached_factors, 40);
+      follows += slice->work - compare_factors_work(rooms.counts, 40);
     }
     CHECK(follows <= all);
     CHECK(all <= 2 * follows);
@@ -120,7 +122,7 @@ TEST_CASE_TEMPLATE("less than a piece makes no progress, and says so", Component
   Rooms<N> rooms(model.view(), 12);
   const SetCounts whole = rooms.touch_set(set);
   const std::uint64_t begin =
-      compare_factors_work(rooms.counts.cached_factors, whole.columns) + begin_batch_work(rooms.counts, whole, 0);
+      compare_factors_work(rooms.counts, whole.columns) + begin_batch_work(rooms.counts, whole, 0);
   for (const std::uint64_t allowance : {std::uint64_t{0}, std::uint64_t{100}, begin - 1}) {
     const FactorProgress progress = continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance);
     CHECK(progress.work <= allowance);

@@ -7,7 +7,7 @@ namespace {
 
 // of copying the capacitance matrix of so many rows where it is kept
 std::uint64_t kept_work(const FactorCounts& model, std::uint64_t order) {
-  return model.keeps_capacitance ? order * order / 2 : 0;
+  return model.keeps_capacitance ? priced(order * order / 2, model.prices.passed) : 0;
 }
 
 // bounds for any batch of a set
@@ -19,14 +19,17 @@ CapacitanceCounts batch_counts(const FactorCounts& model, const SetCounts& whole
 
 }  // namespace
 
-std::uint64_t touch_work(const SetCounts& set) noexcept {
-  return 2 * set.visits + 8 * set.coefficients + count_field_work(set);
+std::uint64_t touch_work(const Prices& prices, const SetCounts& set) noexcept {
+  return priced(set.visits, prices.visit) + priced(set.coefficients, prices.touched) + count_field_work(prices, set);
 }
 
-std::uint64_t count_field_work(const SetCounts& set) noexcept { return set.coefficients; }
+std::uint64_t count_field_work(const Prices& prices, const SetCounts& set) noexcept {
+  return priced(set.coefficients, prices.counted);
+}
 
 CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts& set) noexcept {
-  return {.prediction = model.prediction,
+  return {.prices = &model.prices,
+          .prediction = model.prediction,
           .columns = set.columns,
           .rows = set.columns,
           .slots = set.slots,
@@ -41,9 +44,10 @@ CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts&
 
 std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexcept {
   const std::uint32_t order = model.order(set.columns);
-  return FactorCache::find_work(model.cached_factors, set.columns) + 2 * set.columns +
+  return priced(1, model.prices.factor) + FactorCache::find_work(model.prices, model.cached_factors, set.columns) +
+         priced(2 * set.columns, model.prices.placed_column) +
          assemble_capacitance_work(capacitance_counts(model, set)) + kept_work(model, order) +
-         cholesky_factor_work(order);
+         cholesky_factor_work(model.prices, order);
 }
 
 void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
@@ -71,40 +75,47 @@ std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set
   capacitance.coefficients = changes.entering.coefficients;
   capacitance.blocks = changes.entering.blocks;
   const std::uint64_t kept = (1 + changes.removed) * kept_work(model, order);
-  const std::uint64_t appended = model.keeps_capacitance ? std::uint64_t{components} * order : 0;
-  return kept + std::uint64_t{order} * order / 2 +
-         changes.removed * (set.columns + cholesky_remove_work(order, 0, components)) +
-         changes.added * (appended + cholesky_append_work(order, components)) + assemble_capacitance_work(capacitance) +
-         6 * set.columns;
+  const Prices& prices = model.prices;
+  const std::uint64_t appended = model.keeps_capacitance ? priced(std::uint64_t{components} * order, prices.passed) : 0;
+  return priced(1, prices.factor) + kept + priced(std::uint64_t{order} * order / 2, prices.passed) +
+         changes.removed *
+             (priced(set.columns, prices.placed_column) + cholesky_remove_work(prices, order, 0, components)) +
+         changes.added * (appended + cholesky_append_work(prices, order, components)) +
+         assemble_capacitance_work(capacitance) + priced(6 * set.columns, prices.placed_column);
 }
 
 std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole) noexcept {
   return batch_width(model.capacitance_room, whole.coefficients > 0 ? whole.coefficients : 1);
 }
 
-std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns) noexcept {
-  return find_changes_work(factors + 4, columns);
+std::uint64_t compare_factors_work(const FactorCounts& model, std::uint64_t columns) noexcept {
+  return find_changes_work(model.prices, model.cached_factors + std::uint64_t{4}, columns);
 }
 
 std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set, std::uint64_t removed) noexcept {
   const std::uint64_t columns = set.columns + removed;
   const std::uint32_t order = model.order(columns);
-  return (1 + removed) * kept_work(model, order) + std::uint64_t{order} * order / 2 +
-         removed * (2 * columns + cholesky_remove_work(order, 0, model.prediction.components)) + 12 * columns +
-         touch_work(set) + begin_capacitance_work(batch_counts(model, set));
+  const Prices& prices = model.prices;
+  return (1 + removed) * kept_work(model, order) + priced(std::uint64_t{order} * order / 2, prices.passed) +
+         removed * (priced(2 * columns, prices.placed_column) +
+                    cholesky_remove_work(prices, order, 0, model.prediction.components)) +
+         priced(12 * columns, prices.placed_column) + touch_work(prices, set) +
+         begin_capacitance_work(batch_counts(model, set));
 }
 
 std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {
   const std::uint32_t components = model.prediction.components;
-  const std::uint64_t kept = model.keeps_capacitance ? store_capacitance_work(components, columns_before + 1) : 0;
-  return kept + store_capacitance_work(components, set.columns) + columns_before +
-         cholesky_append_work(model.order(columns_before), components);
+  const Prices& prices = model.prices;
+  const std::uint64_t entries = std::uint64_t{components} * components * (columns_before + 1);
+  const std::uint64_t kept = model.keeps_capacitance ? priced(entries, prices.passed) : 0;
+  return kept + store_capacitance_work(prices, set.columns) + priced(columns_before, prices.placed_column) +
+         cholesky_append_work(prices, model.order(columns_before), components);
 }
 
 std::uint64_t most_slice_work(const FactorCounts& model, const SetCounts& whole) noexcept {
   const std::uint64_t fresh = factor_work(model, whole);
   const std::uint64_t begin = begin_batch_work(model, whole, FactorChanges::most);
-  return compare_factors_work(model.cached_factors, whole.columns) + (fresh > begin ? fresh : begin);
+  return compare_factors_work(model, whole.columns) + (fresh > begin ? fresh : begin);
 }
 
 std::uint64_t pending_work(const FactorCounts& model, const SetCounts& whole, const FactorChanges& changes) noexcept {

@@ -9,6 +9,7 @@ namespace greenloop {
 
 /// What the work of factors follows from, beside their sets.
 struct FactorCounts {
+  Prices prices{};
   std::uint32_t cached_factors = 0;
   bool keeps_capacitance = false;
   std::uint64_t capacitance_room = 0;  ///< of CapacitanceScratch
@@ -35,10 +36,10 @@ struct SetCounts {
 };
 
 /// Work units of finding the coefficients that a set touches and counting what its factor takes.
-[[nodiscard]] std::uint64_t touch_work(const SetCounts& set) noexcept;
+[[nodiscard]] std::uint64_t touch_work(const Prices& prices, const SetCounts& set) noexcept;
 
 /// Work units of counting the blocks of a field.
-[[nodiscard]] std::uint64_t count_field_work(const SetCounts& set) noexcept;
+[[nodiscard]] std::uint64_t count_field_work(const Prices& prices, const SetCounts& set) noexcept;
 
 /// What the whole capacitance matrix of a set takes.
 [[nodiscard]] CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts& set) noexcept;
@@ -58,7 +59,7 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 // The pieces of continue_factor (factor_job.hpp).
 
 /// Work units of comparing a set with the factors that there are.
-[[nodiscard]] std::uint64_t compare_factors_work(std::uint64_t factors, std::uint64_t columns) noexcept;
+[[nodiscard]] std::uint64_t compare_factors_work(const FactorCounts& model, std::uint64_t columns) noexcept;
 
 /// Nodes that enter a factor together: as many rows of their matrix as the scratch has room for.
 [[nodiscard]] std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole) noexcept;

@@ -32,6 +32,7 @@ Rooms<N>::Rooms(const ModelView& of_model, std::uint32_t set_columns, bool keeps
     : view(of_model), stored(view.domain_count), index_of_place(view.domain_count, layout::none) {
   counts.cached_factors = 2;
   counts.keeps_capacitance = keeps_capacitance;
+  counts.prices = N == 1 ? scalar_prices() : Prices{};
   counts.prediction = prediction_of(view);
   Arena counting;
   carve(counting, set_columns);
@@ -58,6 +59,7 @@ void Rooms<N>::carve(Arena& arena, std::uint32_t set_columns) {
   touched.carve(arena, view);
   const std::uint64_t slots = most_slots(view, set_columns);
   counts.capacitance_room = capacitance_room(slots, set_columns);
+  capacitance.prices = &counts.prices;
   capacitance.carve(arena, view, {set_columns, slots * set_columns, slots, view.domain_count}, counts.prediction);
   cache.carve<N>(arena, counts.cached_factors, set_columns, counts.keeps_capacitance);
   factoring.carve<N>(arena, set_columns);

@@ -22,7 +22,7 @@ struct ColumnForces {
 };
 
 /// The force coefficients T^-T f of forces on columns, each of which enters on its own level. touched: by the same
-/// columns; force: [domain], 0 before. For the loop; work: Prediction::force_work per visit.
+/// columns; force: [domain], 0 before. For the loop; work: force_visit_price per visit.
 template <unsigned N>
 void transform_forces(const Refinement& refinement, const ColumnForces& columns, const Touched& touched,
                       Vector<N>* force) noexcept;

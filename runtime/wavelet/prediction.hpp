@@ -5,25 +5,45 @@
 
 #include "formats/view.hpp"
 #include "runtime/algebra/stored_block.hpp"
+#include "runtime/prices.hpp"
 
 namespace greenloop {
 
-/// How a model predicts an odd node of its mesh, and the work units that this takes; by default from its two parents,
-/// with three components.
+/// How a model predicts an odd node of its mesh; by default from its two parents, with three components.
 struct Prediction {
   std::uint32_t components = 3;   ///< of a node
   std::uint32_t length = 2;       ///< nodes that it reads at most
   bool blocks = false;            ///< its weights are blocks, which are read in place, not numbers
   std::uint32_t block_bytes = 0;  ///< of one of those
-  std::uint32_t node_work = 6;    ///< of inverse_transform, an odd node
-  std::uint32_t detail_work = 8;  ///< of inverse_transform, a coefficient
-  std::uint32_t force_work = 3;   ///< of transform_forces, a visit
-  std::uint32_t pair_work = 18;   ///< of T^-1 of two rows of a capacitance matrix, a visit
-  std::uint32_t weight_work = 9;  ///< of a block times a weight of a functional
 };
 
 /// Of a model's wavelets. Work: a unit per level.
 [[nodiscard]] Prediction prediction_of(const ModelView& view) noexcept;
+
+// What it costs.
+
+/// Of inverse_transform, an odd node.
+constexpr std::uint32_t node_price(const Prices& prices, const Prediction& prediction) {
+  if (prediction.blocks) {
+    return prices.block_node + prediction.length * prices.block_term;
+  }
+  return prediction.length > 2 ? prices.butterfly_node : prices.linear_node;
+}
+
+/// Of transform_forces, a visit.
+constexpr std::uint32_t force_visit_price(const Prices& prices, const Prediction& prediction) {
+  return prediction.blocks ? prices.force_visit_by_blocks : prices.force_visit;
+}
+
+/// Of T^-1 of two rows of a capacitance matrix, a visit.
+constexpr std::uint32_t pair_visit_price(const Prices& prices, const Prediction& prediction) {
+  return prediction.blocks ? prices.pair_visit_by_blocks : prices.pair_visit;
+}
+
+/// Of a block times a weight of a functional.
+constexpr std::uint32_t meeting_price(const Prices& prices, const Prediction& prediction) {
+  return prediction.blocks ? prices.meeting_by_blocks : prices.meeting;
+}
 
 /// What StoredBlock<N, 16>::load of a weight in Predictions(q) is to be multiplied with, an exact power of two.
 template <unsigned N>

@@ -54,7 +54,7 @@ class RefinementTables {
 
 /// Calls visit(place, stored block) for what predicts an odd node, with block predictions. Work: a visit a term.
 template <class Visit>
-void visit_blocks(const Refinement& refinement, std::uint32_t odd, Visit visit) {
+[[gnu::always_inline]] inline void visit_blocks(const Refinement& refinement, std::uint32_t odd, Visit visit) {
   const LevelView& at = refinement.view->level[refinement.level[odd]];
   const std::uint32_t terms = at.predictions.terms;
   const std::size_t first = std::size_t{terms} * (odd - at.domain_begin);
@@ -65,7 +65,7 @@ void visit_blocks(const Refinement& refinement, std::uint32_t odd, Visit visit) 
 
 /// Calls visit(place, weight) for what predicts an odd node, with numbers as weights. Work: a visit a term.
 template <class Visit>
-void visit_numbers(const Refinement& refinement, std::uint32_t odd, Visit visit) {
+[[gnu::always_inline]] inline void visit_numbers(const Refinement& refinement, std::uint32_t odd, Visit visit) {
   for (const std::uint32_t parent : refinement.parents[odd].place) {
     if (parent != layout::none) {
       visit(parent, 0.5F);
@@ -80,7 +80,7 @@ void visit_numbers(const Refinement& refinement, std::uint32_t odd, Visit visit)
 
 /// Calls visit(place, stored block or weight) for what predicts an odd node.
 template <class Visit>
-void visit_prediction(const Refinement& refinement, std::uint32_t odd, Visit visit) {
+[[gnu::always_inline]] inline void visit_prediction(const Refinement& refinement, std::uint32_t odd, Visit visit) {
   if (refinement.prediction.blocks) {
     visit_blocks(refinement, odd, visit);
   } else {

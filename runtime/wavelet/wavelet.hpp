@@ -84,8 +84,9 @@ void inverse_transform(const ModelView& view, const PredictionOffsets<N>& offset
 /// Work units of inverse_transform. odd_nodes: of the domain above level 0; details: coefficients of levels up to
 /// levels.details.
 constexpr std::uint64_t inverse_transform_work(std::uint64_t nodes, std::uint64_t odd_nodes, std::uint64_t details,
-                                               const Prediction& prediction) {
-  return nodes + prediction.node_work * odd_nodes + prediction.detail_work * details;
+                                               const Prices& prices, const Prediction& prediction) {
+  return priced(nodes, prices.node) + priced(odd_nodes, node_price(prices, prediction)) +
+         priced(details, prices.detail);
 }
 
 }  // namespace greenloop
