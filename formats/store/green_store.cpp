@@ -75,7 +75,8 @@ GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
   require_unit(hdf5, kDisplacement, contents.unit);
   if (hdf5.shape(kDisplacement) != displacement_shape(contents)) {
     hdf5.fail(kDisplacement,
-              "its shape must be " + text(displacement_shape(contents)) + " (column, force, row, displacement)");
+              "its shape must be " + text(displacement_shape(contents)) +
+                  " (column, load, row, answer; loads and answers of 3 components, or of 1 in a scalar problem)");
   }
   Hdf5Shape shape;
   auto done = hdf5.read<unsigned char>(kDone, shape);

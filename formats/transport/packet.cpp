@@ -58,7 +58,7 @@ std::vector<std::byte> layer_bytes(const CouplingBlocks& joined, std::uint32_t l
 // of a model with this Info; a decoder's may say anything
 std::uint32_t stated_components(std::span<const std::byte> info) {
   layout::InfoStart start{};
-  std::memcpy(&start, info.data(), std::min(info.size(), sizeof(start)));
+  if (info.size() >= sizeof(start)) std::memcpy(&start, info.data(), sizeof(start));
   return layout::components_of(static_cast<layout::Problem>(start.problem));
 }
 

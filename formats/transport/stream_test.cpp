@@ -12,7 +12,7 @@
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
-#include "formats/transport/predictions_model.hpp"
+#include "formats/transport/packet.hpp"
 #include "formats/transport/stream.hpp"
 #include "formats/verify/crc32c.hpp"
 #include "formats/write/writer.hpp"
@@ -310,6 +310,24 @@ void check_changes(const Bytes& stream) {
 TEST_CASE("transport: changed bytes with checksums made right are refused or give a valid model, soon") {
   check_changes(pack(encode(synthetic_model({.levels = 2}))));
   check_changes(pack(encode(synthetic_model({.components = 1, .levels = 3}))));
+}
+
+TEST_CASE("transport: an Info too short to name its problem, as only a hostile stream has it, is read to its end") {
+  for (const std::size_t bytes : {0U, 1U, 3U}) {
+    std::vector<SectionBytes> sections(1), found;
+    sections[0].entry.kind = static_cast<std::uint32_t>(layout::SectionKind::info);
+    sections[0].entry.bytes = bytes;
+    sections[0].bytes.assign(bytes, std::byte{2});
+    const FileExtent extent{0, layout::aligned(std::max<std::size_t>(bytes, 1))};
+    if (bytes == 0) sections[0].entry.offset = extent.end;
+    RangeEncoder encoder;
+    PacketModel().code(encoder, 0, extent, sections, nullptr);
+    const Bytes coded = encoder.finish(1);
+    RangeDecoder decoder(coded);
+    PacketModel().code(decoder, 0, extent, found, nullptr);
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].bytes == sections[0].bytes);
+  }
 }
 
 TEST_CASE("transport: predictions from nothing come back; a header without terms bounds no work") {

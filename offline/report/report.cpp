@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "formats/write/describe.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
 #include "offline/report/build_record.hpp"
@@ -30,7 +31,18 @@ struct Material {
   std::optional<BuildRecord> build;
 };
 
+// of greenloop-loop, which runs no other models
+void require_run(const ModelView& model, const ReportInputs& inputs) {
+  if (model.problem == layout::Problem::elastostatic) return;
+  for (const auto& record : {inputs.trace, inputs.snapshot}) {
+    if (!record) continue;
+    throw std::runtime_error(fmt::format("{}: a run of an elastostatic model, but {} is a {} one; leave it out",
+                                         record->string(), inputs.model.string(), problem_name(model.problem)));
+  }
+}
+
 Material read_material(const ModelView& model, const ReportInputs& inputs) {
+  require_run(model, inputs);
   Material material{model, model_surface(model), {}, {}, {}, {}};
   if (inputs.trace) {
     material.trace = load_trace(*inputs.trace);
@@ -133,6 +145,7 @@ void add_build(const Material& material, HtmlPage& page, std::vector<Figure>& fi
 }
 
 std::vector<MissingInput> missing_inputs(const Material& material, const std::filesystem::path& model) {
+  if (material.model.problem != layout::Problem::elastostatic) return {};  // nothing builds or runs others
   const std::string name = model.string();
   const std::string loop = fmt::format(
       "greenloop-loop {} --trace trace.csv --snapshot snapshot.csv\ngreenloop report {} --trace "
@@ -140,9 +153,8 @@ std::vector<MissingInput> missing_inputs(const Material& material, const std::fi
       name, name);
   const std::string record = std::filesystem::path(model).replace_extension(".build.json").string();
   std::vector<MissingInput> missing;
-  const bool runs = material.model.problem == layout::Problem::elastostatic;  // in greenloop-loop
-  if (runs && !material.snapshot) missing.push_back({"The deformed body: no --snapshot was given", loop});
-  if (runs && !material.trace) missing.push_back({"Force, work and levels over time: no --trace was given", loop});
+  if (!material.snapshot) missing.push_back({"The deformed body: no --snapshot was given", loop});
+  if (!material.trace) missing.push_back({"Force, work and levels over time: no --trace was given", loop});
   const std::string build =
       fmt::format("greenloop build scene.toml -o {}\ngreenloop report {} --build {}", name, name, record);
   if (!material.build) {

@@ -288,7 +288,8 @@ TEST_CASE("facts say wavelet, bits, layers and certificate") {
   CHECK(fact(data, "wavelet") == "lifted linear");
 }
 
-TEST_CASE("a scalar model has no material, no unit, no loop to run; its dense matrix has a number a block") {
+TEST_CASE(
+    "a scalar model has no material, no unit, nothing that builds or runs it; its dense matrix has a number a block") {
   const TemporaryFolder folder("report_test");
   ModelData data = synthetic_model({.components = 1, .levels = 3});
   data.info.lambda_min = 2.5e-5;
@@ -304,7 +305,11 @@ TEST_CASE("a scalar model has no material, no unit, no loop to run; its dense ma
     CAPTURE(word);
     CHECK_FALSE(has(page, word));
   }
-  CHECK(report.missing.size() == 1);
+  CHECK(report.missing.empty());
+  const std::filesystem::path run = folder.path() / "run.csv";
+  const auto refused = doctest::Contains("run.csv: a run of an elastostatic model, but");
+  CHECK_THROWS_WITH((void)make_report(file.view, {.model = "m", .trace = run, .snapshot = {}, .build = {}}), refused);
+  CHECK_THROWS_WITH((void)make_report(file.view, {.model = "m", .trace = {}, .snapshot = run, .build = {}}), refused);
 }
 
 TEST_CASE("the frontier has a panel for every pair of figures that two points have") {

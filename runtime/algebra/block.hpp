@@ -62,7 +62,7 @@ inline float load_vector<1>(const float* at) {
 inline float component(Float4 x, std::size_t k) { return x[k]; }
 inline float component(float x, std::size_t) { return x; }
 
-/// The same with a fourth lane of 0.
+/// A vector with a fourth lane of 0.
 inline Float4 components(Float4 x) { return xyz(x); }
 inline float components(float x) { return x; }
 
@@ -83,14 +83,14 @@ inline float mean(float a, float b) { return 0.5F * (a + b); }
 inline Float4 scaled(float factor, Float4 x) { return splat(factor) * x; }
 inline float scaled(float factor, float x) { return factor * x; }
 
-/// With fourth lanes of 0 instead.
+inline Splats<3> splats(Float4 x) { return {{splat(x[0]), splat(x[1]), splat(x[2])}}; }
+inline Splats<1> splats(float x) { return {{x}}; }
+
+/// The same with fourth lanes of 0.
 inline Splats<3> component_splats(Float4 x) {
   return {{Float4{x[0], x[0], x[0], 0.0F}, Float4{x[1], x[1], x[1], 0.0F}, Float4{x[2], x[2], x[2], 0.0F}}};
 }
 inline Splats<1> component_splats(float x) { return {{x}}; }
-
-inline Splats<3> splats(Float4 x) { return {{splat(x[0]), splat(x[1]), splat(x[2])}}; }
-inline Splats<1> splats(float x) { return {{x}}; }
 
 inline BlockSplats<3> splats(const Block<3>& m) {
   BlockSplats<3> result;

@@ -7,8 +7,8 @@
 
 namespace greenloop {
 
-/// Four floats, lane by lane. Written with the compilers' vector extension, so that the order of
-/// operations, and with -ffp-contract=off every bit, is the same on every instruction set.
+/// Four floats, lane by lane. Written with the compilers' vector extension, so that the order of operations, and with
+/// -ffp-contract=off every bit, is the same on every instruction set.
 using Float4 = float __attribute__((vector_size(16)));
 
 inline Float4 splat(float value) { return Float4{value, value, value, value}; }

@@ -18,7 +18,7 @@ struct BaseColumns {
 
   /// Of a tile of N x N blocks, whose elements k are the 8 bytes from 8 k on.
   template <unsigned N>
-  static constexpr std::size_t tile_bytes = std::size_t{width} * N* N;
+  static constexpr std::size_t tile_bytes = std::size_t{N * N} * width;
 
   std::uint32_t columns = 0;         ///< level 0's, or none
   std::uint32_t tiles = 0;           ///< of a column
@@ -39,7 +39,7 @@ struct TileSums {
 
 /// Work units of a tile in a sum, whose values are side by side.
 template <unsigned N>
-inline constexpr std::uint64_t tile_work = std::uint64_t{BaseColumns::width} * N* N / 2;
+inline constexpr std::uint64_t tile_work = BaseColumns::tile_bytes<N> / 2;
 
 /// sums += tiles * force, for `count` of each. force: times the layers' quantum; its fourth lane is not looked at. All
 /// of these give the same bits. For the loop; work: tile_work units per tile.

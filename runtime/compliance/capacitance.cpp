@@ -276,6 +276,24 @@ void store(const Block<N>& block, std::size_t stride, float* a) {
 }  // namespace
 
 template <unsigned N>
+void CapacitanceScratch<N>::carve(Arena& arena, const ModelView& view, const CapacitanceSizes& sizes,
+                                  const Prediction& prediction) noexcept {
+  touched.carve(arena, view);
+  room = capacitance_room(sizes.slots, sizes.columns);
+  sorted = arena.take<std::uint32_t>(sizes.columns);
+  sorting = arena.take<std::uint32_t>(sizes.columns);
+  answer = arena.take<std::uint32_t>(sizes.columns);
+  functionals.carve(arena, sizes.columns, sizes.entries, sizes.slots, prediction);
+  slot = arena.take<std::uint32_t>(view.domain_count);
+  coefficient = arena.take<std::uint32_t>(sizes.slots);
+  root = arena.take<Block<N>>(sizes.slots);
+  inverse.carve(arena, sizes.slots, prediction);
+  sum = arena.take<BlockPair<N>>(room);
+  places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
+  blocks = arena.take<Block<N>>(sizes.longest_column + std::uint64_t{1});
+}
+
+template <unsigned N>
 void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
                           CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride, Float4* a) noexcept {
   const std::uint32_t slots = count_slots(set, touched);
@@ -404,6 +422,8 @@ void release_capacitance(const PartialCapacitance& partial, CapacitanceScratch<N
   }
 }
 
+template struct CapacitanceScratch<1>;
+template struct CapacitanceScratch<3>;
 template void assemble_capacitance<1>(const Refinement&, const ColumnSet&, const Touched&, CapacitanceScratch<1>&,
                                       Vector<1>*, std::uint32_t, Float4*) noexcept;
 template void begin_capacitance<1>(const Refinement&, const Touched&, CapacitanceScratch<1>&, Vector<1>*,

@@ -20,6 +20,14 @@ struct BlockPair {
   Block<N> row[2];
 };
 
+/// Bounds over all sets that a CapacitanceScratch has room for.
+struct CapacitanceSizes {
+  std::uint32_t columns;
+  std::uint64_t entries;         ///< weights of functionals
+  std::uint64_t slots;           ///< see below
+  std::uint32_t longest_column;  ///< blocks in a column of a layer
+};
+
 /// Memory of assemble_capacitance. A coefficient of the set's functionals has a slot, and so has each coarser column of
 /// a mixed set, for the value that its node has on its own level; there are `columns` columns and `entries` weights of
 /// functionals.
@@ -35,10 +43,13 @@ struct CapacitanceScratch {
   std::uint32_t* coefficient = nullptr;  ///< [slots] its place; layout::none: that of a column
   Block<N>* root = nullptr;              ///< [slots] scale
   SparseInverse inverse;                 ///< of the slots
-  std::uint64_t room = 0;                ///< pairs: slots * pairs(min(columns, least_batch)) of the most there may be
+  std::uint64_t room = 0;                ///< capacitance_room of the most there may be
   BlockPair<N>* sum = nullptr;           ///< [room]
   BlockPlace* places = nullptr;          ///< [longest column + 1]
   Block<N>* blocks = nullptr;            ///< [longest column + 1]
+
+  /// Arrays out of `arena`; null while it counts.
+  void carve(Arena& arena, const ModelView& view, const CapacitanceSizes& sizes, const Prediction& prediction) noexcept;
 };
 
 // The capacitance matrix in force form: block (i, j) is the displacement of the average of column i per force at column

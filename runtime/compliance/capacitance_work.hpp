@@ -47,6 +47,11 @@ constexpr std::uint64_t pairs(std::uint64_t rows) { return (rows + 1) / 2; }
 /// Rows of the matrix that are summed together, at least; even.
 inline constexpr std::uint32_t least_batch = 16;
 
+/// Pairs of sums that a scratch has for the largest set, of so many slots and columns.
+constexpr std::uint64_t capacitance_room(std::uint64_t slots, std::uint32_t columns) {
+  return slots * pairs(columns < least_batch ? columns : least_batch);
+}
+
 /// Adds the blocks, of all layers, that level q stores to the counts of both of their coefficients. degree: [domain of
 /// K(q)]. Start-up.
 void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept;

@@ -21,7 +21,7 @@ using AddBlocks = void (*)(const BlockRange& range, Vector<N> force, Vector<N>* 
 
 /// Work units of a block in a sum: its elements, and where it stands.
 template <unsigned N>
-inline constexpr std::uint64_t block_work = N*(N + 1);
+inline constexpr std::uint64_t block_work = std::uint64_t{N} * (N + 1);
 
 /// One for each layer of couplings. All of these give the same bits.
 template <unsigned N>

@@ -132,23 +132,6 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.field_blocks = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels);
 }
 
-void carve_capacitance(Arena& arena, const ModelView& view, const BodySizes& sizes, CapacitanceScratch<3>& scratch) {
-  scratch.touched.carve(arena, view);
-  const std::uint64_t entries = sizes.set_columns * sizes.functional;
-  scratch.room = sizes.counts.capacitance_room;
-  scratch.sorted = arena.take<std::uint32_t>(sizes.set_columns);
-  scratch.sorting = arena.take<std::uint32_t>(sizes.set_columns);
-  scratch.answer = arena.take<std::uint32_t>(sizes.set_columns);
-  scratch.functionals.carve(arena, sizes.set_columns, entries, sizes.slots, sizes.counts.prediction);
-  scratch.slot = arena.take<std::uint32_t>(view.domain_count);
-  scratch.coefficient = arena.take<std::uint32_t>(sizes.slots);
-  scratch.root = arena.take<Block<3>>(sizes.slots);
-  scratch.inverse.carve(arena, sizes.slots, sizes.counts.prediction);
-  scratch.sum = arena.take<BlockPair<3>>(scratch.room);
-  scratch.places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
-  scratch.blocks = arena.take<Block<3>>(sizes.longest_column + std::uint64_t{1});
-}
-
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
   if (!sizes.counts.forces_only) {
@@ -163,7 +146,9 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.planned.carve(arena, sizes.counts.max_contacts);
   body.other.carve(arena, sizes.counts.max_contacts);
   body.touched.carve(arena, view);
-  carve_capacitance(arena, view, sizes, body.capacitance);
+  const std::uint64_t entries = sizes.set_columns * sizes.functional;
+  body.capacitance.carve(arena, view, {sizes.set_columns, entries, sizes.slots, sizes.longest_column},
+                         sizes.counts.prediction);
   body.factoring.carve<3>(arena, sizes.set_columns);
   body.column_force = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
   body.other_column_force = arena.take<float>(std::uint64_t{3} * sizes.set_columns);

@@ -21,8 +21,9 @@ bool moves(std::span<const Constraint> contacts, const ContactSet& set, const La
 
 void Glide::carve(Arena& arena, std::uint32_t contacts, std::uint32_t cycles) noexcept {
   cycles_ = cycles;
-  difference_ = arena.take<float>(std::uint64_t{3} * contacts);
-  next_difference_ = arena.take<float>(std::uint64_t{3} * contacts);
+  // a glide that begins reads them, times zero
+  difference_ = arena.take_zeroed<float>(std::uint64_t{3} * contacts);
+  next_difference_ = arena.take_zeroed<float>(std::uint64_t{3} * contacts);
 }
 
 void Glide::turn_back(std::uint32_t contacts) noexcept {

@@ -157,8 +157,7 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   }
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
-  sizes.counts.capacitance_room =
-      sizes.slots * pairs(sizes.set_columns < least_batch ? sizes.set_columns : least_batch);
+  sizes.counts.capacitance_room = capacitance_room(sizes.slots, sizes.set_columns);
   bound_work(view, limits, most_of, mixed_of, sizes, requirement);
   sizes.supported = true;
 }

@@ -57,31 +57,13 @@ void Rooms<N>::carve(Arena& arena, std::uint32_t set_columns) {
   field_sums.of_tiles = base_maker_.columns().tiles > 0 ? arena.take_zeroed<TileSums<N>>(tiles) : nullptr;
   force = arena.take_zeroed<Vector<N>>(view.domain_count);
   touched.carve(arena, view);
-  carve_capacitance(arena, set_columns);
+  const std::uint64_t slots = most_slots(view, set_columns);
+  counts.capacitance_room = capacitance_room(slots, set_columns);
+  capacitance.prices = &counts.prices;
+  capacitance.carve(arena, view, {set_columns, slots * set_columns, slots, view.domain_count}, counts.prediction);
   cache.carve<N>(arena, counts.cached_factors, set_columns, counts.keeps_capacitance);
   factoring.carve<N>(arena, set_columns);
   job.carve<N>(arena, view, set_columns, counts.keeps_capacitance);
-}
-
-template <unsigned N>
-void Rooms<N>::carve_capacitance(Arena& arena, std::uint32_t set_columns) {
-  const std::uint64_t slots = most_slots(view, set_columns);
-  const std::uint64_t longest = std::uint64_t{view.domain_count} + 1;
-  counts.capacitance_room = slots * pairs(std::min(set_columns, least_batch));
-  capacitance.prices = &counts.prices;
-  capacitance.room = counts.capacitance_room;
-  capacitance.touched.carve(arena, view);
-  capacitance.sorted = arena.take<std::uint32_t>(set_columns);
-  capacitance.sorting = arena.take<std::uint32_t>(set_columns);
-  capacitance.answer = arena.take<std::uint32_t>(set_columns);
-  capacitance.functionals.carve(arena, set_columns, slots * set_columns, slots, counts.prediction);
-  capacitance.slot = arena.take<std::uint32_t>(view.domain_count);
-  capacitance.coefficient = arena.take<std::uint32_t>(slots);
-  capacitance.root = arena.take<Block<N>>(slots);
-  capacitance.inverse.carve(arena, slots, counts.prediction);
-  capacitance.sum = arena.take<BlockPair<N>>(capacitance.room);
-  capacitance.places = arena.take<BlockPlace>(longest);
-  capacitance.blocks = arena.take<Block<N>>(longest);
 }
 
 template <unsigned N>

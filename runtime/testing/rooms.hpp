@@ -58,7 +58,6 @@ class Rooms {
 
  private:
   void carve(Arena& arena, std::uint32_t set_columns);
-  void carve_capacitance(Arena& arena, std::uint32_t set_columns);
   void list_costs();
   void prepare_fields();
 

@@ -18,7 +18,7 @@ namespace greenloop {
 struct ColumnForces {
   std::uint32_t count;
   const std::uint32_t* column;  ///< [count] of distinct places, coarser ones first
-  const float* force;           ///< [N * count] N for three components; denormal numbers count as 0
+  const float* force;           ///< [N * count] newtons if N is 3; denormal numbers count as 0
 };
 
 /// The force coefficients T^-T f of forces on columns, each of which enters on its own level. touched: by the same

@@ -47,6 +47,6 @@ constexpr std::uint32_t meeting_price(const Prices& prices, const Prediction& pr
 
 /// What StoredBlock<N, 16>::load of a weight in Predictions(q) is to be multiplied with, an exact power of two.
 template <unsigned N>
-inline constexpr float weight_unit = StoredBlock<N, 16>::widening* layout::prediction_unit;
+inline constexpr float weight_unit = float{StoredBlock<N, 16>::widening} * layout::prediction_unit;
 
 }  // namespace greenloop
