@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -29,6 +30,32 @@ inline std::uint64_t block_count(const ElastostaticView& view, std::uint32_t fir
 inline std::uint32_t stored_row(const CouplingsView& view, std::uint32_t block) {
   return view.index_bytes == 2 ? static_cast<const std::uint16_t*>(view.index)[block]
                                : static_cast<const std::uint32_t*>(view.index)[block];
+}
+
+/// Blocks of a column; a section without blocks has no columns.
+inline std::uint32_t column_length(const CouplingsView& view, std::uint32_t column) {
+  return view.columns == 0 ? 0 : view.begin[column + 1] - view.begin[column];
+}
+
+/// Calls visit(row, position) for the blocks of a column in rows first .. end-1, by rows. Work: the logarithm of the
+/// column's length, and one visit a block.
+template <class Visit>
+void visit_rows(const CouplingsView& view, std::uint32_t column, std::uint32_t first, std::uint32_t end, Visit visit) {
+  if (view.columns == 0) {
+    return;
+  }
+  const auto visit_index = [&](const auto* index) {
+    const auto* last = index + view.begin[column + 1];
+    const auto* at = std::lower_bound(index + view.begin[column], last, first);
+    for (; at != last && *at < end; ++at) {
+      visit(std::uint32_t{*at}, static_cast<std::uint32_t>(at - index));
+    }
+  };
+  if (view.index_bytes == 2) {
+    visit_index(static_cast<const std::uint16_t*>(view.index));
+  } else {
+    visit_index(static_cast<const std::uint32_t*>(view.index));
+  }
 }
 
 /// Element k of a block of N x N, in quanta; value_bits: the layer's.

@@ -325,6 +325,10 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
   }
   Arena arena(memory.data());
   created.body.body_ = place_body(arena, view, sizes);
+  if (created.body.body_ == nullptr) {
+    created.error = CreateError::unsupported_model;
+    return created;
+  }
   created.body.body_->least_work = requirement.least_work;
   return created;
 }

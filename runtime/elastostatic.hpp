@@ -81,7 +81,8 @@ class Elastostatic {
 
   /// Carves `memory` with the routine that `required` counts with. The model's bytes and `memory` must outlive the
   /// body. Refuses a model whose refinement is not that of a subdivided triangulation, where a force on a node reaches
-  /// more than 192 nodes of a coarser level, or with 2^28 nodes or 2^30 blocks. Start-up; linear in the model's bytes.
+  /// more than 192 nodes of a coarser level, or with 2^28 nodes or 2^30 blocks, or that is ready for other nodes
+  /// being read than its own, unless `forces_only`. Start-up; linear in the model's bytes.
   [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
 
   /// One cycle of the loop: finds the forces that hold `constraints` where they are and the displacement of every

@@ -21,6 +21,12 @@
 //
 //   VertexMap                                        VertexRecord[]: where the author's vertices lie
 //
+// and, if the file is ready, what follows from the sections of the levels and a loop would make at its start
+//
+//   ReadMarks                                        u8 [domain nodes]
+//   BaseColumns                                      BaseColumnsHeader and its values
+//   MirroredCouplings(layer) for each layer          CouplingsHeader and its arrays
+//
 // `first` is Info::coarsest_constraint_level; levels below it have no Representatives and no Patterns. A touchable node
 // is represented on constraint level c by a domain node of K(c), by itself if it is one; any other node by `none`.
 // A node is named by its place in the file: coarse to fine, and within a level the *domain* (nodes whose displacement
@@ -265,5 +271,18 @@ struct CouplingsHeader {
   std::uint32_t reserved[4];
 };
 static_assert(sizeof(CouplingsHeader) == 64);
+
+/// Coefficients side by side in a tile of base columns.
+inline constexpr std::uint32_t tile_width = 8;
+
+/// The blocks of level 0's rows, transposed, as columns of tiles without indices; docs/format.md says when there are
+/// any. The values follow: [columns][tiles][N N][tile_width] i8.
+struct BaseColumnsHeader {
+  std::uint32_t columns;     ///< domain nodes of K(0), or 0
+  std::uint32_t tiles;       ///< of a column: domain nodes / tile_width, up to a whole tile; or 0
+  std::uint32_t layer_mask;  ///< bit l: layer l of the couplings is held here; or 0
+  std::uint32_t reserved[13];
+};
+static_assert(sizeof(BaseColumnsHeader) == 64);
 
 }  // namespace greenloop::layout

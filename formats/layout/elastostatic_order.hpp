@@ -28,4 +28,14 @@ bool visit_elastostatic_level(const Info& info, std::uint32_t q, Visit visit) {
   return !constrained || visit(SectionKind::patterns, q, 0);
 }
 
+/// The sections of a ready file that follow all others, likewise. Work: layers + 2 calls.
+template <class Visit>
+bool visit_ready_sections(Visit visit) {
+  if (!visit(SectionKind::read_marks, 0, 0) || !visit(SectionKind::base_columns, 0, 0)) return false;
+  for (std::uint32_t layer = 0; layer < layers; ++layer) {
+    if (!visit(SectionKind::mirrored_couplings, layer, 0)) return false;
+  }
+  return true;
+}
+
 }  // namespace greenloop::layout

@@ -35,9 +35,16 @@
   ROW(predictions, 14, "Predictions", 1, std::byte, predictions)                \
   ROW(vertex_map, 15, "VertexMap", 0, VertexRecord, bytes)
 
-#define GREENLOOP_SECTION_KINDS(ROW) \
-  GREENLOOP_COMMON_SECTIONS(ROW)     \
-  GREENLOOP_ELASTOSTATIC_SECTIONS(ROW)
+/// What follows from those before, in files that are ready: formats/write/ready_file.hpp writes it.
+#define GREENLOOP_READY_SECTIONS(ROW)                       \
+  ROW(read_marks, 16, "ReadMarks", 0, std::uint8_t, bytes)  \
+  ROW(base_columns, 17, "BaseColumns", 0, std::byte, bytes) \
+  ROW(mirrored_couplings, 18, "MirroredCouplings", 1, std::byte, bytes)
+
+#define GREENLOOP_SECTION_KINDS(ROW)   \
+  GREENLOOP_COMMON_SECTIONS(ROW)       \
+  GREENLOOP_ELASTOSTATIC_SECTIONS(ROW) \
+  GREENLOOP_READY_SECTIONS(ROW)
 
 namespace greenloop::layout {
 
@@ -76,8 +83,23 @@ constexpr std::uint32_t element_bytes(SectionKind kind) {
 /// Whether a number is a kind. Work: constant.
 constexpr bool is_section_kind(std::uint32_t number) { return element_bytes(static_cast<SectionKind>(number)) != 0; }
 
+/// Whether the kind holds what follows from others. Work: constant.
+constexpr bool is_ready_kind(SectionKind kind) {
+  switch (kind) {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding) \
+  case SectionKind::kind:                                           \
+    return true;
+    GREENLOOP_READY_SECTIONS(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+    default:
+      return false;
+  }
+}
+
 /// The minor version that brought the kind; those before 4.1 are not told apart.
-constexpr std::uint16_t first_minor(SectionKind kind) { return kind == SectionKind::vertex_map ? 2 : 0; }
+constexpr std::uint16_t first_minor(SectionKind kind) {
+  return is_ready_kind(kind) ? 4 : kind == SectionKind::vertex_map ? 2 : 0;
+}
 
 /// The minor version that brought Level::cut_error.
 inline constexpr std::uint16_t first_minor_of_cuts = 2;

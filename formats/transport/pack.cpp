@@ -7,6 +7,7 @@
 #include "formats/verify/crc32c.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/describe.hpp"
+#include "formats/write/ready_file.hpp"
 
 namespace greenloop::transport {
 namespace {
@@ -36,7 +37,8 @@ std::uint64_t end_of(const SectionBytes& section) {
 
 }  // namespace
 
-std::vector<std::byte> pack(std::span<const std::byte> model) {
+std::vector<std::byte> pack(std::span<const std::byte> whole) {
+  const std::vector<std::byte> model = plain_file(whole);
   const AlignedBytes file(model);
   ModelView view;
   const VerifyResult result = verify(file.span(), view);

@@ -84,14 +84,15 @@ struct UnpackedModel {
 
 inline constexpr std::uint32_t all_levels = 0xffffffff;
 
-/// The transport form of a whole model file. Throws std::invalid_argument if `model` is not a valid model.
-/// Deterministic. Memory: some times the model. Work: a microsecond or so for a value. Offline only.
+/// The transport form of a whole model file, without what plain_file leaves out. Throws std::invalid_argument if
+/// `model` is not a valid model. Deterministic. Memory: some times the model. Work: a microsecond or so for a value.
+/// Offline only.
 [[nodiscard]] std::vector<std::byte> pack(std::span<const std::byte> model);
 
 /// The model of the first `levels` mesh levels of a stream, or of all; what follows them is not looked at. The very
-/// bytes that were packed, or those that truncate_to_level makes of them. If the stream ends early, the result says so
-/// and `unpacked` holds the model of the whole packets there are; after any other fault it is empty.
-/// Memory and work are bounded by the length of the stream whatever its bytes. Offline only.
+/// bytes that were packed, ready sections left out, or those that truncate_to_level makes of them. If the stream ends
+/// early, the result says so and `unpacked` holds the model of the whole packets there are; after any other fault it is
+/// empty. Memory and work are bounded by the length of the stream whatever its bytes. Offline only.
 [[nodiscard]] StreamResult unpack(std::span<const std::byte> stream, UnpackedModel& unpacked,
                                   std::uint32_t levels = all_levels);
 

@@ -15,6 +15,7 @@
 #include "formats/transport/packet.hpp"
 #include "formats/transport/stream.hpp"
 #include "formats/verify/crc32c.hpp"
+#include "formats/write/ready_file.hpp"
 #include "formats/write/writer.hpp"
 
 namespace greenloop::transport {
@@ -189,6 +190,16 @@ TEST_CASE(
   newer.header().reserved[3] = 9;
   REQUIRE(newer.verdict().ok());
   check_round_trip({newer.bytes().begin(), newer.bytes().end()});
+}
+
+TEST_CASE("transport: what a loop can make of a model is not packed") {
+  const Bytes model = encode(synthetic_model({.levels = 3}));
+  ModelMutant plain(model);
+  REQUIRE(plain.verdict().ok());
+  const std::vector<std::uint8_t> read(plain.view().domain_count, 1);
+  const Bytes ready = ready_file(model, read);
+  REQUIRE(ready.size() > model.size());
+  CHECK(pack(ready) == pack(model));
 }
 
 TEST_CASE("transport: what is not a model is not packed") {

@@ -46,6 +46,44 @@ struct LevelView {
   }
 };
 
+/// The couplings of the coefficients of level 0 with those after them, where nearly all exist, of bodies of 512
+/// coefficients and more: whole columns without indices, eight coefficients side by side, so that a field sums them
+/// without gathering. They hold the layers of 8 and 4 bits, as far as these have one quantum; what needs 16 bits stays
+/// among the mirrored couplings.
+struct BaseColumns {
+  static constexpr std::uint32_t quantum_layer = 2;           ///< whose quantum they have: that of 8 bits
+  static constexpr std::uint32_t width = layout::tile_width;  ///< coefficients of a tile, of consecutive places
+
+  /// Of a tile of N x N blocks, whose elements k are the 8 bytes from 8 k on.
+  template <unsigned N>
+  static constexpr std::size_t tile_bytes = std::size_t{N * N} * width;
+
+  std::uint32_t columns = 0;         ///< level 0's, or none
+  std::uint32_t tiles = 0;           ///< of a column
+  bool holds[layout::layers] = {};   ///< its layers
+  const std::byte* value = nullptr;  ///< [columns * tiles * tile_bytes<N>]
+
+  template <unsigned N>
+  [[nodiscard]] const std::byte* column(std::uint32_t c) const {
+    return value + tile_bytes<N> * tiles * c;
+  }
+};
+
+/// The half of the couplings that Couplings sections leave out, but for what BaseColumns hold. They store the blocks of
+/// a coefficient with those before it; these are the blocks with those after it, transposed, in the same layers and the
+/// same stored values: `layer[...]` has a column for every domain node, whose rows are coefficients of larger places,
+/// increasing.
+struct MirroredCouplings {
+  CouplingsView layer[layout::layers];
+};
+
+/// What follows from the sections of the levels and stands in a file that is ready, so that a start need not make it.
+struct ReadyTables {
+  const std::uint8_t* read = nullptr;  ///< [domain] 1: blocks that move the coefficient are mirrored; null: not ready
+  BaseColumns base;
+  MirroredCouplings mirrored;
+};
+
 /// An elastostatic or scalar model, in place.
 struct ElastostaticView {
   const layout::Info* info = nullptr;
@@ -57,6 +95,7 @@ struct ElastostaticView {
   /// [constraint level][mesh level]
   const std::uint32_t* representatives[layout::max_levels][layout::max_levels] = {};
   std::span<const layout::VertexRecord> vertices;  ///< of the author's surface, in its order; empty: not kept
+  ReadyTables ready;
 };
 
 }  // namespace greenloop

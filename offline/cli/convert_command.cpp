@@ -17,7 +17,9 @@
 #include "formats/transport/stream.hpp"
 #include "formats/write/c_array.hpp"
 #include "formats/write/model_file.hpp"
+#include "formats/write/ready_file.hpp"
 #include "formats/write/writer.hpp"
+#include "offline/compress/encode/ready_model.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -65,7 +67,7 @@ ModelFile read_stream(const ConvertArguments& arguments) {
   return verified_model(AlignedBytes(unpacked.model), arguments.input.string());
 }
 
-ModelFile read_model(const ConvertArguments& arguments) {
+ModelFile read_levels(const ConvertArguments& arguments) {
   if (is_stream(arguments.input.extension().string())) return read_stream(arguments);
   ModelFile model = open_model_file(arguments.input);
   check_levels(arguments, model.view.levels);
@@ -75,9 +77,19 @@ ModelFile read_model(const ConvertArguments& arguments) {
   return verified_model(AlignedBytes(cut), arguments.output.string());
 }
 
+ModelFile read_model(const ConvertArguments& arguments) {
+  ModelFile model = read_levels(arguments);
+  if (!arguments.ready) return model;
+  const auto bytes = *arguments.ready ? ready_model(model.bytes.span()) : plain_file(model.bytes.span());
+  return verified_model(AlignedBytes(bytes), arguments.output.string());
+}
+
 void convert_model(const ConvertArguments& arguments, const std::string& to) {
-  if (arguments.input.extension() == to && !arguments.levels) {
-    refuse(arguments, "name the mesh levels to keep with --levels");
+  if (arguments.input.extension() == to && !arguments.levels && !arguments.ready) {
+    refuse(arguments, "name the mesh levels to keep with --levels, or say --ready or --no-ready");
+  }
+  if (is_stream(to) && arguments.ready.value_or(false)) {
+    refuse(arguments, "a transport form is never ready; leave --ready out, and say it where the form is unpacked");
   }
   const ModelFile model = read_model(arguments);
   if (is_c_source(to)) {
@@ -89,19 +101,26 @@ void convert_model(const ConvertArguments& arguments, const std::string& to) {
   } else if (is_stream(to)) {
     write_file(arguments.output, transport::pack(model.bytes.span()));
   } else {
-    refuse(arguments, "a model becomes .gloopz, .h and .c, .gloop with --levels, or .off, .obj, .stl, .ply");
+    refuse(
+        arguments,
+        "a model becomes .gloopz, .h and .c, .gloop with --levels, --ready or --no-ready, or .off, .obj, .stl, .ply");
   }
 }
 
-void convert_surface(const ConvertArguments& arguments, const std::string& to) {
-  if (!is_surface(to)) refuse(arguments, "a surface becomes .off, .obj, .stl or .ply; `greenloop build` makes models");
+void refuse_model_options(const ConvertArguments& arguments) {
   if (arguments.levels) refuse(arguments, "--levels is for models; leave it out");
+  if (arguments.ready) refuse(arguments, "--ready and --no-ready are for models; leave them out");
+}
+
+void convert_surface(const ConvertArguments& arguments, const std::string& to) {
+  refuse_model_options(arguments);
+  if (!is_surface(to)) refuse(arguments, "a surface becomes .off, .obj, .stl or .ply; `greenloop build` makes models");
   write_surface(arguments.output, read_surface(arguments.input));
 }
 
 void convert_volume(const ConvertArguments& arguments, const std::string& to) {
+  refuse_model_options(arguments);
   if (!is_volume(to)) refuse(arguments, "a volume becomes .msh, .mesh or .vtk");
-  if (arguments.levels) refuse(arguments, "--levels is for models; leave it out");
   write_volume(arguments.output, read_volume(arguments.input));
 }
 
@@ -138,6 +157,13 @@ void add_convert(CLI::App& parent, int& exit_code) {
   command->add_option(
       "--levels", arguments->levels,
       "Keep this many mesh levels of the model, coarsest first; of a transport form the rest is not read");
+  CLI::Option* const ready = command->add_flag_callback(
+      "--ready", [arguments] { arguments->ready = true; },
+      "Of a model: add what a loop would make of it at its start, to be read in place");
+  command
+      ->add_flag_callback(
+          "--no-ready", [arguments] { arguments->ready = false; }, "Of a model: leave that out")
+      ->excludes(ready);
   command->callback([arguments, &exit_code] { exit_code = run_convert(*arguments, std::cout); });
 }
 

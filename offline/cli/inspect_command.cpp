@@ -38,6 +38,16 @@ Json sections_of(const ModelFile& model) {
   return sections;
 }
 
+// of the sections that a loop would otherwise make at its start
+std::uint64_t ready_bytes(const ModelView& view) {
+  std::uint64_t bytes = 0;
+  for (const layout::SectionEntry& entry : section_entries(view)) {
+    const bool is_ready = layout::is_ready_kind(static_cast<layout::SectionKind>(entry.kind));
+    bytes += is_ready ? layout::aligned(entry.bytes) + sizeof(entry) : 0;
+  }
+  return bytes;
+}
+
 Json levels_of(const ModelView& view) {
   Json levels = Json::array();
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
@@ -152,6 +162,8 @@ Json inspection_of(const ModelFile& model) {
       {"constraint_levels", levels_of(view)},
       {"patterns", patterns_of(view)},
       {"vertices", view.vertices.size()},
+      {"ready", view.ready.read != nullptr},
+      {"ready_bytes", ready_bytes(view)},
       {"provenance", provenance_of(view)},
       {"sections", sections_of(model)},
   };
@@ -204,6 +216,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
         fmt::format("Young's modulus {} Pa, Poisson's ratio {}", material["young"].dump(), material["poisson"].dump()));
   }
   row("vertex map", found["vertices"] == 0 ? "none" : fmt::format("{} vertices", found["vertices"].dump()));
+  row("ready", found["ready"].get<bool>() ? "yes, " + bytes_text(found["ready_bytes"]) + " of the file" : "no");
   row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),
                            scene["max_contacts"].dump(), scene["step_work"].dump()));
   fmt::print(out, "\n  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", "level", "columns", "kept blocks", "dense",

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Eigenvalues>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -58,6 +60,11 @@ TEST_CASE("inspect: says how many vertices the model's vertex map has") {
   std::ostringstream out;
   CHECK(run_inspect({with / "sphere.gloop", false}, out) == 0);
   CHECK(out.str().find("vertex map          7 vertices\n") != std::string::npos);
+}
+
+std::string read_all(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 std::string convert_refusal(const ConvertArguments& arguments) {
@@ -284,7 +291,7 @@ TEST_CASE("verify --certificate: holds just below the least eigenvalue, not just
   CHECK(none["message"].get<std::string>().find("carries no certificate") != std::string::npos);
 
   std::ostringstream out;
-  CHECK(run_convert({folder / "right.gloop", folder / "cut.gloop", 2}, out) == 0);
+  CHECK(run_convert({folder / "right.gloop", folder / "cut.gloop", 2, {}}, out) == 0);
   out.str("");
   CHECK(run_verify({folder / "cut.gloop", true, true}, out) == 1);
   CHECK(Json::parse(out.str())["message"].get<std::string>().find("is cut off") != std::string::npos);
@@ -293,7 +300,7 @@ TEST_CASE("verify --certificate: holds just below the least eigenvalue, not just
 TEST_CASE("convert: a model becomes C source, header and definition") {
   const Folder folder("convert_c");
   std::ostringstream out;
-  CHECK(run_convert({folder / "sphere.gloop", folder / "left-hand.h", {}}, out) == 0);
+  CHECK(run_convert({folder / "sphere.gloop", folder / "left-hand.h", {}, {}}, out) == 0);
   const auto text = [&](const std::string& name) {
     const AlignedBytes bytes = load_file(folder / name);
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -305,7 +312,7 @@ TEST_CASE("convert: a model becomes C source, header and definition") {
 TEST_CASE("convert: a model becomes a coarser model") {
   const Folder folder("convert_cut");
   std::ostringstream out;
-  CHECK(run_convert({folder / "sphere.gloop", folder / "coarse.gloop", 2}, out) == 0);
+  CHECK(run_convert({folder / "sphere.gloop", folder / "coarse.gloop", 2, {}}, out) == 0);
   const ModelFile model = open_model_file(folder / "coarse.gloop");
   CHECK(model.view.levels == 2);
   CHECK(model.view.node_count == 18);
@@ -314,12 +321,45 @@ TEST_CASE("convert: a model becomes a coarser model") {
   CHECK(found["constraint_levels"].size() == 2);
 }
 
+TEST_CASE("convert: a model becomes ready and plain again, and a coarser one is as it was asked for") {
+  const Folder folder("convert_ready");
+  const auto plain = folder / "sphere.gloop", ready = folder / "ready.gloop", back = folder / "back.gloop";
+  std::ostringstream out;
+  const auto converted = [&](const ConvertArguments& arguments) {
+    CHECK(run_convert(arguments, out) == 0);
+    return inspect_json(arguments.output);
+  };
+  const Json found = converted({.input = plain, .output = ready, .levels = {}, .ready = true});
+  CHECK(found["ready"] == true);
+  CHECK(found["version"] == "4.4");
+  CHECK(found["bytes"].get<std::size_t>() ==
+        std::filesystem::file_size(plain) + found["ready_bytes"].get<std::size_t>());
+  CHECK(found["sections"].back()["kind"] == "MirroredCouplings(3)");
+  CHECK(converted({.input = ready, .output = back, .levels = {}, .ready = false})["ready"] == false);
+  CHECK(read_all(back) == read_all(plain));
+  CHECK(converted({.input = ready, .output = back, .levels = 2, .ready = {}})["ready"] == false);
+  CHECK(converted({.input = ready, .output = back, .levels = 2, .ready = true})["ready"] == true);
+  const auto stream = folder / "ready.gloopz";
+  CHECK(run_convert({.input = ready, .output = stream, .levels = {}, .ready = {}}, out) == 0);
+  CHECK(converted({.input = stream, .output = back, .levels = {}, .ready = {}})["ready"] == false);
+  CHECK(read_all(back) == read_all(plain));
+  CHECK(converted({.input = stream, .output = back, .levels = {}, .ready = true})["ready"] == true);
+  CHECK(read_all(back) == read_all(ready));
+  CHECK(convert_refusal({.input = plain, .output = stream, .levels = {}, .ready = true}).find("--ready") !=
+        std::string::npos);
+  CHECK(convert_refusal({.input = folder / "a.off", .output = folder / "b.obj", .levels = {}, .ready = true})
+            .find("are for models") != std::string::npos);
+  std::ostringstream table;
+  CHECK(run_inspect({ready, false}, table) == 0);
+  CHECK(table.str().find("ready               yes, ") != std::string::npos);
+}
+
 TEST_CASE("convert: a model becomes its surface, at any level, and that another format") {
   const Folder folder("convert_surface");
   std::ostringstream out;
-  CHECK(run_convert({folder / "sphere.gloop", folder / "fine.obj", {}}, out) == 0);
-  CHECK(run_convert({folder / "sphere.gloop", folder / "base.off", 1}, out) == 0);
-  CHECK(run_convert({folder / "fine.obj", folder / "fine.ply", {}}, out) == 0);
+  CHECK(run_convert({folder / "sphere.gloop", folder / "fine.obj", {}, {}}, out) == 0);
+  CHECK(run_convert({folder / "sphere.gloop", folder / "base.off", 1, {}}, out) == 0);
+  CHECK(run_convert({folder / "fine.obj", folder / "fine.ply", {}, {}}, out) == 0);
   const TriangleMesh fine = read_surface(folder / "fine.ply");
   CHECK(fine.vertices.size() == 66);
   CHECK(fine.triangles.size() == 128);
@@ -332,11 +372,12 @@ TEST_CASE("convert: a volume becomes another format") {
   const TetrahedralMesh one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 1, 2, 3}}};
   write_volume(folder / "one.msh", one);
   std::ostringstream out;
-  CHECK(run_convert({folder / "one.msh", folder / "one.mesh", {}}, out) == 0);
+  CHECK(run_convert({folder / "one.msh", folder / "one.mesh", {}, {}}, out) == 0);
   const TetrahedralMesh back = read_volume(folder / "one.mesh");
   CHECK(back.vertices == one.vertices);
   CHECK(back.tetrahedra == one.tetrahedra);
-  CHECK(convert_refusal({folder / "one.msh", folder / "one.obj", {}}).find("a volume becomes") != std::string::npos);
+  CHECK(convert_refusal({folder / "one.msh", folder / "one.obj", {}, {}}).find("a volume becomes") !=
+        std::string::npos);
 }
 
 std::vector<std::byte> contents(const std::filesystem::path& file) {
@@ -358,7 +399,7 @@ TEST_CASE("convert: a model becomes its transport form and comes back, whole or 
   CHECK(run_convert({stream, folder / "unpacked.gloop", 2}, out) == 0);
   CHECK(contents(folder / "unpacked.gloop") == contents(coarse));
   CHECK(run_convert({sphere, folder / "coarse.gloopz", 2}, out) == 0);
-  CHECK(run_convert({folder / "coarse.gloopz", folder / "again.gloop", {}}, out) == 0);
+  CHECK(run_convert({folder / "coarse.gloopz", folder / "again.gloop", {}, {}}, out) == 0);
   CHECK(contents(folder / "again.gloop") == contents(coarse));
 
   CHECK(run_convert({stream, folder / "fine.off", {}}, out) == 0);
@@ -368,7 +409,8 @@ TEST_CASE("convert: a model becomes its transport form and comes back, whole or 
   CHECK(convert_refusal({stream, folder / "b.gloop", 4}).find("--levels 4, but the model has 3") != std::string::npos);
   CHECK(convert_refusal({stream, folder / "b.gloop", 0}).find("--levels 0, but the model has 3") != std::string::npos);
   CHECK(convert_refusal({stream, folder / "b.gloopz", {}}).find("--levels") != std::string::npos);
-  CHECK(convert_refusal({folder / "fine.off", folder / "b.gloopz", {}}).find("a surface becomes") != std::string::npos);
+  CHECK(convert_refusal({folder / "fine.off", folder / "b.gloopz", {}, {}}).find("a surface becomes") !=
+        std::string::npos);
 }
 
 TEST_CASE("convert: a truncated transport form is refused, its whole levels are given when asked for") {
@@ -435,6 +477,14 @@ TEST_CASE("the commands register themselves and set the exit code") {
             false);
   CHECK(exit_code == 0);
   CHECK(std::filesystem::exists(folder / "c.gloop"));
+  const std::string ready = (folder / "r.gloop").string(), copy = (folder / "copy.gloop").string();
+  app.parse("convert " + (folder / "sphere.gloop").string() + " --ready -o " + ready, false);
+  CHECK(inspect_json(ready)["ready"] == true);
+  CLI::App without;
+  add_convert(without, exit_code);
+  CHECK_THROWS_AS(without.parse("convert " + ready + " -o " + copy, false), std::runtime_error);
+  app.parse("convert " + ready + " --no-ready -o " + copy, false);
+  CHECK(inspect_json(copy)["ready"] == false);
   CHECK_THROWS_AS(app.parse("inspect", false), CLI::RequiredError);
 }
 

@@ -15,6 +15,7 @@
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "formats/write/writer.hpp"
+#include "offline/compress/encode/ready_model.hpp"
 #include "offline/compress/model_builder.hpp"
 #include "offline/compress/wavelet_choice.hpp"
 #include "offline/pipeline/body_geometry.hpp"
@@ -197,7 +198,8 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   built.model.provenance = provenance.dump();
   if (!scene.budget.work) built.model.info.step_work = built.report.trials.back().step_work;
   if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
-  const auto bytes = encode(built.model);
+  const auto plain = encode(built.model);
+  const auto bytes = scene.ready ? ready_model(plain) : plain;
   require_least_work(scene, bytes);
   write_file(request.model, bytes);
 

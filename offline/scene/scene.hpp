@@ -72,6 +72,7 @@ struct Scene {
   int coarsest_constraints = 0;  ///< coarsest level offered for contacts, 0..remesh.levels
   AccuracyGoal accuracy;
   std::optional<layout::Wavelet> wavelet;  ///< none: the best, by measurement
+  bool ready = false;                      ///< put what a loop would make at its start into the model
   StepBudget budget;
   std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory
   std::string store_name;                      ///< as the scene says

@@ -198,8 +198,9 @@ void read_accuracy(const Table& scene, AccuracyGoal& accuracy) {
   }
 }
 
-void read_compression(const Table& scene, std::optional<layout::Wavelet>& wavelet) {
-  const auto table = section(scene, "compression", {"wavelet"});
+void read_compression(const Table& scene, std::optional<layout::Wavelet>& wavelet, bool& ready) {
+  const auto table = section(scene, "compression", {"wavelet", "ready"});
+  if (table) set_if(ready, table->boolean("ready"));
   const auto name = table ? table->string("wavelet") : std::nullopt;
   if (!name || *name == "auto") {
     return;
@@ -267,7 +268,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   read_regions(table, "read", scene.read);
   read_constraints(table, scene.remesh.levels, scene.coarsest_constraints);
   read_accuracy(table, scene.accuracy);
-  read_compression(table, scene.wavelet);
+  read_compression(table, scene.wavelet, scene.ready);
   read_budget(table, scene.budget);
   read_store(table, file, scene);
   problems.throw_if_any();

@@ -143,6 +143,16 @@ TEST_CASE("a vertex map is kept if the scene says so, and only then part of the 
   CHECK(canonical_text(declines) == canonical_text(parse_scene(smallest, "s.toml")));
 }
 
+TEST_CASE("a model is made ready if the scene says so, and only then is it part of the canonical text") {
+  CHECK(!parse_scene(smallest, "s.toml").ready);
+  const Scene asks = parse_scene(smallest + "\n[compression]\nready = true\n", "s.toml");
+  CHECK(asks.ready);
+  CHECK(!asks.wavelet);
+  CHECK(parse_scene(canonical_text(asks), "s.toml").ready);
+  const Scene declines = parse_scene(smallest + "\n[compression]\nready = false\n", "s.toml");
+  CHECK(canonical_text(declines) == canonical_text(parse_scene(smallest, "s.toml")));
+}
+
 TEST_CASE("patch forces and fields may be off by more than themselves, but neither not at all nor tenfold") {
   CHECK(parse_scene(smallest + "[accuracy]\npatch_force = 1.5\n", "s.toml").accuracy.patch_force == 1.5);
   for (const std::string key : {"patch_force", "field", "field_peak", "field_rough"}) {

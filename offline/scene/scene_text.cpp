@@ -88,9 +88,9 @@ std::string accuracy_text(const AccuracyGoal& accuracy) {
          goal("field_peak", accuracy.field_peak) + goal("field_rough", accuracy.field_rough) + "\n";
 }
 
-std::string compression_text(std::optional<layout::Wavelet> wavelet) {
+std::string compression_text(std::optional<layout::Wavelet> wavelet, bool ready) {
   const std::string name(wavelet ? wavelet_name(static_cast<std::uint32_t>(*wavelet)) : "auto");
-  return "\n[compression]\nwavelet = \"" + name + "\"\n";
+  return "\n[compression]\nwavelet = \"" + name + "\"\n" + (ready ? "ready = true\n" : "");
 }
 
 std::string budget_text(const StepBudget& budget) {
@@ -111,7 +111,7 @@ std::string body_text(const Scene& scene) { return mesh_text(scene.mesh) + table
 std::string canonical_text(const Scene& scene) {
   return mesh_text(scene.mesh) + (scene.mesh.keep_vertex_map ? "keep_vertex_map = true\n" : "") +
          tables_of_body(scene) + "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
-         accuracy_text(scene.accuracy) + compression_text(scene.wavelet) + budget_text(scene.budget) +
+         accuracy_text(scene.accuracy) + compression_text(scene.wavelet, scene.ready) + budget_text(scene.budget) +
          (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
 }
 

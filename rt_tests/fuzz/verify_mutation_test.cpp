@@ -11,6 +11,7 @@
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/write/describe.hpp"
+#include "formats/write/ready_file.hpp"
 #include "rt_tests/fuzz/walk_view.hpp"
 
 namespace greenloop {
@@ -107,6 +108,18 @@ TEST_CASE("verify survives random changes of valid files, and what it accepts is
        encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .wavelet = layout::Wavelet::linear})),
        encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly})), measured_model(),
        encode(synthetic_model({.levels = 2, .vertices = 40}))}));
+}
+
+// everything is read
+std::vector<std::byte> made_ready(const SyntheticOptions& options) {
+  ModelMutant plain(options);
+  REQUIRE(plain.verdict().ok());
+  return ready_file(plain.bytes(), std::vector<std::uint8_t>(plain.view().domain_count, 1));
+}
+
+TEST_CASE("verify survives random changes of ready files, and what it accepts is sound") {
+  check_survival(Mutator({made_ready({.levels = 1}), made_ready({.levels = 3, .vertices = 4}),
+                          made_ready({.components = 1, .levels = 2, .wavelet = layout::Wavelet::butterfly})}));
 }
 
 TEST_CASE("verify survives random changes of scalar models, and what it accepts is sound") {

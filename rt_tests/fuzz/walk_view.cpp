@@ -31,7 +31,7 @@ class Walk {
         if (!representatives(c, q)) return false;
       }
     }
-    return vertices();
+    return vertices() && ready();
   }
 
  private:
@@ -109,6 +109,25 @@ class Walk {
            all(view_.vertices.data(), view_.vertices.size(), right);
   }
 
+  bool ready() const {
+    const ReadyTables& ready = view_.ready;
+    if (ready.read == nullptr) return true;
+    const BaseColumns& base = ready.base;
+    const std::uint64_t tile = std::uint64_t{BaseColumns::width} * components() * components();
+    if (!array(ready.read, view_.domain_count) || !array(base.value, tile * base.tiles * base.columns) ||
+        (base.columns != 0 && (base.columns != domain(0) || base.tiles != (view_.domain_count + 7) / 8))) {
+      return false;
+    }
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      const CouplingsView& mirrored = ready.mirrored.layer[layer];
+      if ((mirrored.columns != 0 && mirrored.columns != view_.domain_count) || mirrored.rows != view_.domain_count ||
+          !sound(mirrored, layout::value_bits[layer], true)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
   template <unsigned N>
   bool scales(std::uint32_t q) const {
     const layout::Scale<N>* const scales = view_.level[q].scales_of<N>();
@@ -133,14 +152,14 @@ class Walk {
       const float quantum = view_.info->quantum[layer];
       const bool empty = couplings.columns == 0 && couplings.begin[0] == 0;
       if ((!empty && couplings.columns != domain(q)) || couplings.rows != domain_of_mesh(q) ||
-          !(quantum >= 0 && quantum <= 1) || !sound(couplings, layout::value_bits[layer])) {
+          !(quantum >= 0 && quantum <= 1) || !sound(couplings, layout::value_bits[layer], false)) {
         return false;
       }
     }
     return true;
   }
 
-  bool sound(const CouplingsView& couplings, std::uint32_t value_bits) const {
+  bool sound(const CouplingsView& couplings, std::uint32_t value_bits, bool mirrored) const {
     if (!array(couplings.begin, couplings.columns + 1ull)) return false;
     const std::uint64_t block_count = couplings.begin[couplings.columns];
     for (std::uint32_t j = 0; j < couplings.columns; ++j) {
@@ -148,8 +167,8 @@ class Walk {
     }
     const bool rows_right =
         couplings.index_bytes == 2
-            ? rows_before_column(couplings, static_cast<const std::uint16_t*>(couplings.index), block_count)
-            : rows_before_column(couplings, static_cast<const std::uint32_t*>(couplings.index), block_count);
+            ? rows_right_of(couplings, static_cast<const std::uint16_t*>(couplings.index), block_count, mirrored)
+            : rows_right_of(couplings, static_cast<const std::uint32_t*>(couplings.index), block_count, mirrored);
     if (!rows_right) return false;
     switch (value_bits) {
       case 4:
@@ -162,12 +181,14 @@ class Walk {
   }
 
   template <class Index>
-  bool rows_before_column(const CouplingsView& couplings, const Index* index, std::uint64_t block_count) const {
+  bool rows_right_of(const CouplingsView& couplings, const Index* index, std::uint64_t block_count,
+                     bool mirrored) const {
     if (!array(index, block_count)) return false;
     const std::uint32_t first = couplings.rows - couplings.columns;
     for (std::uint32_t j = 0; j < couplings.columns; ++j) {
       for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-        if (index[b] >= first + j || (b > couplings.begin[j] && index[b] <= index[b - 1])) return false;
+        const bool right = mirrored ? index[b] > j && index[b] < couplings.rows : index[b] < first + j;
+        if (!right || (b > couplings.begin[j] && index[b] <= index[b - 1])) return false;
       }
     }
     return true;

@@ -5,49 +5,10 @@
 #include <immintrin.h>
 #endif
 
-#include "formats/stored_blocks.hpp"
 #include "runtime/algebra/processor.hpp"
-#include "runtime/compliance/couplings.hpp"
-#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {
-
-constexpr std::uint32_t eight_bits = BaseColumns::quantum_layer;
-constexpr std::uint32_t four_bits = 3;
-constexpr std::uint32_t least_domain = 512;
-static_assert(layout::value_bits[eight_bits] == 8 && layout::value_bits[four_bits] == 4);
-
-// calls visit(couplings, layer, row, column among all coefficients, position) for the blocks of level 0's rows
-template <class Visit>
-void visit_base(const ModelView& view, const bool (&holds)[layout::layers], Visit visit) {
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-      const CouplingsView& couplings = level.couplings[layer];
-      for (std::uint32_t j = 0; holds[layer] && j < couplings.columns; ++j) {
-        visit_rows(couplings, j, 0, domain_up_to(view, 0), [&](std::uint32_t row, std::uint32_t position) {
-          visit(couplings, layer, row, level.domain_begin + j, position);
-        });
-      }
-    }
-  }
-}
-
-// whether a block of level 0's rows has a part in both layers
-bool share_blocks(const ModelView& view) {
-  bool shared = false;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const CouplingsView& other = view.level[q].couplings[eight_bits];
-    const CouplingsView& couplings = view.level[q].couplings[four_bits];
-    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
-      visit_rows(couplings, j, 0, domain_up_to(view, 0), [&](std::uint32_t row, std::uint32_t) {
-        visit_rows(other, j, row, row + 1, [&](std::uint32_t, std::uint32_t) { shared = true; });
-      });
-    }
-  }
-  return shared;
-}
 
 #if defined(__x86_64__)
 [[gnu::target("avx2")]] inline __m256 load_eight(const std::byte* bytes) {
@@ -140,38 +101,19 @@ AddTiles<3> fastest_add_tiles<3>() noexcept {
 
 template <unsigned N>
 void BaseColumnsMaker<N>::carve(Arena& arena, const ModelView& view) noexcept {
-  made_ = {};
-  made_.holds[eight_bits] = true;
-  made_.holds[four_bits] = view.info->quantum[four_bits] == view.info->quantum[eight_bits] && !share_blocks(view);
-  std::uint64_t blocks = 0;
-  visit_base(view, made_.holds,
-             [&](const CouplingsView&, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) { ++blocks; });
-  const std::uint32_t columns = domain_up_to(view, 0);
-  const std::uint64_t all = std::uint64_t{columns} * tiles_of(view.domain_count) * BaseColumns::width;
-  // tiles of fewer blocks take more memory and time than those, and short columns do not pay where there are no vectors
-  if (4 * blocks < 3 * all || view.domain_count < least_domain) {
-    made_ = {};
-    return;
+  is_ready_ = view.ready.read != nullptr;
+  made_ = is_ready_ ? view.ready.base : base_columns_of(view);
+  if (!is_ready_ && made_.columns > 0) {
+    value_ = arena.take_zeroed<std::byte>(value_bytes<N>(made_));
   }
-  made_.columns = columns;
-  made_.tiles = tiles_of(view.domain_count);
-  value_ = arena.take_zeroed<std::byte>(BaseColumns::tile_bytes<N> * made_.tiles * columns);
 }
 
 template <unsigned N>
 BaseColumns BaseColumnsMaker<N>::make(const ModelView& view) noexcept {
-  visit_base(view, made_.holds,
-             [&](const CouplingsView& couplings, std::uint32_t layer, std::uint32_t row, std::uint32_t column,
-                 std::uint32_t position) {
-               std::byte* const tile =
-                   value_ + BaseColumns::tile_bytes<N> * (std::size_t{made_.tiles} * row + column / BaseColumns::width);
-               for (std::uint32_t k = 0; k < N * N; ++k) {  // transposed
-                 std::byte& element = tile[8 * (N * (k % N) + k / N) + column % BaseColumns::width];
-                 const int value = stored_value<N>(couplings, layout::value_bits[layer], position, k);
-                 element = static_cast<std::byte>(static_cast<std::int8_t>(element) + value);
-               }
-             });
-  made_.value = value_;
+  if (!is_ready_) {
+    fill_base_columns<N>(view, made_, value_);
+    made_.value = value_;
+  }
   return made_;
 }
 

@@ -2,34 +2,12 @@
 
 #include <cstdint>
 
+#include "formats/ready/base_columns.hpp"
 #include "formats/view.hpp"
 #include "runtime/algebra/block.hpp"
 #include "runtime/memory/arena.hpp"
 
 namespace greenloop {
-
-/// The couplings of the coefficients of level 0 with those after them, where nearly all exist, of bodies of 512
-/// coefficients and more: whole columns without indices, eight coefficients side by side, so that a field sums them
-/// without gathering. They hold the layers of 8 and 4 bits, as far as these have one quantum; what needs 16 bits stays
-/// among the mirrored couplings.
-struct BaseColumns {
-  static constexpr std::uint32_t quantum_layer = 2;  ///< whose quantum they have: that of 8 bits
-  static constexpr std::uint32_t width = 8;          ///< coefficients of a tile, of consecutive places
-
-  /// Of a tile of N x N blocks, whose elements k are the 8 bytes from 8 k on.
-  template <unsigned N>
-  static constexpr std::size_t tile_bytes = std::size_t{N * N} * width;
-
-  std::uint32_t columns = 0;         ///< level 0's, or none
-  std::uint32_t tiles = 0;           ///< of a column
-  bool holds[layout::layers] = {};   ///< its layers
-  const std::byte* value = nullptr;  ///< [columns * tiles * tile_bytes<N>]
-
-  template <unsigned N>
-  [[nodiscard]] const std::byte* column(std::uint32_t c) const {
-    return value + tile_bytes<N> * tiles * c;
-  }
-};
 
 /// Sums of a tile's displacements: each component of its first four coefficients and of the others.
 template <unsigned N>
@@ -58,26 +36,22 @@ template <>
 template <>
 [[nodiscard]] AddTiles<3> fastest_add_tiles<3>() noexcept;
 
-/// Tiles that hold the first `coefficients`.
-constexpr std::uint32_t tiles_of(std::uint32_t coefficients) {
-  return (coefficients + BaseColumns::width - 1) / BaseColumns::width;
-}
-
-/// Where they are made.
+/// Where they are made, or found in a file that is ready.
 template <unsigned N>
 class BaseColumnsMaker {
  public:
-  /// Arrays out of `arena`; null while it counts. Start-up; linear in the blocks.
+  /// Arrays out of `arena`; null while it counts. Start-up; linear in the blocks, nothing if the file is ready.
   void carve(Arena& arena, const ModelView& view) noexcept;
 
   /// Which there are: none if too few of their blocks exist. After carve.
   [[nodiscard]] const BaseColumns& columns() const { return made_; }
 
-  /// Makes them. Start-up; linear in the blocks.
+  /// Makes them. Start-up; linear in the blocks, nothing if the file is ready.
   [[nodiscard]] BaseColumns make(const ModelView& view) noexcept;
 
  private:
   BaseColumns made_;
+  bool is_ready_ = false;
   std::byte* value_ = nullptr;
 };
 

@@ -1,8 +1,8 @@
 #include "runtime/compliance/couplings.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
-#include "formats/stored_blocks.hpp"
 #include "runtime/algebra/stored_block.hpp"
 #include "runtime/wavelet/domain.hpp"
 

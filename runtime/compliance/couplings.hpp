@@ -1,8 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
+#include "formats/stored_blocks.hpp"
 #include "formats/view.hpp"
 #include "runtime/algebra/block.hpp"
 
@@ -19,32 +19,6 @@ struct BlockPlace {
 /// Value of one quantum of a layer, times the widening of the stored values (see StoredBlock).
 template <unsigned N>
 [[nodiscard]] float block_factor(const layout::Info& info, std::uint32_t layer) noexcept;
-
-/// Blocks of a column; a section without blocks has no columns.
-inline std::uint32_t column_length(const CouplingsView& view, std::uint32_t column) {
-  return view.columns == 0 ? 0 : view.begin[column + 1] - view.begin[column];
-}
-
-/// Calls visit(row, position) for the blocks of a column in rows first .. end-1, by rows. Work: the logarithm of the
-/// column's length, and one visit a block.
-template <class Visit>
-void visit_rows(const CouplingsView& view, std::uint32_t column, std::uint32_t first, std::uint32_t end, Visit visit) {
-  if (view.columns == 0) {
-    return;
-  }
-  const auto visit_index = [&](const auto* index) {
-    const auto* last = index + view.begin[column + 1];
-    const auto* at = std::lower_bound(index + view.begin[column], last, first);
-    for (; at != last && *at < end; ++at) {
-      visit(std::uint32_t{*at}, static_cast<std::uint32_t>(at - index));
-    }
-  };
-  if (view.index_bytes == 2) {
-    visit_index(static_cast<const std::uint16_t*>(view.index));
-  } else {
-    visit_index(static_cast<const std::uint32_t*>(view.index));
-  }
-}
 
 /// The blocks of a column in the rows with a slot below `slots`, to be multiplied by block_factor; target: the slot.
 /// The others are not decoded. Returns their number. slot: [rows], layout::none without one; places, blocks: [blocks of

@@ -2,8 +2,8 @@
 
 #include <cstring>
 
+#include "formats/ready/mirrored_couplings.hpp"
 #include "formats/stored_blocks.hpp"
-#include "runtime/compliance/couplings.hpp"
 #include "runtime/wavelet/column.hpp"
 #include "runtime/wavelet/domain.hpp"
 
@@ -13,25 +13,6 @@ namespace {
 constexpr std::size_t padding = 16;  // bytes that a load may reach beyond a block
 
 std::uint32_t index_bytes(const ModelView& view) { return view.domain_count <= 0x10000 ? 2 : 4; }
-
-// calls visit(section, row, column among all coefficients, position in the section) for the blocks of a layer that are
-// not held by others and whose column is read, by columns; read: null if all are
-template <class Visit>
-void visit_layer(const ModelView& view, std::uint32_t layer, const BaseColumns& base, const std::uint8_t* read,
-                 Visit visit) {
-  const std::uint32_t first = base.holds[layer] ? base.columns : 0;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    const CouplingsView& couplings = level.couplings[layer];
-    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
-      const std::uint32_t column = level.domain_begin + j;
-      if (read == nullptr || read[column] != 0) {
-        visit_rows(couplings, j, first, column,
-                   [&](std::uint32_t row, std::uint32_t position) { visit(couplings, row, column, position); });
-      }
-    }
-  }
-}
 
 void store_row(const ModelView& view, void* index, std::uint32_t at, std::uint32_t row) {
   if (index_bytes(view) == 2) {
@@ -63,10 +44,8 @@ void store_transposed(const CouplingsView& from, std::uint32_t bits, std::uint32
 
 template <unsigned N>
 void MirroredCouplingsMaker<N>::carve(Arena& arena, const ModelView& view, const BaseColumns& base) noexcept {
-  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-    std::uint64_t blocks = 0;
-    visit_layer(view, layer, base, nullptr,
-                [&](const CouplingsView&, std::uint32_t, std::uint32_t, std::uint32_t) { ++blocks; });
+  for (std::uint32_t layer = 0; view.ready.read == nullptr && layer < layout::layers; ++layer) {
+    const std::uint64_t blocks = count_mirrored(view, layer, base, nullptr);
     begin_[layer] = arena.take<std::uint32_t>(view.domain_count + std::uint64_t{1});
     index_[layer] = arena.take<std::byte>(index_bytes(view) * blocks);
     value_[layer] = arena.take_zeroed<std::byte>(layout::block_bytes(N, layout::value_bits[layer]) * blocks + padding);
@@ -76,23 +55,26 @@ void MirroredCouplingsMaker<N>::carve(Arena& arena, const ModelView& view, const
 template <unsigned N>
 MirroredCouplings MirroredCouplingsMaker<N>::make(const ModelView& view, const BaseColumns& base,
                                                   const std::uint8_t* read) noexcept {
+  if (view.ready.read != nullptr) {
+    return view.ready.mirrored;
+  }
   MirroredCouplings mirrored;
   for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
     const std::uint32_t bits = layout::value_bits[layer];
     std::uint32_t* const begin = begin_[layer];
     std::memset(begin, 0, sizeof(std::uint32_t) * (view.domain_count + std::size_t{1}));
-    visit_layer(view, layer, base, read,
-                [&](const CouplingsView&, std::uint32_t row, std::uint32_t, std::uint32_t) { ++begin[row + 1]; });
+    visit_mirrored(view, layer, base, read,
+                   [&](const CouplingsView&, std::uint32_t row, std::uint32_t, std::uint32_t) { ++begin[row + 1]; });
     for (std::uint32_t i = 0; i < view.domain_count; ++i) {
       begin[i + 1] += begin[i];
     }
     // each begin moves to its end, where the next one begins
-    visit_layer(view, layer, base, read,
-                [&](const CouplingsView& from, std::uint32_t row, std::uint32_t column, std::uint32_t position) {
-                  const std::uint32_t at = begin[row]++;
-                  store_row(view, index_[layer], at, column);
-                  store_transposed<N>(from, bits, position, value_[layer] + layout::block_bytes(N, bits) * at);
-                });
+    visit_mirrored(view, layer, base, read,
+                   [&](const CouplingsView& from, std::uint32_t row, std::uint32_t column, std::uint32_t position) {
+                     const std::uint32_t at = begin[row]++;
+                     store_row(view, index_[layer], at, column);
+                     store_transposed<N>(from, bits, position, value_[layer] + layout::block_bytes(N, bits) * at);
+                   });
     std::memmove(begin + 1, begin, sizeof(std::uint32_t) * view.domain_count);
     begin[0] = 0;
     mirrored.layer[layer] = {.columns = view.domain_count,

@@ -10,23 +10,15 @@
 
 namespace greenloop {
 
-/// The half of the couplings that a file leaves out, but for what BaseColumns hold. It stores the blocks of a
-/// coefficient with those before it; these are the blocks with those after it, transposed, in the same layers and the
-/// same stored values: `layer[...]` has a column for every domain node, whose rows are coefficients of larger places,
-/// increasing.
-struct MirroredCouplings {
-  CouplingsView layer[layout::layers];
-};
-
-/// Where they are made, of N x N blocks.
+/// Where they are made, of N x N blocks, or found in a file that is ready.
 template <unsigned N>
 class MirroredCouplingsMaker {
  public:
   /// Arrays out of `arena`; null while it counts. base: what need not be held. Start-up; linear in the blocks.
   void carve(Arena& arena, const ModelView& view, const BaseColumns& base) noexcept;
 
-  /// Makes them, without the blocks that move coefficients whose byte in `read` is 0. read: [domain]. Start-up; linear
-  /// in the blocks.
+  /// Makes them, without the blocks that move coefficients whose byte in `read` is 0. read: [domain], that of the file
+  /// if it is ready. Start-up; linear in the blocks, nothing if the file is ready.
   [[nodiscard]] MirroredCouplings make(const ModelView& view, const BaseColumns& base,
                                        const std::uint8_t* read) noexcept;
 

@@ -196,16 +196,21 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
   }
 }
 
-void prepare_fields(const ModelView& view, Tables& tables, Body& body) {
+// false if a ready file leaves out other blocks than those that move nothing that is read
+bool prepare_fields(const ModelView& view, Tables& tables, Body& body) {
   tables.offsets.fill(view);
   body.offsets = tables.offsets;
   mark_read(body.refinement, body.touched, tables.read);
+  if (view.ready.read != nullptr && std::memcmp(view.ready.read, tables.read, view.domain_count) != 0) {
+    return false;
+  }
   body.base = tables.base.make(view);
   body.mirrored = tables.mirrored.make(view, body.base, tables.read);
   count_field_blocks<3>(view, body.mirrored, body.base, tables.field_blocks);
   body.field_blocks = {view.levels, tables.field_blocks};
   body.block_sums = fastest_block_sums<3>();
   body.add_tiles = fastest_add_tiles<3>();
+  return true;
 }
 
 }  // namespace
@@ -233,8 +238,8 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
                                                body.stored,    body.cache,      body.capacitance,
                                                body.factoring, body.force,      body.resolution.index_of_place};
   fill_tables(view, tables, body);
-  if (!body.counts.forces_only) {
-    prepare_fields(view, tables, body);
+  if (!body.counts.forces_only && !prepare_fields(view, tables, body)) {
+    return nullptr;
   }
   body.force_limit = largest_force_sum(view, body.lifting);
   body.last_red_zone = arena.last_red_zone();

@@ -68,8 +68,9 @@ struct Body {
   [[nodiscard]] FieldScratch<3> field_scratch() const { return {force, field_sums}; }
 };
 
-/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts. The bytes that
-/// `view` points to must outlive the body. Start-up; linear in the model's nodes and, for every level, its blocks.
+/// Carves a body's arrays and fills in what follows from the model. Null while `arena` only counts, and if
+/// what is ready in the file is not made of this model. The bytes that `view` points to must outlive the body.
+/// Start-up; linear in the model's nodes and, for every level, its blocks.
 Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) noexcept;
 
 }  // namespace greenloop

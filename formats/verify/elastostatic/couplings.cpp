@@ -2,6 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "formats/ready/mirrored_couplings.hpp"
+#include "formats/stored_blocks.hpp"
 #include "formats/verify/elastostatic/sections.hpp"
 
 namespace greenloop::elastostatic {
@@ -12,19 +14,29 @@ using layout::CouplingsHeader;
 // What the place of a section says about it.
 struct Expected {
   std::uint32_t columns, rows, value_bits, components;
+  bool mirrored;  // rows after the column instead of before
 
   Expected(const Section& section, const ElastostaticView& view)
       : columns(view.level[section.a].counts->domain_count),
         rows(domain_of_mesh(view, section.a)),
         value_bits(layout::value_bits[section.b]),
-        components(view.info->components) {}
+        components(view.info->components),
+        mirrored(false) {}
+  Expected(std::uint32_t layer, const ElastostaticView& view)
+      : columns(view.domain_count),
+        rows(view.domain_count),
+        value_bits(layout::value_bits[layer]),
+        components(view.info->components),
+        mirrored(true) {}
 
   // the blocks there can be
   [[nodiscard]] std::uint64_t all_blocks() const {
     const std::uint64_t before = rows - columns;
     return columns == 0 ? 0 : columns * before + std::uint64_t{columns} * (columns - 1) / 2;
   }
-  [[nodiscard]] std::uint32_t rows_of(std::uint32_t column) const { return rows - columns + column; }
+  [[nodiscard]] std::uint32_t first_row(std::uint32_t column) const { return mirrored ? column + 1 : 0; }
+  [[nodiscard]] std::uint32_t end_row(std::uint32_t column) const { return mirrored ? rows : rows - columns + column; }
+  [[nodiscard]] std::uint32_t rows_of(std::uint32_t column) const { return end_row(column) - first_row(column); }
   [[nodiscard]] std::uint64_t values_per_block() const { return std::uint64_t{components} * components; }
   [[nodiscard]] std::uint64_t bytes_per_block() const { return layout::block_bytes(components, value_bits); }
 };
@@ -86,8 +98,10 @@ bool verify_index(SectionCheck& check, const CouplingsHeader& header, const Expe
                   const std::uint32_t* begin, const Index* index) {
   for (std::uint32_t j = 0; j < header.columns; ++j) {
     for (std::uint32_t b = begin[j]; b < begin[j + 1]; ++b) {
-      if (!check.require(index[b] < expected.rows_of(j), VerifyRule::out_of_range, "index", b, index[b],
-                         expected.rows_of(j) - 1.0) ||
+      if (!check.require(index[b] < expected.end_row(j), VerifyRule::out_of_range, "index", b, index[b],
+                         expected.end_row(j) - 1.0) ||
+          !check.require(index[b] >= expected.first_row(j), VerifyRule::out_of_range, "index", b, index[b],
+                         expected.first_row(j)) ||
           !check.require(b == begin[j] || index[b] > index[b - 1], VerifyRule::not_increasing, "index", b, index[b],
                          b == begin[j] ? 0 : index[b - 1])) {
         return false;
@@ -145,13 +159,11 @@ bool verify_blocks(SectionCheck& check, const CouplingsView& view, const Couplin
   }
 }
 
-}  // namespace
-
-bool verify_couplings(const Section& section, VerifyContext& context) {
+// all of a section but what its blocks are of; fills `view`
+bool verify_arrays(const Section& section, const Expected& expected, VerifyContext& context, CouplingsView& view) {
   SectionCheck check(section, context.result);
   if (!check.require_bytes(sizeof(CouplingsHeader))) return false;
   const auto& header = *section.as<CouplingsHeader>();
-  const Expected expected(section, context.view);
   if (!verify_header(check, header, expected) ||
       !check.require(
           !context.reserved_is_zero || (header.reserved0 == 0 && all_zero(std::as_bytes(std::span(header.reserved)))),
@@ -160,17 +172,123 @@ bool verify_couplings(const Section& section, VerifyContext& context) {
   }
   const Extent extent(header, expected);
   if (!verify_extent(check, header, extent) || !verify_gaps(check, section, extent)) return false;
+  view = {header.columns,
+          header.rows,
+          header.index_bytes,
+          reinterpret_cast<const std::uint32_t*>(section.data + header.begin_offset),
+          static_cast<const void*>(section.data + header.index_offset),
+          section.data + header.value_offset};
+  return verify_blocks(check, view, header, expected);
+}
 
-  const CouplingsView view{header.columns,
-                           header.rows,
-                           header.index_bytes,
-                           reinterpret_cast<const std::uint32_t*>(section.data + header.begin_offset),
-                           static_cast<const void*>(section.data + header.index_offset),
-                           section.data + header.value_offset};
-  if (!verify_blocks(check, view, header, expected)) return false;
-  context.kept_blocks += header.block_count;
+// Some columns of a level, and the first of the stored blocks of each that no mirrored one was compared with. Mirrored
+// blocks by columns meet the stored ones of each column by rows.
+struct Window {
+  static constexpr std::uint32_t most = 512;
+  const LevelView& level;
+  const CouplingsView& couplings;  // of a layer
+  std::uint32_t first, end;        // places
+  std::uint32_t next[most];
+
+  Window(const ElastostaticView& view, std::uint32_t q, std::uint32_t layer, std::uint32_t begin)
+      : level(view.level[q]),
+        couplings(level.couplings[layer]),
+        first(begin),
+        end(std::min(begin + most, domain_of_mesh(view, q))) {
+    const std::uint32_t first_row = view.ready.base.holds[layer] ? view.ready.base.columns : 0;
+    for (std::uint32_t place = first; place < end; ++place) {
+      std::uint32_t position = end_of(place);
+      if (view.ready.read[place] != 0) {
+        visit_rows(couplings, place - level.domain_begin, first_row, place,
+                   [&](std::uint32_t, std::uint32_t at) { position = std::min(position, at); });
+      }
+      next[place - first] = position;
+    }
+  }
+
+  [[nodiscard]] std::uint32_t end_of(std::uint32_t place) const {
+    return couplings.columns == 0 ? 0 : couplings.begin[place - level.domain_begin + 1];
+  }
+  // whether the next block of a column is in this row
+  [[nodiscard]] bool is_next(std::uint32_t place, std::uint32_t row) const {
+    const std::uint32_t position = next[place - first];
+    return position < end_of(place) && stored_row(couplings, position) == row;
+  }
+};
+
+template <unsigned N, std::uint32_t bits>
+bool is_transposed(const CouplingsView& mirrored, std::uint32_t b, const CouplingsView& couplings,
+                   std::uint32_t position) {
+  int difference = 0;
+  for (std::uint32_t k = 0; k < N * N; ++k) {
+    difference |=
+        stored_value<N>(mirrored, bits, b, k) ^ stored_value<N>(couplings, bits, position, N * (k % N) + k / N);
+  }
+  return difference == 0;
+}
+
+template <unsigned N>
+bool is_transposed(std::uint32_t bits, const CouplingsView& mirrored, std::uint32_t b, const CouplingsView& couplings,
+                   std::uint32_t position) {
+  switch (bits) {
+    case 4:
+      return is_transposed<N, 4>(mirrored, b, couplings, position);
+    case 8:
+      return is_transposed<N, 8>(mirrored, b, couplings, position);
+    default:
+      return is_transposed<N, 16>(mirrored, b, couplings, position);
+  }
+}
+
+template <unsigned N>
+bool verify_window(SectionCheck& check, std::uint32_t bits, const CouplingsView& mirrored, Window& window) {
+  bool right = true;
+  for (std::uint32_t j = 0; right && j < std::min(mirrored.columns, window.end); ++j) {
+    visit_rows(mirrored, j, window.first, window.end, [&](std::uint32_t row, std::uint32_t b) {
+      right = right && check.require(window.is_next(row, j), VerifyRule::inconsistent, "index", b, row, layout::none) &&
+              check.require(is_transposed<N>(bits, mirrored, b, window.couplings, window.next[row - window.first]++),
+                            VerifyRule::inconsistent, "value", std::uint64_t{N * N} * b, row, layout::none);
+    });
+  }
+  return right;
+}
+
+// The mirrored blocks are distinct and as many as there have to be: all of them, if each is one of those. Work: linear
+// in the blocks and, for every 512 coefficients, in the coefficients, times the logarithm of a column's length.
+template <unsigned N>
+bool verify_mirror(SectionCheck& check, const ElastostaticView& view, std::uint32_t layer,
+                   const CouplingsView& mirrored) {
+  const std::uint64_t blocks = count_mirrored(view, layer, view.ready.base, view.ready.read);
+  if (!check.require(block_count(mirrored) == blocks, VerifyRule::inconsistent, "block_count", 0, block_count(mirrored),
+                     static_cast<double>(blocks))) {
+    return false;
+  }
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    for (std::uint32_t first = view.level[q].domain_begin; first < domain_of_mesh(view, q); first += Window::most) {
+      Window window(view, q, layer, first);
+      if (!verify_window<N>(check, layout::value_bits[layer], mirrored, window)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool verify_couplings(const Section& section, VerifyContext& context) {
+  CouplingsView view;
+  if (!verify_arrays(section, Expected(section, context.view), context, view)) return false;
+  context.kept_blocks += block_count(view);
   context.view.level[section.a].couplings[section.b] = view;
   return true;
+}
+
+bool verify_mirrored_couplings(const Section& section, VerifyContext& context) {
+  const std::uint32_t layer = section.a;
+  CouplingsView& view = context.view.ready.mirrored.layer[layer];
+  SectionCheck check(section, context.result);
+  return verify_arrays(section, Expected(layer, context.view), context, view) &&
+         (context.view.info->components == 1 ? verify_mirror<1>(check, context.view, layer, view)
+                                             : verify_mirror<3>(check, context.view, layer, view));
 }
 
 }  // namespace greenloop::elastostatic

@@ -21,6 +21,7 @@ bool verify_level(const Section& section, VerifyContext& context);
 #define GREENLOOP_ROW(kind, number, name, indices, element, coding) \
   bool verify_##kind(const Section& section, VerifyContext& context);
 GREENLOOP_ELASTOSTATIC_SECTIONS(GREENLOOP_ROW)
+GREENLOOP_READY_SECTIONS(GREENLOOP_ROW)
 #undef GREENLOOP_ROW
 
 /// Domain nodes of K(q), the level's own included; Level(q) must have been seen.

@@ -17,6 +17,7 @@ bool verify_section(const Section& section, VerifyContext& context) {
   case SectionKind::kind:                                           \
     return verify_##kind(section, context);
       GREENLOOP_ELASTOSTATIC_SECTIONS(GREENLOOP_ROW)
+      GREENLOOP_READY_SECTIONS(GREENLOOP_ROW)
 #undef GREENLOOP_ROW
     default:
       return false;  // no other kind is in the order
@@ -35,7 +36,8 @@ bool verify_sections(const Section& info, SectionTable& table, ModelView& view, 
   for (std::uint32_t q = 0; q < context.levels; ++q) {
     if (!layout::visit_elastostatic_level(*context.view.info, q, next) || !verify_counts(q, context)) return false;
   }
-  return !table.is_next(SectionKind::vertex_map) || next(SectionKind::vertex_map, 0, 0);
+  if (table.is_next(SectionKind::vertex_map) && !next(SectionKind::vertex_map, 0, 0)) return false;
+  return !table.is_next(SectionKind::read_marks) || layout::visit_ready_sections(next);
 }
 
 }  // namespace greenloop::elastostatic
