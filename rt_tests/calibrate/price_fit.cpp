@@ -48,7 +48,7 @@ Prices in_256ths(const Eigen::VectorXd& units, const Eigen::VectorXd& least) {
 }  // namespace
 
 Prices fit_prices(const FitSteps& steps) {
-  constexpr double pull = 1e-5;   // towards the default prices, of the mean square error
+  constexpr double pull = 3e-6;   // towards the default prices, of the mean square error
   constexpr double least = 0.02;  // of the default prices
   if (steps.ns.size() == 0) throw std::invalid_argument("fit_prices: no steps");
   const Eigen::VectorXd usual = in_units({});
