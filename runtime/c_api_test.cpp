@@ -19,7 +19,8 @@ constexpr greenloop_elastostatic_limits limits{.max_contacts = 9,
                                                .no_mixtures = 0,
                                                .keep_capacitance = 0,
                                                .glide_cycles = 5,
-                                               .refining_work = 0};
+                                               .refining_work = 0,
+                                               .prices = nullptr};
 
 // a body made and stepped through C alone
 class CBody {
@@ -155,7 +156,7 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 0, 1, 0}, arena.data(), c.need.bytes).error ==
+  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 0, 1, 0, nullptr}, arena.data(), c.need.bytes).error ==
         GREENLOOP_CREATE_BAD_LIMITS);
 }
 
@@ -193,6 +194,17 @@ TEST_CASE("no refining work stands for no bound of it") {
   };
   CHECK(worst(0) == worst(~std::uint64_t{0}));
   CHECK(worst(1) < worst(0));
+}
+
+TEST_CASE("no prices stand for the default ones, and others make other work") {
+  const CBody body;
+  greenloop_prices prices = greenloop_default_prices();
+  CHECK(prices.slot == Prices{}.slot);
+  greenloop_elastostatic_limits priced = limits;
+  priced.prices = &prices;
+  CHECK(greenloop_elastostatic_required(&body.model, priced).least_work == body.need.least_work);
+  prices.step += 256;
+  CHECK(greenloop_elastostatic_required(&body.model, priced).least_work == body.need.least_work + 1);
 }
 
 TEST_CASE("a scalar model opens and says its problem; an elastostatic one says its own") {
