@@ -180,7 +180,7 @@ TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps t
 TEST_CASE("no cycles of a glide stand for the default") {
   CBody c;
   const auto bytes = [&c](std::uint32_t cycles) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, cycles, 0}).bytes;
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, cycles, 0, nullptr}).bytes;
   };
   CHECK(bytes(0) == bytes(Elastostatic::Limits{}.glide_cycles));
   CHECK(bytes(256) > 0);
@@ -190,7 +190,7 @@ TEST_CASE("no cycles of a glide stand for the default") {
 TEST_CASE("no refining work stands for no bound of it") {
   CBody c;
   const auto worst = [&c](std::uint64_t work) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, 0, work}).worst_work[0];
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, 0, work, nullptr}).worst_work[0];
   };
   CHECK(worst(0) == worst(~std::uint64_t{0}));
   CHECK(worst(1) < worst(0));

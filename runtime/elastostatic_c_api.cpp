@@ -1,6 +1,7 @@
 // Contact with an elastic body in C.
 #include <bit>
 #include <cstddef>
+#include <cstring>
 #include <type_traits>
 
 #include "runtime/c_values.hpp"
@@ -50,9 +51,7 @@ greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) 
 
 using namespace greenloop;
 
-greenloop_prices greenloop_default_prices(void) {
-  return std::bit_cast<greenloop_prices>(Prices{});
-}
+greenloop_prices greenloop_default_prices(void) { return std::bit_cast<greenloop_prices>(Prices{}); }
 
 greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
   const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
