@@ -19,7 +19,8 @@ constexpr greenloop_elastostatic_limits limits{.max_contacts = 9,
                                                .no_mixtures = 0,
                                                .keep_capacitance = 0,
                                                .glide_cycles = 5,
-                                               .refining_work = 0};
+                                               .refining_work = 0,
+                                               .prices = nullptr};
 
 // a body made and stepped through C alone
 class CBody {
@@ -155,7 +156,7 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 0, 1, 0}, arena.data(), c.need.bytes).error ==
+  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 0, 1, 0, nullptr}, arena.data(), c.need.bytes).error ==
         GREENLOOP_CREATE_BAD_LIMITS);
 }
 
@@ -179,7 +180,7 @@ TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps t
 TEST_CASE("no cycles of a glide stand for the default") {
   CBody c;
   const auto bytes = [&c](std::uint32_t cycles) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, cycles, 0}).bytes;
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, cycles, 0, nullptr}).bytes;
   };
   CHECK(bytes(0) == bytes(Elastostatic::Limits{}.glide_cycles));
   CHECK(bytes(256) > 0);
@@ -189,10 +190,21 @@ TEST_CASE("no cycles of a glide stand for the default") {
 TEST_CASE("no refining work stands for no bound of it") {
   CBody c;
   const auto worst = [&c](std::uint64_t work) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, 0, work}).worst_work[0];
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, 0, work, nullptr}).worst_work[0];
   };
   CHECK(worst(0) == worst(~std::uint64_t{0}));
   CHECK(worst(1) < worst(0));
+}
+
+TEST_CASE("no prices stand for the default ones, and others make other work") {
+  const CBody body;
+  greenloop_prices prices = greenloop_default_prices();
+  CHECK(prices.slot == Prices{}.slot);
+  greenloop_elastostatic_limits priced = limits;
+  priced.prices = &prices;
+  CHECK(greenloop_elastostatic_required(&body.model, priced).least_work == body.need.least_work);
+  prices.step += 256;
+  CHECK(greenloop_elastostatic_required(&body.model, priced).least_work == body.need.least_work + 1);
 }
 
 TEST_CASE("a scalar model opens and says its problem; an elastostatic one says its own") {

@@ -16,6 +16,7 @@ static_assert(sizeof(Constraint) == sizeof(greenloop_constraint) &&
               offsetof(Constraint, value) == offsetof(greenloop_constraint, value) &&
               offsetof(Constraint, kind) == offsetof(greenloop_constraint, kind));
 // NOLINTEND(misc-redundant-expression)
+static_assert(sizeof(Prices) == sizeof(greenloop_prices) && std::is_trivially_copyable_v<Prices>);
 static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
 
 }  // namespace
@@ -28,6 +29,9 @@ Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
                             .keep_capacitance = limits.keep_capacitance != 0};
   same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
   same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
+  if (limits.prices != nullptr) {
+    same.prices = std::bit_cast<Prices>(*limits.prices);
+  }
   return same;
 }
 
@@ -47,11 +51,13 @@ greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) 
 
 using namespace greenloop;
 
+greenloop_prices greenloop_default_prices(void) { return std::bit_cast<greenloop_prices>(Prices{}); }
+
 greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
   const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
   const Elastostatic::Limits& limits = intent.limits;
   return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.mixtures ? 0 : 1,
-           limits.keep_capacitance ? 1 : 0, limits.glide_cycles, limits.refining_work},
+           limits.keep_capacitance ? 1 : 0, limits.glide_cycles, limits.refining_work, nullptr},
           intent.budget.work,
           intent.rate};
 }

@@ -15,6 +15,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "runtime/price_list.h"
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -111,6 +113,16 @@ typedef struct greenloop_fault {
   double limit;      /* what was allowed */
 } greenloop_fault;
 
+/* What pieces of a step cost, in 256ths of a work unit each: see runtime/price_list.h and docs/budgets.md. */
+typedef struct greenloop_prices {
+#define GREENLOOP_ROW(name, price, what) uint32_t name;
+  GREENLOOP_PRICES(GREENLOOP_ROW)
+#undef GREENLOOP_ROW
+} greenloop_prices;
+
+/* The default ones. */
+greenloop_prices greenloop_default_prices(void);
+
 /* What a body must be able to do. */
 typedef struct greenloop_elastostatic_limits {
   uint32_t max_contacts;   /* 1..4096, contacts per step */
@@ -120,6 +132,7 @@ typedef struct greenloop_elastostatic_limits {
   int keep_capacitance;    /* 1: capacitance matrices beside their factors, for greenloop_elastostatic_compliance */
   uint32_t glide_cycles;   /* 1..256, steps in which the forces go over to another level; 1: at once; 0: 16 */
   uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
+  const greenloop_prices* prices; /* that make work units of what a step does; read at once; null: the default ones */
 } greenloop_elastostatic_limits;
 
 /* The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md). */

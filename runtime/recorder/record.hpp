@@ -17,7 +17,7 @@
 namespace greenloop {
 
 inline constexpr char record_magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'R', '\n'};
-inline constexpr std::uint32_t record_version = 1;
+inline constexpr std::uint32_t record_version = 2;
 inline constexpr std::uint64_t no_step = ~std::uint64_t{0};
 
 struct Checkpoint {
