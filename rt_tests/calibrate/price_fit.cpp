@@ -50,6 +50,8 @@ Prices in_256ths(const Eigen::VectorXd& units, const Eigen::VectorXd& least) {
 Prices fit_prices(const FitSteps& steps) {
   constexpr double pull = 3e-6;   // towards the default prices, of the mean square error
   constexpr double least = 0.02;  // of the default prices
+  constexpr int rounds = 5;
+  constexpr double usual_error = 0.05;  // beyond which steps weigh less, so that a few disturbed ones do not matter
   if (steps.ns.size() == 0) throw std::invalid_argument("fit_prices: no steps");
   const Eigen::VectorXd usual = in_units({});
   const Eigen::VectorXd expected = (usual.array() > 0).cast<double>();
@@ -58,10 +60,14 @@ Prices fit_prices(const FitSteps& steps) {
   const double ns_per_unit = median((relative * usual).cwiseInverse());
   const Eigen::VectorXd scale = (expected.array() > 0).select(ns_per_unit * usual, plain_scale(relative, weight));
   const Eigen::MatrixXd shares = relative * scale.asDiagonal();
-  const Eigen::MatrixXd weighted = shares.transpose() * weight.asDiagonal();
   const Eigen::MatrixXd ridge = pull * Eigen::MatrixXd::Identity(scale.size(), scale.size());
-  const Eigen::VectorXd x =
-      bounded_least_squares(weighted * shares + ridge, weighted.rowwise().sum() + pull * expected, least * expected);
+  Eigen::VectorXd x, typical = weight;
+  for (int round = 0; round < rounds; ++round) {
+    const Eigen::MatrixXd weighted = shares.transpose() * typical.asDiagonal();
+    x = bounded_least_squares(weighted * shares + ridge, weighted.rowwise().sum() + pull * expected, least * expected);
+    typical = weight.array() / ((shares * x).array() - 1).abs().max(usual_error);
+    typical /= typical.sum();
+  }
   return in_256ths(scale.cwiseProduct(x), expected);
 }
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "rt_tests/harness/price_table.hpp"
@@ -36,9 +37,10 @@ Prices read_prices(const std::string& path) {
   Prices prices;
   for (const auto& [name, value] : json.items()) {
     if (name == "unit" && value.is_string()) continue;
+    const std::string where = std::string(path).append(": ").append(name);
     std::uint32_t* const price = price_of(prices, name);
-    if (price == nullptr) throw std::runtime_error(path + ": " + name + " is no price; docs/budgets.md names them");
-    *price = in_units(value, path + ": " + name);
+    if (price == nullptr) throw std::runtime_error(where + " is no price; docs/budgets.md names them");
+    *price = in_units(value, where);
   }
   return prices;
 }
@@ -50,15 +52,15 @@ std::string prices_as_json(const Prices& prices, const std::string& unit) {
 }
 
 std::string prices_as_header(const Prices& prices, const std::string& unit) {
-  std::string header =
-      "#pragma once\n\n#include <runtime/prices.hpp>\n\nnamespace greenloop {\n\n"
-      "/// Prices of a target, for Limits::prices. A work unit is: " +
-      unit + ".\nconstexpr Prices target_prices() {\n  Prices prices;\n";
+  std::ostringstream header;
+  header << "#pragma once\n\n#include <runtime/prices.hpp>\n\nnamespace greenloop {\n\n"
+         << "/// Prices of a target, for Limits::prices. A work unit is: " << unit << ".\n"
+         << "constexpr Prices target_prices() {\n  Prices prices;\n";
   for (const PriceRow& row : price_rows) {
-    header += std::string("  prices.") + row.name + " = " + std::to_string(prices.*row.member) + ";  // " + row.what;
-    header += "\n";
+    header << "  prices." << row.name << " = " << prices.*row.member << ";  // " << row.what << '\n';
   }
-  return header + "  return prices;\n}\n\n}  // namespace greenloop\n";
+  header << "  return prices;\n}\n\n}  // namespace greenloop\n";
+  return header.str();
 }
 
 }  // namespace greenloop
