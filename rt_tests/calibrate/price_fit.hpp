@@ -17,8 +17,8 @@ struct FitSteps {
 
 /// Prices in nanoseconds whose products with the counts are nearest to the times: least squares of the relative errors,
 /// reweighted so that errors above 5 % count by themselves, not by their squares. None is below a fiftieth of the
-/// default price, in nanoseconds a default unit, and where the steps do not tell, they stand in the ratio of the default
-/// ones. Throws std::invalid_argument without steps. Offline only.
+/// default price, in nanoseconds a default unit, and where the steps do not tell, they stand in the ratio of the
+/// default ones. Throws std::invalid_argument without steps. Offline only.
 [[nodiscard]] Prices fit_prices(const FitSteps& steps);
 
 }  // namespace greenloop
