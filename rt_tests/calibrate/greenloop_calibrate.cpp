@@ -41,9 +41,15 @@ void declare(CLI::App& app, Arguments& arguments) {
 
 bool is_header(const std::filesystem::path& path) { return path.extension() == ".hpp"; }
 
-void require_output(const std::string& output) {
-  if (output.empty() || is_header(output) || std::filesystem::path(output).extension() == ".json") return;
-  throw std::runtime_error(output + ": prices are written as .json or .hpp");
+// before the minute that it takes
+void require_output(const std::filesystem::path& output) {
+  if (output.empty()) return;
+  if (!is_header(output) && output.extension() != ".json") {
+    throw std::runtime_error(output.string() + ": prices are written as .json or .hpp");
+  }
+  if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path())) {
+    throw std::runtime_error(output.string() + ": cannot be written, there is no such folder");
+  }
 }
 
 void write(const std::string& output, const greenloop::Prices& prices) {
