@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   }
   CLI::App app("Greenloop turns a mesh and a scene into a model that answers contact within a fixed budget.",
                "greenloop");
-  app.footer("Also: greenloop loop, greenloop bench, greenloop stress. Each command has --help.");
+  app.footer("Also: greenloop loop, greenloop bench, greenloop stress, greenloop calibrate. Each command has --help.");
   app.require_subcommand(1);
   int exit_code = 0;
   greenloop::offline::add_build(app, exit_code);

@@ -1,21 +1,23 @@
 #include "rt_tests/harness/prices_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
+
+#include "rt_tests/harness/price_table.hpp"
 
 namespace greenloop {
 namespace {
 
-// the member of a name; null: there is none
-std::uint32_t* member(Prices& prices, const std::string& name) {
-#define GREENLOOP_ROW(member, price, what) \
-  if (name == #member) return &prices.member;
-  GREENLOOP_PRICES(GREENLOOP_ROW)
-#undef GREENLOOP_ROW
-  return nullptr;
+// the price of a name; null: there is none
+std::uint32_t* price_of(Prices& prices, const std::string& name) {
+  const auto row = std::find_if(std::begin(price_rows), std::end(price_rows),
+                                [&](const PriceRow& candidate) { return name == candidate.name; });
+  return row == std::end(price_rows) ? nullptr : &(prices.*row->member);
 }
 
 std::uint32_t in_units(const nlohmann::json& value, const std::string& where) {
@@ -34,11 +36,31 @@ Prices read_prices(const std::string& path) {
   if (!json.is_object()) throw std::runtime_error(path + ": is no JSON object of prices by name");
   Prices prices;
   for (const auto& [name, value] : json.items()) {
-    std::uint32_t* const price = member(prices, name);
-    if (price == nullptr) throw std::runtime_error(path + ": " + name + " is no price; docs/budgets.md names them");
-    *price = in_units(value, path + ": " + name);
+    if (name == "unit" && value.is_string()) continue;
+    const std::string where = std::string(path).append(": ").append(name);
+    std::uint32_t* const price = price_of(prices, name);
+    if (price == nullptr) throw std::runtime_error(where + " is no price; docs/budgets.md names them");
+    *price = in_units(value, where);
   }
   return prices;
+}
+
+std::string prices_as_json(const Prices& prices, const std::string& unit) {
+  nlohmann::ordered_json json = {{"unit", unit}};
+  for (const PriceRow& row : price_rows) json[row.name] = prices.*row.member / 256.0;
+  return json.dump(2) + "\n";
+}
+
+std::string prices_as_header(const Prices& prices, const std::string& unit) {
+  std::ostringstream header;
+  header << "#pragma once\n\n#include <runtime/prices.hpp>\n\nnamespace greenloop {\n\n"
+         << "/// Prices of a target, for Limits::prices. A work unit is: " << unit << ".\n"
+         << "constexpr Prices target_prices() {\n  Prices prices;\n";
+  for (const PriceRow& row : price_rows) {
+    header << "  prices." << row.name << " = " << prices.*row.member << ";  // " << row.what << '\n';
+  }
+  header << "  return prices;\n}\n\n}  // namespace greenloop\n";
+  return header.str();
 }
 
 }  // namespace greenloop

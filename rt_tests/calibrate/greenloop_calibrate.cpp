@@ -1,0 +1,114 @@
+// greenloop-calibrate: what the work of a step costs on this machine.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <list>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "formats/write/describe.hpp"
+#include "formats/write/model_file.hpp"
+#include "offline/pipeline/progress_bar.hpp"
+#include "rt_tests/calibrate/calibration_report.hpp"
+#include "rt_tests/harness/prices_file.hpp"
+
+namespace {
+
+struct Arguments {
+  std::vector<std::string> models;
+  greenloop::CalibrationOptions options;
+  std::string output;
+  bool json = false;
+};
+
+void declare(CLI::App& app, Arguments& arguments) {
+  greenloop::CalibrationOptions& options = arguments.options;
+  app.add_option("MODEL", arguments.models, "model files (.gloop)")->required()->check(CLI::ExistingFile);
+  app.add_option("--contacts", options.contacts, "most contacts of a step; else what each model asks for")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("--cycles", options.cycles, "steps of each model to fit prices to; as many again are predicted")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 24))
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "of the contacts")->capture_default_str();
+  app.add_option("-o,--output", arguments.output, "the prices: .json for --prices of greenloop-stress, .hpp for C++");
+  app.add_flag("--json", arguments.json, "machine-readable result");
+}
+
+bool is_header(const std::filesystem::path& path) { return path.extension() == ".hpp"; }
+
+// before the minute that it takes
+void require_output(const std::filesystem::path& output) {
+  if (output.empty()) return;
+  if (!is_header(output) && output.extension() != ".json") {
+    throw std::runtime_error(output.string() + ": prices are written as .json or .hpp");
+  }
+  if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path())) {
+    throw std::runtime_error(output.string() + ": cannot be written, there is no such folder");
+  }
+}
+
+void write(const std::string& output, const greenloop::Prices& prices) {
+  std::ofstream file(output);
+  file << (is_header(output) ? greenloop::prices_as_header(prices, greenloop::calibrated_unit)
+                             : greenloop::prices_as_json(prices, greenloop::calibrated_unit));
+  file.close();
+  if (!file) throw std::runtime_error(output + ": cannot be written");
+}
+
+// `bytes` keeps what the models stand in
+std::vector<greenloop::NamedModel> open_models(const std::vector<std::string>& names,
+                                               std::list<greenloop::AlignedBytes>& bytes) {
+  std::vector<greenloop::NamedModel> models;
+  for (const std::string& name : names) {
+    const auto opened = greenloop::Model::open(bytes.emplace_back(greenloop::load_file(name)).span());
+    if (!opened) throw std::runtime_error(name + ": " + greenloop::describe(opened.result));
+    greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, name);
+    models.push_back({name, opened.model});
+  }
+  return models;
+}
+
+greenloop::Calibration run(Arguments& arguments) {
+  require_output(arguments.output);
+  std::list<greenloop::AlignedBytes> bytes;
+  const std::vector<greenloop::NamedModel> models = open_models(arguments.models, bytes);
+  greenloop::offline::ProgressBar bar(arguments.json);
+  std::string stage;
+  arguments.options.progress = [&](const std::string& name, double share) {
+    if (name != stage) bar.begin(stage = name);
+    bar.update(share);
+  };
+  greenloop::Calibration calibration = greenloop::calibrate(models, arguments.options, greenloop::thread_stopwatch());
+  bar.end();
+  if (!arguments.output.empty()) write(arguments.output, calibration.prices);
+  return calibration;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Measures what the work of a step costs on this machine, in nanoseconds, and how well that predicts the time of "
+      "other steps.",
+      "greenloop-calibrate");
+  Arguments arguments;
+  declare(app, arguments);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const greenloop::Calibration calibration = run(arguments);
+    if (arguments.json) {
+      fmt::print("{}\n", greenloop::as_json(calibration).dump(2));
+    } else {
+      greenloop::print(calibration);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "greenloop-calibrate: {}\n", error.what());
+    return 1;
+  }
+}
