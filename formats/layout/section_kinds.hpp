@@ -68,14 +68,10 @@ inline constexpr SectionForm section_forms[] = {
 #undef GREENLOOP_ROW
 };
 
-/// Bytes of an element of a section; 0 for a number that is no kind. Work: constant.
+/// Bytes of an element of a section; 0 for a number that is no kind. Work: a comparison a kind.
 constexpr std::uint32_t element_bytes(SectionKind kind) {
-  switch (kind) {
-#define GREENLOOP_ROW(kind, number, name, indices, element, coding) \
-  case SectionKind::kind:                                           \
-    return sizeof(element);
-    GREENLOOP_SECTION_KINDS(GREENLOOP_ROW)
-#undef GREENLOOP_ROW
+  for (const SectionForm& form : section_forms) {
+    if (form.kind == kind) return form.element_bytes;
   }
   return 0;
 }
@@ -83,17 +79,17 @@ constexpr std::uint32_t element_bytes(SectionKind kind) {
 /// Whether a number is a kind. Work: constant.
 constexpr bool is_section_kind(std::uint32_t number) { return element_bytes(static_cast<SectionKind>(number)) != 0; }
 
-/// Whether the kind holds what follows from others. Work: constant.
+/// Whether the kind holds what follows from others. Work: a comparison a kind.
 constexpr bool is_ready_kind(SectionKind kind) {
-  switch (kind) {
-#define GREENLOOP_ROW(kind, number, name, indices, element, coding) \
-  case SectionKind::kind:                                           \
-    return true;
-    GREENLOOP_READY_SECTIONS(GREENLOOP_ROW)
+  constexpr SectionKind ready[] = {
+#define GREENLOOP_ROW(kind, number, name, indices, element, coding) SectionKind::kind,
+      GREENLOOP_READY_SECTIONS(GREENLOOP_ROW)
 #undef GREENLOOP_ROW
-    default:
-      return false;
+  };
+  for (const SectionKind one : ready) {
+    if (one == kind) return true;
   }
+  return false;
 }
 
 /// The minor version that brought the kind; those before 4.1 are not told apart.

@@ -56,7 +56,7 @@ struct BaseColumns {
 
   /// Of a tile of N x N blocks, whose elements k are the 8 bytes from 8 k on.
   template <unsigned N>
-  static constexpr std::size_t tile_bytes = std::size_t{N * N} * width;
+  static constexpr std::size_t tile_bytes = std::size_t{N} * N* width;
 
   std::uint32_t columns = 0;         ///< level 0's, or none
   std::uint32_t tiles = 0;           ///< of a column

@@ -74,14 +74,14 @@ CouplingsData mirrored_couplings(const ModelView& view, std::uint32_t layer, con
   });
   for (std::size_t i = 0; i < view.domain_count; ++i) data.begin[i + 1] += data.begin[i];
   data.index.resize(data.begin.back());
-  data.value.resize(std::size_t{N * N} * data.begin.back());
+  data.value.resize(std::size_t{N} * N * data.begin.back());
   std::vector<std::uint32_t> next = data.begin;
   visit_mirrored(view, layer, base, read,
                  [&](const CouplingsView& from, std::uint32_t row, std::uint32_t column, std::uint32_t position) {
                    const std::size_t at = next[row]++;
                    data.index[at] = column;
                    for (std::uint32_t k = 0; k < N * N; ++k) {  // transposed
-                     data.value[N * N * at + N * (k % N) + k / N] =
+                     data.value[std::size_t{N} * N * at + std::size_t{N} * (k % N) + k / N] =
                          stored_value<N>(from, layout::value_bits[layer], position, k);
                    }
                  });

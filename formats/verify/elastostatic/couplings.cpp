@@ -247,7 +247,7 @@ bool verify_window(SectionCheck& check, std::uint32_t bits, const CouplingsView&
     visit_rows(mirrored, j, window.first, window.end, [&](std::uint32_t row, std::uint32_t b) {
       right = right && check.require(window.is_next(row, j), VerifyRule::inconsistent, "index", b, row, layout::none) &&
               check.require(is_transposed<N>(bits, mirrored, b, window.couplings, window.next[row - window.first]++),
-                            VerifyRule::inconsistent, "value", std::uint64_t{N * N} * b, row, layout::none);
+                            VerifyRule::inconsistent, "value", std::uint64_t{N} * N * b, row, layout::none);
     });
   }
   return right;

@@ -60,10 +60,10 @@ bool verify_column(SectionCheck& check, const BaseColumns& base, BaseRows<N> row
     rows.take(row, element);
     const std::byte* const found = base.column<N>(row) + BaseColumns::tile_bytes<N> * tile;
     for (std::uint32_t k = 0; k < N * N; ++k) {
-      const int value = static_cast<std::int8_t>(found[BaseColumns::width * k + lane]);
-      if (!check.require(value == element[k], VerifyRule::inconsistent, "value",
-                         static_cast<std::uint64_t>(&found[BaseColumns::width * k + lane] - base.value), value,
-                         element[k])) {
+      const std::byte& at = found[std::size_t{BaseColumns::width} * k + lane];
+      const auto right = static_cast<std::byte>(element[k]);
+      if (!check.require(at == right, VerifyRule::inconsistent, "value", static_cast<std::uint64_t>(&at - base.value),
+                         std::to_integer<int>(at), std::to_integer<int>(right))) {
         return false;
       }
     }
