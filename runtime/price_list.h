@@ -8,7 +8,7 @@
 #define GREENLOOP_PRICE_LIST_H
 
 #define GREENLOOP_PRICES(ROW)                                                                    \
-  /* contacts and columns */                                                                     \
+  /* whatever is held; contacts and columns */                                                   \
   ROW(step, 0, "a step")                                                                         \
   ROW(level, 0, "a level that is planned")                                                       \
   ROW(factor, 0, "a factor that is made")                                                        \

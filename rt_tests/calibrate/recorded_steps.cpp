@@ -36,7 +36,6 @@ BodySteps steps_of_body(const Model& model, const ScriptBounds& bounds, std::uin
 
 std::string way_of(const ScriptedStep& step, const Elastostatic::StepReport& report) {
   if (!answered(report.status)) return {};
-  if (step.contacts.empty()) return step.with_field ? "released, field" : "released";
   return ElastostaticDriver::way(report, step.with_field);
 }
 

@@ -35,7 +35,7 @@ using Stopwatch = std::function<double(const std::function<void()>& work)>;
 
 /// A step that was run.
 struct RanStep {
-  std::string way;  ///< as ElastostaticDriver has it, or "released" where nothing was held; empty: refused
+  std::string way;  ///< ElastostaticDriver::way; empty: refused
   std::uint64_t work = 0;
   double ns = 0;
 };

@@ -6,17 +6,18 @@
 
 #include "rt_tests/harness/answer_counts.hpp"
 #include "rt_tests/harness/script_bounds.hpp"
+#include "runtime/prices.hpp"
 
 namespace greenloop {
 
 /// What the tools need of a solver beyond the verbs of runtime/loop.hpp, `required`, `create` and `step`: the stress
 /// run, the recorded script and the firmware are written against it. Another solver is another driver.
 template <class D>
-concept Driver = requires(std::uint32_t count, const typename D::Solver::Limits& limits,
+concept Driver = requires(std::uint32_t count, const Prices& prices, const typename D::Solver::Limits& limits,
                           const typename D::Solver::Requirement& requirement,
                           const typename D::Solver::StepReport& report, AnswerCounts& counts) {
-  // of a body that takes so many contacts and remembers so many sets of them
-  { D::limits(count, count) } -> std::same_as<typename D::Solver::Limits>;
+  // of a body that takes so many contacts, remembers so many sets of them and has these prices
+  { D::limits(count, count, prices) } -> std::same_as<typename D::Solver::Limits>;
   { D::bounds(limits, requirement) } -> std::same_as<ScriptBounds>;
   // the most units that an answered step may have taken that reports this
   { D::declared_work(requirement, report) } -> std::same_as<std::uint64_t>;

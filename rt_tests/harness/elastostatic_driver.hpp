@@ -50,6 +50,9 @@ struct ElastostaticDriver {
 
   static std::string way(const StepReport& report, bool with_field) {
     const Elastostatic::StepDetails& details = report.details;
+    if (details.finer_contacts == 0) {
+      return with_field ? "released, field" : "released";
+    }
     std::string way = details.cached_factor ? "cached" : details.changed_nodes > 0 ? "changed" : "fresh";
     way += details.finer_level > report.constraint_level ? ", mixed" : "";
     way += details.pending_work > 0 ? ", preparing" : "";

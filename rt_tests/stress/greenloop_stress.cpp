@@ -17,6 +17,7 @@
 #include "offline/pipeline/progress_bar.hpp"
 #include "rt_tests/harness/elastostatic_driver.hpp"
 #include "rt_tests/harness/prices_file.hpp"
+#include "rt_tests/harness/time_of.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 
 namespace {
@@ -141,8 +142,7 @@ StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
   bar.end(fmt::format("{} cycles", report.result.cycles));
   const double rate = arguments.rate > 0 ? arguments.rate : double{model.view().info->rate};
   report.time = greenloop::judge_times(report.result.times, rate, arguments.share);
-  report.starved =
-      greenloop::starved_steps<ElastostaticDriver>(model, options.contacts, options.factors, 1600, options.seed);
+  report.starved = greenloop::starved_steps<ElastostaticDriver>(model, options, 1600);
   if (arguments.count_instructions) {
     bar.begin("instructions");
     report.predicted = count_instructions(arguments, options);
@@ -171,7 +171,8 @@ int main(int argc, char** argv) {
       greenloop::write_steps(greenloop::run_plainly<ElastostaticDriver>(opened.model, options), std::cout);
       return 0;
     }
-    const StressReport report = stress(opened.model, arguments);
+    StressReport report = stress(opened.model, arguments);
+    report.open_ms = greenloop::time_of(15, [&] { (void)greenloop::Model::open(bytes.span()); }) / 1e3;
     if (arguments.json) {
       fmt::print("{}\n", report.json().dump(2));
     } else {

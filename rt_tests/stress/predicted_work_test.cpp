@@ -49,6 +49,8 @@ TEST_CASE("the steps of all scripts are run, each as in the checked run, and the
   std::uint64_t worst = 0;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) worst = std::max(worst, steps[i].work);
   CHECK(worst == checked.counts.worst_work);
+  const auto released = [](const ReportedStep& step) { return step.way.starts_with("released"); };
+  CHECK(std::count_if(steps.begin(), steps.end(), released) >= 50);  // the script of that name
   CHECK(steps.back().way == "fresh, field");
   StressOptions least = options;
   least.budget = 1;
@@ -109,11 +111,12 @@ TEST_CASE("times are judged against the share of the period") {
 
 TEST_CASE("a moving tool is followed at a tenth and a quarter of the finest level's work") {
   const TestModel model({.levels = 4});
-  const StarvedSteps steps = starved_steps<ElastostaticDriver>(model.model(), 16, 3, 400, 1);
+  const StressOptions options{.seed = 1, .contacts = 16, .factors = 3};
+  const StarvedSteps steps = starved_steps<ElastostaticDriver>(model.model(), options, 400);
   CHECK(steps.finest > 0);
   CHECK(steps.tenth > 0.5);
   CHECK(steps.quarter > 0.5);
-  const StarvedSteps same = starved_steps<ElastostaticDriver>(model.model(), 16, 3, 400, 1);
+  const StarvedSteps same = starved_steps<ElastostaticDriver>(model.model(), options, 400);
   CHECK(same.tenth == steps.tenth);
 }
 

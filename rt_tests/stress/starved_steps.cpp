@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t cycles_of_press = 32, cycles_of_node = 16;
 constexpr float depth = 1e-3F;  // m
-constexpr std::size_t most_contacts = 16;
+constexpr std::uint32_t most_contacts = 16;
 
 double square_distance(const float* a, const float* b) {
   double sum = 0;
@@ -80,11 +80,10 @@ Motion move_tool(Hosted<typename D::Solver>& host, const std::vector<std::uint32
 }  // namespace
 
 template <Driver D>
-StarvedSteps starved_steps(const Model& model, std::uint32_t contacts, std::uint32_t factors, std::uint64_t cycles,
-                           std::uint64_t seed) {
-  const std::size_t held = std::min<std::size_t>(contacts, most_contacts);
-  Hosted<typename D::Solver> host(model, D::limits(static_cast<std::uint32_t>(held), factors));
-  const std::vector<std::uint32_t> path = path_over(model.view(), seed);
+StarvedSteps starved_steps(const Model& model, const StressOptions& options, std::uint64_t cycles) {
+  const std::uint32_t held = std::min(options.contacts, most_contacts);
+  Hosted<typename D::Solver> host(model, D::limits(held, options.factors, options.prices));
+  const std::vector<std::uint32_t> path = path_over(model.view(), options.seed);
   const Motion finest = move_tool<D>(host, path, held, cycles, any_budget);
   const std::uint64_t least = D::bounds(host.limits(), host.requirement()).least_work;
   const auto starved = [&](std::uint64_t part) {
@@ -95,7 +94,6 @@ StarvedSteps starved_steps(const Model& model, std::uint32_t contacts, std::uint
   return {finest.largest_step, starved(10), starved(4)};
 }
 
-template StarvedSteps starved_steps<ElastostaticDriver>(const Model&, std::uint32_t, std::uint32_t, std::uint64_t,
-                                                        std::uint64_t);
+template StarvedSteps starved_steps<ElastostaticDriver>(const Model&, const StressOptions&, std::uint64_t);
 
 }  // namespace greenloop

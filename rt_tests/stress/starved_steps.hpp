@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "rt_tests/harness/driver.hpp"
+#include "rt_tests/stress/stress_run.hpp"
 #include "runtime/model.hpp"
 
 namespace greenloop {
@@ -16,10 +17,10 @@ struct StarvedSteps {
 };
 
 /// A patch of up to 16 nodes, pressed by 1 mm over its first 32 cycles, that moves on by a node every 16 cycles: a new
-/// constraint comes, an old one goes, all others stay. `cycles` cycles on bodies of their own, at budgets that are not
-/// below the least admissible. Throws std::runtime_error if no body can be created.
+/// constraint comes, an old one goes, all others stay. `cycles` cycles on bodies of their own with the contacts,
+/// factors and prices of `options`, whose seed says where the tool starts, at budgets that are not below the least
+/// admissible. Throws std::runtime_error if no body can be created.
 template <Driver D>
-[[nodiscard]] StarvedSteps starved_steps(const Model& model, std::uint32_t contacts, std::uint32_t factors,
-                                         std::uint64_t cycles, std::uint64_t seed);
+[[nodiscard]] StarvedSteps starved_steps(const Model& model, const StressOptions& options, std::uint64_t cycles);
 
 }  // namespace greenloop

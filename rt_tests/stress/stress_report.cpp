@@ -172,6 +172,7 @@ nlohmann::json StressReport::json() const {
       {"instructions_max", nullptr},
       {"force_step_max", result.force_step_max},
       {"digest", result.digest},
+      {"open_ms", open_ms},
       {"create_ms", result.create_ms},
       {"arena_bytes", result.arena_bytes},
       {"minutes_per_million_cycles", minutes_per_million},
@@ -206,9 +207,11 @@ nlohmann::json StressReport::json() const {
 
 void StressReport::print() const {
   print_verdict();
-  fmt::print("{}: {} cycles, seed {}, at most {} contacts, {} cached factors; arena {} bytes, created in {:.1f} ms\n\n",
-             model, result.cycles, options.seed, options.contacts, options.factors, result.arena_bytes,
-             result.create_ms);
+  fmt::print(
+      "{}: {} cycles, seed {}, at most {} contacts, {} cached factors; arena {} bytes, opened in {:.1f}, created in "
+      "{:.1f} ms\n\n",
+      model, result.cycles, options.seed, options.contacts, options.factors, result.arena_bytes, open_ms,
+      result.create_ms);
   print_scripts(result.scripts);
   fmt::print("\n");
   print_counts(result);

@@ -17,6 +17,7 @@ struct StressReport {
   std::string model;  ///< path
   StressOptions options;
   StressResult result{};
+  double open_ms = 0;  ///< of `Model::open`, thread CPU time
   TimeVerdict time{};
   bool judge_time = false;
   StarvedSteps starved{};
