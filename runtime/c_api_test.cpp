@@ -174,7 +174,19 @@ TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps t
   CHECK(intent.work == opened.model.view().info->step_work);
   CHECK(intent.work == same.budget.work);
   CHECK(intent.rate == opened.model.view().info->rate);
+  CHECK(intent.share == 1);
+  CHECK(intent.share == same.share);
   CHECK(greenloop_elastostatic_required(&body.model, intent.limits).least_work <= intent.work);
+}
+
+TEST_CASE("a share of the period that the scene states is told") {
+  ModelData data = synthetic_model({.levels = 2});
+  data.info.share = 0.4F;
+  const AlignedBytes bytes(encode(data));
+  greenloop_model model{};
+  REQUIRE(greenloop_open(bytes.data(), bytes.size(), &model).rule == GREENLOOP_RULE_OK);
+  CHECK(greenloop_elastostatic_intended(&model).share == 0.4F);
+  CHECK(Elastostatic::intended(Model::open(bytes.span()).model).share == 0.4F);
 }
 
 TEST_CASE("no cycles of a glide stand for the default") {

@@ -282,7 +282,10 @@ Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
     return {};
   }
   const layout::Info& info = *model.view().info;
-  return {.limits = {.max_contacts = info.max_contacts}, .budget = {info.step_work}, .rate = info.rate};
+  return {.limits = {.max_contacts = info.max_contacts},
+          .budget = {info.step_work},
+          .rate = info.rate,
+          .share = info.share > 0 ? info.share : 1};
 }
 
 Elastostatic::Requirement Elastostatic::required(const Model& model, const Elastostatic::Limits& limits) noexcept {

@@ -59,7 +59,8 @@ greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_mo
   return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.mixtures ? 0 : 1,
            limits.keep_capacitance ? 1 : 0, limits.glide_cycles, limits.refining_work, nullptr},
           intent.budget.work,
-          intent.rate};
+          intent.rate,
+          intent.share};
 }
 
 greenloop_elastostatic_requirement greenloop_elastostatic_required(const greenloop_model* model,

@@ -140,6 +140,7 @@ typedef struct greenloop_elastostatic_intent {
   greenloop_elastostatic_limits limits; /* the scene's contacts, the rest by default: what `work` was computed for */
   uint64_t work; /* units per step: the scene's, or what the build chose, enough for the finest level */
   float rate;    /* Hz, steps per second */
+  float share;   /* of a period that a step may take, above 0 and at most 1; 1: or the scene has none */
 } greenloop_elastostatic_intent;
 
 /* What those limits cost. Work is counted in units: see docs/budgets.md. */

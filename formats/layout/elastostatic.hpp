@@ -96,9 +96,15 @@ struct Info {
   std::uint32_t coarsest_constraint_level;
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
   float quantum[layers];                  ///< of the scaled values of each layer of couplings, in [0, 1]
-  std::uint8_t reserved[136];
+  float share;                            ///< of the loop's period that a step may take, 0..1; 0: the scene has none
+  std::uint8_t reserved[132];
 };
 static_assert(sizeof(Info) == 256 && offsetof(Info, problem) == offsetof(InfoStart, problem));
+
+/// The minor version that brought what an Info says.
+constexpr std::uint16_t first_minor(const Info& info) {
+  return info.share != 0 ? 5 : first_minor(static_cast<Problem>(info.problem));
+}
 
 // Forces and fields are of one compliance, that of all couplings: u = W^-1 (W U W^T) T^-T f for forces f on constraint
 // level c.

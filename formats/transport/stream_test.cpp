@@ -56,6 +56,12 @@ void check_round_trip(const Bytes& model) {
   }
 }
 
+TEST_CASE("transport: a model with a share of the period comes back, and all its prefixes") {
+  ModelData data = synthetic_model({.levels = 3});
+  data.info.share = 0.4F;
+  check_round_trip(encode(data));
+}
+
 TEST_CASE("transport: the smallest model and synthetic ones come back, and all their prefixes") {
   check_round_trip(encode(smallest_model()));
   for (std::uint32_t levels = 1; levels <= 4; ++levels) check_round_trip(encode(synthetic_model({.levels = levels})));

@@ -43,7 +43,7 @@ std::vector<SectionBytes> plain_sections(const AlignedBytes& file, const ModelVi
 
 // of what the sections of the levels hold
 std::uint16_t least_minor(const ModelView& view) {
-  std::uint16_t minor = layout::first_minor(view.problem);
+  std::uint16_t minor = layout::first_minor(*view.info);
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (view.level[q].counts->cut_error != 0) minor = std::max(minor, layout::first_minor_of_cuts);
   }

@@ -258,8 +258,7 @@ class SectionList {
 std::uint16_t least_minor(const ModelData& model) {
   const bool cuts = std::any_of(model.levels.begin(), model.levels.end(),
                                 [](const LevelData& level) { return level.counts.cut_error != 0; });
-  return std::max(cuts ? layout::first_minor_of_cuts : std::uint16_t{0},
-                  layout::first_minor(static_cast<layout::Problem>(model.info.problem)));
+  return std::max(cuts ? layout::first_minor_of_cuts : std::uint16_t{0}, layout::first_minor(model.info));
 }
 
 ModelView require_valid(const AlignedBytes& file) {

@@ -72,6 +72,15 @@ TEST_CASE("a ready file shows its tables in place, is of minor 4, and becomes th
   }
 }
 
+TEST_CASE("a file with a share of the period stays of the minor that brought it, ready and plain again") {
+  ModelData data = synthetic_model({.levels = 3});
+  data.info.share = 0.25F;
+  const auto file = encode(data);
+  ModelMutant ready(made_ready(file));
+  CHECK(ready.header().minor == 5);
+  CHECK(plain_file(ready.bytes()) == file);
+}
+
 TEST_CASE("base columns take what they hold out of the mirrored couplings") {
   ModelMutant file = large();
   REQUIRE(file.verdict().ok());

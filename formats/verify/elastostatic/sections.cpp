@@ -67,7 +67,8 @@ bool verify_info(const Section& section, VerifyContext& context) {
          verify_material(check, info) && check.require_at_least("threshold", 0, info.threshold, 0) &&
          check.require_at_least("store_asymmetry", 0, info.store_asymmetry, 0) &&
          check.require_at_least("lambda_min", 0, info.lambda_min, 0) && verify_box(check, info) &&
-         check.require_above("rate", 0, info.rate, 0) &&
+         check.require_above("rate", 0, info.rate, 0) && check.require_at_least("share", 0, info.share, 0) &&
+         check.require_at_most("share", 0, info.share, 1) &&
          check.require_at_least("max_contacts", 0, info.max_contacts, 1) &&
          check.require_at_most("coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          check.require_equal("finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&

@@ -8,6 +8,7 @@
 
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/refusal.hpp"
+#include "formats/testing/smallest_model.hpp"
 
 namespace greenloop {
 namespace {
@@ -140,6 +141,25 @@ TEST_CASE("verify refuses: a rate that is not positive, no contacts") {
   check_info(VerifyRule::out_of_range, "max_contacts", 0, [](Info& info) { info.max_contacts = 0; });
 }
 
+TEST_CASE("verify refuses: a share of the period that is negative, above one or not finite") {
+  for (const float bad : {-0.1F, 1.0000001F}) {
+    check_info(VerifyRule::out_of_range, "share", 0, [&](Info& info) { info.share = bad; });
+  }
+  for (const float bad : {NAN, INFINITY}) {
+    check_info(VerifyRule::not_finite, "share", 0, [&](Info& info) { info.share = bad; });
+  }
+}
+
+TEST_CASE("verify accepts: a share of the period, for which alone a file is of minor version 5") {
+  ModelData data = smallest_model();
+  REQUIRE(ModelMutant(encode(data)).header().minor == 1);
+  data.info.share = 0.4F;
+  ModelMutant with(encode(data));
+  CHECK(with.header().minor == 5);
+  REQUIRE(with.verdict().ok());
+  CHECK(with.view().info->share == 0.4F);
+}
+
 TEST_CASE("verify refuses: constraint levels outside the file's levels") {
   check_info(VerifyRule::out_of_range, "coarsest_constraint_level", 0,
              [](Info& info) { info.coarsest_constraint_level = 2; });
@@ -166,7 +186,7 @@ TEST_CASE("verify refuses: a quantum of any layer that is negative, above one or
 }
 
 TEST_CASE("verify refuses: reserved bytes of Info and Level in use") {
-  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[135] = 1; });
+  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[131] = 1; });
   check_level(1, VerifyRule::out_of_range, "cut_error", [](Level& level) { level.cut_error = -1; });
 }
 
