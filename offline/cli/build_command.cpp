@@ -16,6 +16,15 @@ struct BuildArguments {
   bool json = false;
 };
 
+/// What the budget comes to at the speed that the scene states, or the nominal one.
+void print_budget(const nlohmann::json& record) {
+  const double work = record["step_work"];
+  const double speed = record["units_per_us"], period = record["period_us"];
+  fmt::print("budget: {} units a step, {:.4g} us at {} units per us; the period is {:.4g} us{}\n",
+             record["step_work"].dump(), work / speed, speed, period,
+             work > period * speed ? ": [budget] share would bound it" : "");
+}
+
 void print_outcome(const BuildArguments& arguments, const BuildOutcome& outcome) {
   if (arguments.json) {
     fmt::print("{}\n", outcome.record.dump(2));
@@ -28,6 +37,7 @@ void print_outcome(const BuildArguments& arguments, const BuildOutcome& outcome)
   }
   fmt::print("{}: {} bytes, {:.3g} times as small as the dense matrix\n", model.string(), outcome.bytes,
              static_cast<double>(outcome.dense_bytes) / static_cast<double>(outcome.bytes));
+  print_budget(outcome.record);
 }
 
 int run_build(BuildArguments& arguments) {

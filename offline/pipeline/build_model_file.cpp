@@ -20,6 +20,7 @@
 #include "offline/compress/wavelet_choice.hpp"
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/pipeline/body_problem.hpp"
+#include "offline/pipeline/least_work.hpp"
 #include "offline/pipeline/stage_records.hpp"
 #include "offline/pipeline/store_room.hpp"
 #include "offline/pipeline/vertex_map.hpp"
@@ -55,6 +56,17 @@ json up_to_date_record(const BuildRequest& request, const std::string& wanted) {
   }
 }
 
+/// Refuses a budget that no model of this body could keep, before its columns are computed.
+void require_possible_work(const Scene& scene, const std::filesystem::path& file, const SemiRegularMesh& mesh,
+                           const std::vector<std::uint32_t>& flags, const std::vector<double>& area) {
+  if (!scene.budget.asked_work()) {
+    return;
+  }
+  require_work(scene, file,
+               least_work_bound(mesh, flags, area, static_cast<std::uint32_t>(scene.budget.contacts),
+                                static_cast<std::uint32_t>(scene.coarsest_constraints)));
+}
+
 /// The store of the scene's columns: the one on disk if it is that, else a new one with nothing solved.
 GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene, const std::string& columns,
                                 ProgressBar& progress) {
@@ -62,6 +74,8 @@ GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene,
     auto store = GreenStore::open(request.store, GreenStore::Access::kReadWrite);
     const auto missing = store.missing_columns().size();
     if (store.contents().fingerprint == columns) {
+      const GreenStoreContents& body = store.contents();
+      require_possible_work(scene, request.scene, body.surface, body.flags, body.area);
       require_store_room(request.store, static_cast<std::size_t>(store.row_count()), missing);
       return store;
     }
@@ -74,6 +88,7 @@ GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene,
     }
   }
   auto body = make_body_geometry(scene, progress);
+  require_possible_work(scene, request.scene, body.surface, body.flags, body.area);
   require_store_room(request.store, domain_size(body), domain_size(body));  // before the body is filled and solved
   return GreenStore::create(request.store, describe_problem(scene, std::move(body), columns, progress));
 }
@@ -103,8 +118,9 @@ layout::Info scene_facts(const Scene& scene, double asymmetry) {
   facts.poisson = scene.material.poisson;
   facts.store_asymmetry = asymmetry;
   facts.rate = static_cast<float>(scene.budget.rate);
+  facts.share = static_cast<float>(scene.budget.share.value_or(0));
   facts.max_contacts = static_cast<std::uint32_t>(scene.budget.contacts);
-  facts.step_work = static_cast<std::uint64_t>(scene.budget.work.value_or(0));
+  facts.step_work = static_cast<std::uint64_t>(scene.budget.asked_work().value_or(0));
   facts.coarsest_constraint_level = static_cast<std::uint32_t>(scene.coarsest_constraints);
   return facts;
 }
@@ -140,22 +156,6 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, double asymmetr
                            static_cast<double>(finest.dense_blocks) / static_cast<double>(finest.kept_blocks),
                            100 * finest.field_rms_error, 100 * finest.patch_force_error));
   return built;
-}
-
-/// Refuses a budget that could not hold the coarsest answer.
-void require_least_work(const Scene& scene, std::span<const std::byte> model) {
-  const AlignedBytes bytes(model);
-  const auto opened = Model::open(bytes.span());
-  if (!opened) {
-    throw std::runtime_error("the model just written does not verify; this is a defect of greenloop itself");
-  }
-  const auto intent = Elastostatic::intended(opened.model);
-  const auto need = Elastostatic::required(opened.model, intent.limits);
-  if (scene.budget.work && intent.budget.work < need.least_work) {
-    throw std::runtime_error(fmt::format(
-        "[budget] work = {}: {} contacts need at least {} units at the coarsest level; raise work or lower contacts",
-        *scene.budget.work, scene.budget.contacts, need.least_work));
-  }
 }
 
 }  // namespace
@@ -196,17 +196,19 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   provenance["frontier_contacts"] = built.model.info.max_contacts;
   provenance["patches"] = built.report.patches;
   built.model.provenance = provenance.dump();
-  if (!scene.budget.work) built.model.info.step_work = built.report.trials.back().step_work;
+  if (!scene.budget.asked_work()) built.model.info.step_work = built.report.trials.back().step_work;
   if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
   const auto plain = encode(built.model);
   const auto bytes = scene.ready ? ready_model(plain) : plain;
-  require_least_work(scene, bytes);
+  require_work(scene, request.scene, least_work(bytes));
   write_file(request.model, bytes);
 
   record["compression"] = compression_record(built.report, built.model.info.max_contacts);
   record["compression"]["wavelet"] = wavelet_name(built.model.info.wavelet);
   record["bytes"] = bytes.size();
   record["step_work"] = built.model.info.step_work;
+  record["units_per_us"] = scene.budget.speed();
+  record["period_us"] = 1e6 / scene.budget.rate;
   for (const auto& stage : progress.stages()) {
     record["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -51,6 +52,10 @@ double MeshSource::scale(const Eigen::AlignedBox3d& mesh_box) const {
     throw SceneError({name + ": the mesh has no extent that could be scaled to size"});
   }
   return *size / longest;
+}
+
+std::optional<std::int64_t> StepBudget::asked_work() const {
+  return work || !share ? work : std::optional<std::int64_t>(std::llround(step_us() * speed()));
 }
 
 NodeSets select_nodes(const Scene& scene, std::span<const Eigen::Vector3d> positions, const Eigen::AlignedBox3d& box) {

@@ -55,10 +55,28 @@ struct AccuracyGoal {
   double field_peak = 0.1;    ///< largest error at a node over the largest displacement, of any pattern, 0..10
 };
 
+/// Work units per microsecond of the target if the scene does not say how fast that is: stated, not measured.
+inline constexpr double nominal_units_per_us = 3000;
+
+/// Most work units per step that a scene may ask for.
+inline constexpr std::int64_t most_work = 1'000'000'000'000;
+
+/// The loop that the model is for. Either `work` or `units_per_us` is set, or neither.
 struct StepBudget {
-  double rate = 1000;                ///< steps per second [Hz]
-  std::optional<std::int64_t> work;  ///< work units per step; the build chooses if not set
-  int contacts = 16;                 ///< most contacts at once, 1..4096
+  double rate = 1000;                  ///< steps per second [Hz]
+  std::optional<double> share;         ///< of a period that a step may take, above 0 and at most 1
+  std::optional<std::int64_t> work;    ///< work units per step, 1..most_work
+  std::optional<double> units_per_us;  ///< work units per microsecond of the target; only with a share
+  int contacts = 16;                   ///< most contacts at once, 1..4096
+
+  /// What a step may take [us]: its share of a period, or all of it.
+  [[nodiscard]] double step_us() const { return 1e6 / rate * share.value_or(1); }
+
+  /// How fast the target is taken to be.
+  [[nodiscard]] double speed() const { return units_per_us.value_or(nominal_units_per_us); }
+
+  /// Work units per step: `work`, or what the share of a period holds; none: the build chooses.
+  [[nodiscard]] std::optional<std::int64_t> asked_work() const;
 };
 
 /// What scene.toml asks for, in SI units. docs/scene.md has the grammar.

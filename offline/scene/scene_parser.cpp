@@ -218,10 +218,23 @@ void read_compression(const Table& scene, std::optional<layout::Wavelet>& wavele
 }
 
 void read_budget(const Table& scene, StepBudget& budget) {
-  if (const auto table = section(scene, "budget", {"rate", "work", "contacts"})) {
-    set_if(budget.rate, table->quantity("rate", Dimension::frequency));
-    budget.work = table->integer("work", 1, 1'000'000'000'000);
-    set_if(budget.contacts, table->integer("contacts", 1, 4096));
+  const auto table = section(scene, "budget", {"rate", "share", "work", "units_per_us", "contacts"});
+  if (!table) {
+    return;
+  }
+  set_if(budget.rate, table->quantity("rate", Dimension::frequency));
+  budget.share = table->number("share", {0, 1, true});
+  budget.work = table->integer("work", 1, most_work);
+  budget.units_per_us = table->number("units_per_us", positive);
+  set_if(budget.contacts, table->integer("contacts", 1, 4096));
+  if (table->has("units_per_us") && table->has("work")) {
+    table->refuse("units_per_us", "work and units_per_us contradict each other; keep one of them");
+  } else if (table->has("units_per_us") && !table->has("share")) {
+    table->refuse("units_per_us",
+                  "says how much work a share of the period holds; write for example share = 0.4 beside it");
+  }
+  if (budget.share && !budget.work && budget.step_us() * budget.speed() > static_cast<double>(most_work)) {
+    table->refuse("share", "of this period is more than 10^12 work units; raise rate, or lower units_per_us");
   }
 }
 

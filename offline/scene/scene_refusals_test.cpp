@@ -269,6 +269,19 @@ TEST_CASE("refused: no work at all") {
   check_refused(smallest + "[budget]\nwork = 0\n", {"budget.work: 0 is out of range"});
 }
 
+TEST_CASE("refused: a share that is none, and a speed without one or beside work") {
+  for (const std::string bad : {"0", "-0.1", "1.01", "inf"}) {
+    check_refused(smallest + "[budget]\nshare = " + bad + "\n", {"budget.share: ", " is out of range"});
+  }
+  check_refused(smallest + "[budget]\nshare = 0.5\nunits_per_us = 0\n",
+                {"budget.units_per_us: 0 is out of range; it has to be greater than 0"});
+  check_refused(smallest + "[budget]\nunits_per_us = 500\n", {":11:16: budget.units_per_us: ", "share = 0.4"});
+  check_refused(smallest + "[budget]\nshare = 0.5\nwork = 9\nunits_per_us = 500\n",
+                {"budget.units_per_us: work and units_per_us contradict each other"});
+  check_refused(smallest + "[budget]\nrate = \"0.001 Hz\"\nshare = 1\n",
+                {"budget.share: of this period is more than 10^12 work units"});
+}
+
 TEST_CASE("refused: contacts out of range") {
   check_refused(smallest + "[budget]\ncontacts = 0\n", {"budget.contacts: 0 is out of range"});
   check_refused(smallest + "[budget]\ncontacts = 4097\n", {"budget.contacts: 4097 is out of range"});

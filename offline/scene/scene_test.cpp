@@ -111,6 +111,35 @@ TEST_CASE("every key is read") {
   CHECK(scene.store == "models/liver.h5");
 }
 
+TEST_CASE("the share of a period that a step may take is work units, at the speed of the target") {
+  const auto budget_of = [](const std::string& keys) {
+    return parse_scene(smallest + "[budget]\n" + keys, "scene.toml").budget;
+  };
+  CHECK_FALSE(budget_of("rate = \"4 kHz\"\n").asked_work());
+  const StepBudget nominal = budget_of("rate = \"4 kHz\"\nshare = 0.4\n");
+  CHECK(nominal.share == 0.4);
+  CHECK(nominal.step_us() == 100);
+  CHECK(nominal.asked_work() == static_cast<std::int64_t>(100 * nominal_units_per_us));
+  CHECK(budget_of("rate = \"4 kHz\"\nshare = 0.4\nunits_per_us = 250.5\n").asked_work() == 25050);
+  CHECK(budget_of("share = 1\nunits_per_us = 1\n").asked_work() == 1000);
+  const StepBudget own = budget_of("share = 0.4\nwork = 77\n");
+  CHECK(own.asked_work() == 77);
+  CHECK(own.step_us() == 400);
+}
+
+TEST_CASE("the canonical text says the speed that a share is taken at, and is as before without a share") {
+  const auto text_of = [](const std::string& keys) {
+    return canonical_text(parse_scene(smallest + "[budget]\n" + keys, "scene.toml"));
+  };
+  const std::string shared = text_of("share = 0.4\n");
+  CHECK(shared.find("rate = \"1000 Hz\"\nshare = 0.4\nunits_per_us = 3000\ncontacts") != std::string::npos);
+  CHECK(shared == text_of("share = 0.4\nunits_per_us = 3000.0\n"));
+  CHECK(canonical_text(parse_scene(shared, "scene.toml")) == shared);
+  CHECK(shared != text_of("share = 0.4\nunits_per_us = 3001\n"));
+  CHECK(text_of("share = 0.4\nwork = 9\n").find("share = 0.4\nwork = 9\ncontacts") != std::string::npos);
+  CHECK(text_of("work = 9\n").find("rate = \"1000 Hz\"\nwork = 9\ncontacts") != std::string::npos);
+}
+
 TEST_CASE("the canonical text parses to itself") {
   const auto text =
       smallest +

@@ -94,8 +94,11 @@ std::string compression_text(std::optional<layout::Wavelet> wavelet, bool ready)
 }
 
 std::string budget_text(const StepBudget& budget) {
+  const bool priced = budget.share && !budget.work;
   return "\n[budget]\nrate = " + quantity(budget.rate, "Hz") + "\n" +
+         (budget.share ? "share = " + number(*budget.share) + "\n" : "") +
          (budget.work ? "work = " + std::to_string(*budget.work) + "\n" : "") +
+         (priced ? "units_per_us = " + number(budget.speed()) + "\n" : "") +
          "contacts = " + std::to_string(budget.contacts) + "\n";
 }
 
