@@ -15,6 +15,7 @@
 #include "formats/stored_blocks.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
+#include "offline/cli/inspect_budget.hpp"
 #include "offline/cli/inspect_patterns.hpp"
 #include "offline/compress/measure/field_size.hpp"
 
@@ -158,6 +159,7 @@ Json inspection_of(const ModelFile& model) {
       {"material", material_of(view)},
       {"box", {{"min", info.box_min}, {"max", info.box_max}}},
       {"scene", {{"rate", info.rate}, {"max_contacts", info.max_contacts}, {"step_work", info.step_work}}},
+      {"budget", budget_of(model)},
       {"units", units_of(view)},
       {"constraint_levels", levels_of(view)},
       {"patterns", patterns_of(view)},
@@ -219,6 +221,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
   row("ready", found["ready"].get<bool>() ? "yes, " + bytes_text(found["ready_bytes"]) + " of the file" : "no");
   row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),
                            scene["max_contacts"].dump(), scene["step_work"].dump()));
+  for (const auto& [name, value] : budget_rows(found["budget"])) row(name, value);
   fmt::print(out, "\n  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", "level", "columns", "kept blocks", "dense",
              "RMS error", "worst column", "patch force");
   for (const auto& level : found["constraint_levels"]) {
@@ -243,7 +246,10 @@ int run_inspect(const InspectArguments& arguments, std::ostream& out) {
 }
 
 void add_inspect(CLI::App& parent, int& exit_code) {
-  CLI::App* command = parent.add_subcommand("inspect", "Say what a model file holds");
+  CLI::App* command =
+      parent.add_subcommand("inspect",
+                            "Say what a model file holds, and what its budget is on this machine: steps "
+                            "are run for a quarter of a second of processor time");
   const auto arguments = std::make_shared<InspectArguments>();
   command->add_option("model", arguments->file, "Model file (.gloop)")->required();
   command->add_flag("--json", arguments->json, "Print JSON, with every section");

@@ -15,7 +15,8 @@ struct InspectArguments {
   bool json = false;
 };
 
-/// Prints what a model file holds: counts, bytes against the dense matrix, measured errors, material, provenance.
+/// Prints what a model file holds: counts, bytes against the dense matrix, measured errors, material, provenance; and
+/// what its budget is on this machine, which steps are run for.
 /// Returns the exit code. Throws std::runtime_error naming the file if it cannot be read or is not valid.
 int run_inspect(const InspectArguments& arguments, std::ostream& out);
 

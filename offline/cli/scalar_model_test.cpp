@@ -55,6 +55,9 @@ TEST_CASE("inspect --json: a scalar model says so; what it has not is null under
   }
   for (const char* unit : {"force", "compliance", "young"}) CHECK(found["units"].at(unit).is_null());
   CHECK(found["units"]["length"] == "m");
+  CHECK(found["budget"]["rate"] == 1000);
+  CHECK(found["budget"]["work"] == 1000000);
+  for (const char* key : {"us", "least_work", "arena_bytes", "create_ms"}) CHECK(found["budget"].at(key).is_null());
 }
 
 TEST_CASE("inspect: an elastostatic model is said to be one, under the keys that a scalar one has") {
