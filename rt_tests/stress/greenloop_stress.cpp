@@ -33,7 +33,7 @@ struct Arguments {
   bool json = false;
   bool count_instructions = false, list_steps = false;
   double rate = 0;
-  double share = 1;
+  double share = 0;
   bool judge_time = false;
   std::string prices;
 };
@@ -70,9 +70,8 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::ExistingFile);
   app.add_option("--rate", arguments.rate, "Hz, whose period steps are compared with; else the model's")
       ->check(CLI::PositiveNumber);
-  app.add_option("--share", arguments.share, "of the period that a step may take")
-      ->check(CLI::Range(0.001, 1.0))
-      ->capture_default_str();
+  app.add_option("--share", arguments.share, "of the period that a step may take; else the model's")
+      ->check(CLI::Range(0.001, 1.0));
   app.add_flag("--judge-time", arguments.judge_time,
                "fail if a step takes longer, or if this machine cannot tell: it takes a thread that is pinned to one "
                "isolated processor");
@@ -128,7 +127,6 @@ greenloop::StressOptions options_for(const greenloop::Model& model, const Argume
 
 StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
   StressReport report{.model = arguments.model, .options = options_for(model, arguments)};
-  report.judge_time = arguments.judge_time;
   greenloop::StressOptions& options = report.options;
   greenloop::offline::ProgressBar bar(arguments.json);
   bar.begin("stress");
@@ -140,8 +138,10 @@ StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
   const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
   report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
   bar.end(fmt::format("{} cycles", report.result.cycles));
-  const double rate = arguments.rate > 0 ? arguments.rate : double{model.view().info->rate};
-  report.time = greenloop::judge_times(report.result.times, rate, arguments.share);
+  const auto intent = greenloop::Elastostatic::intended(model);
+  const double rate = arguments.rate > 0 ? arguments.rate : double{intent.rate};
+  const double share = arguments.share > 0 ? arguments.share : double{intent.share};
+  report.time = greenloop::judge_times(report.result.times, rate, share, arguments.judge_time);
   report.starved = greenloop::starved_steps<ElastostaticDriver>(model, options, 1600);
   if (arguments.count_instructions) {
     bar.begin("instructions");

@@ -10,7 +10,6 @@
 #include "rt_tests/harness/elastostatic_driver.hpp"
 #include "rt_tests/harness/prices_file.hpp"
 #include "rt_tests/stress/starved_steps.hpp"
-#include "rt_tests/stress/time_verdict.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -92,21 +91,6 @@ TEST_CASE("work follows prices, and stays within what is declared by them") {
     CHECK(dearer.declared_work > by_default.declared_work);
     CHECK(dearer.counts.worst_work > by_default.counts.worst_work);
   }
-}
-
-TEST_CASE("times are judged against the share of the period") {
-  TimeHistogram times(100);
-  for (int i = 0; i < 99; ++i) times.add(10.5);
-  times.add(300);
-  const TimeVerdict half = judge_times(times, 1000, 0.5);
-  CHECK(half.period_us == 1000);
-  CHECK(half.p50_us == 11);
-  CHECK(half.p99_us == 11);
-  CHECK(half.p999_us == 300);
-  CHECK(half.worst_us == 300);
-  CHECK(half.within());
-  CHECK_FALSE(judge_times(times, 1000, 0.25).within());
-  CHECK_FALSE(judge_times(times, 4000, 1).within());
 }
 
 TEST_CASE("a moving tool is followed at a tenth and a quarter of the finest level's work") {

@@ -61,13 +61,6 @@ json as_json(const PredictedWork& predicted) {
   return all;
 }
 
-json as_json(const TimeVerdict& time) {
-  return {{"period_us", time.period_us}, {"share", time.share},
-          {"worst_us", time.worst_us},   {"p50_us", time.p50_us},
-          {"p99_us", time.p99_us},       {"p999_us", time.p999_us},
-          {"within", time.within()},     {"can_judge", time.unfit.empty()}};
-}
-
 void print_scripts(const std::vector<ScriptResult>& scripts) {
   fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}\n", "script", "cycles", "answered",
              "coarser", "mixed", "cached", "changed", "refused", "worst work", "worst us", "force step");
@@ -137,13 +130,6 @@ std::string StressReport::verdict() const {
   return text;
 }
 
-std::string StressReport::time_verdict() const {
-  if (!judge_time || !time.unfit.empty()) {
-    return "NOT JUDGED";
-  }
-  return time.within() ? "WITHIN" : "LATE";
-}
-
 std::string StressReport::replay() const {
   if (!result.first_violation) {
     return {};
@@ -167,8 +153,8 @@ nlohmann::json StressReport::json() const {
       {"force_step_over_finest", starved.tenth},
       {"force_steps",
        {{"finest_N", starved.finest}, {"tenth_over_finest", starved.tenth}, {"quarter_over_finest", starved.quarter}}},
-      {"time", as_json(time)},
-      {"time_verdict", time_verdict()},
+      {"time", time},
+      {"time_verdict", time.word()},
       {"instructions_max", nullptr},
       {"force_step_max", result.force_step_max},
       {"digest", result.digest},
@@ -241,14 +227,7 @@ void StressReport::print_verdict() const {
     fmt::print("first in script {}, seed {}, cycle {}; again with\n  {}\n", name(result.first_violation->script),
                options.seed, result.first_violation->cycle, replay());
   }
-  fmt::print(
-      "time {}: p50 {:.0f}, p99 {:.0f}, p99.9 {:.0f}, worst {:.0f} us of processor time a step; the period is {:.0f} "
-      "us, of which a step may take {:.0f} %\n",
-      time_verdict(), time.p50_us, time.p99_us, time.p999_us, time.worst_us, time.period_us, 100 * time.share);
-  if (judge_time && !time.unfit.empty()) {
-    fmt::print("  {}\n", time.unfit);
-  }
-  fmt::print("\n");
+  fmt::print("{}\n", time.text("step"));
 }
 
 }  // namespace greenloop

@@ -8,7 +8,7 @@
 #include "rt_tests/stress/predicted_work.hpp"
 #include "rt_tests/stress/starved_steps.hpp"
 #include "rt_tests/stress/stress_run.hpp"
-#include "rt_tests/stress/time_verdict.hpp"
+#include "sim_hw/guard/time_verdict.hpp"
 
 namespace greenloop {
 
@@ -19,7 +19,6 @@ struct StressReport {
   StressResult result{};
   double open_ms = 0;  ///< of `Model::open`, thread CPU time
   TimeVerdict time{};
-  bool judge_time = false;
   StarvedSteps starved{};
   std::optional<PredictedWork> predicted = std::nullopt;  ///< if instructions were counted
   double minutes_per_million = 0;                         ///< of cycles, by the wall clock
@@ -27,11 +26,8 @@ struct StressReport {
   /// What the body declares: "HELD", or "VIOLATED: work_overruns 3, locks 1".
   [[nodiscard]] std::string verdict() const;
 
-  /// "WITHIN" or "LATE" where time is judged, else "NOT JUDGED".
-  [[nodiscard]] std::string time_verdict() const;
-
   /// Whether all that was asked for holds.
-  [[nodiscard]] bool held() const { return result.held() && (!judge_time || (time.unfit.empty() && time.within())); }
+  [[nodiscard]] bool held() const { return result.held() && time.holds(); }
 
   [[nodiscard]] double declared_over_worst() const {
     return static_cast<double>(result.declared_work) / static_cast<double>(result.counts.worst_work);

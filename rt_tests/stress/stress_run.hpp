@@ -7,9 +7,9 @@
 
 #include "rt_tests/harness/contact_script.hpp"
 #include "rt_tests/harness/driver.hpp"
-#include "rt_tests/harness/time_histogram.hpp"
 #include "runtime/model.hpp"
 #include "runtime/prices.hpp"
+#include "sim_hw/guard/time_histogram.hpp"
 
 namespace greenloop {
 

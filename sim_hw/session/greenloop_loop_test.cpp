@@ -243,8 +243,57 @@ TEST_CASE("the text for people says the same") {
   CHECK(held.exit_status == 0);
   CHECK(contains(held.output, "HELD: 1000 of 1000 cycles at 1000 Hz, 0 misses, 0 late, 0 allocations"));
   const ProgramRun failed = run_text({"--transport", "memq", "--inject-overrun", "500"});
-  CHECK(contains(failed.output, "FAILED: 1000 of 1000 cycles at 1000 Hz, 1 misses, 1 late"));
+  CHECK(contains(failed.output, "VIOLATED: 1000 of 1000 cycles at 1000 Hz, 1 misses, 1 late"));
   CHECK(contains(failed.output, "first miss in cycle 500"));
+  CHECK(held.output.find("\ntime NOT JUDGED: p50 ") < held.output.find("  model "));
+  CHECK(contains(held.output, "the period is 1000 us, of which a step may take 100 %"));
+}
+
+TEST_CASE("rate and share are the model's unless they are given") {
+  const std::string file = workspace().file("fast.gloop");
+  ModelData data = synthetic_model({.levels = 3, .touchable_above = -0.2});
+  data.info.rate = 4000;
+  data.info.share = 0.25F;
+  write_file(file, encode(data));
+  const auto run_fast = [&](const Words& more) {
+    Words words{file, "--seconds", "0.5", "--transport", "memq", "--json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return nlohmann::json::parse(run_program(GREENLOOP_LOOP, words).output);
+  };
+  const auto own = run_fast({});
+  CHECK(own["rate"] == 4000);
+  CHECK(own["cycles"] == 2000);
+  CHECK(own["time"]["period_us"] == 250);
+  CHECK(own["time"]["share"] == 0.25);
+  const auto given = run_fast({"--rate", "500", "--share", "0.5"});
+  CHECK(given["cycles"] == 250);
+  CHECK(given["time"]["period_us"] == 2000);
+  CHECK(given["time"]["share"] == 0.5);
+  data.info.rate = 50;
+  write_file(file, encode(data));
+  const ProgramRun slow = run_program(GREENLOOP_LOOP, {file});
+  CHECK(slow.exit_status == 1);
+  CHECK(contains(slow.errors, file + ": rate: 50"));
+  CHECK(contains(slow.errors, "give another with --rate"));
+}
+
+TEST_CASE("time is reported beside the work, and judged only when asked for, where the machine can judge") {
+  const auto reported = run_json({"--transport", "memq"});
+  CHECK(reported["verdict"] == "HELD");
+  CHECK(reported["time_verdict"] == "NOT JUDGED");
+  CHECK(reported["time"]["p50_us"] <= reported["time"]["p999_us"]);
+  CHECK(reported["time"]["worst_us"] == reported["step_us"]["max"]);
+  const ProgramRun asked = run_text({"--transport", "memq", "--judge-time", "--json"});
+  const auto judged = nlohmann::json::parse(asked.output);
+  CHECK(judged["verdict"] == "HELD");
+  if (judged["time"]["can_judge"] == true) {
+    CHECK(judged["time_verdict"] == (judged["time"]["within"] == true ? "WITHIN" : "LATE"));
+    CHECK(asked.exit_status == (judged["time"]["within"] == true ? 0 : 1));
+  } else {
+    CHECK(judged["time_verdict"] == "NOT JUDGED");
+    CHECK(judged["passed"] == false);
+    CHECK(asked.exit_status == 1);
+  }
 }
 
 TEST_CASE("a file that is no model, and words that are no options, are refused") {

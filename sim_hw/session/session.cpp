@@ -37,7 +37,17 @@ Budget budget_of(const SessionOptions& options, const Model& model, const Elasto
   return budget;
 }
 
-DeviceSetup device_setup(const SessionOptions& options, const BodySurface& surface, const layout::Info& info) {
+double rate_of(const SessionOptions& options, const Elastostatic::Intent& intent) {
+  const double rate = options.rate.value_or(intent.rate);
+  if (rate < least_rate || rate > most_rate) {
+    throw std::runtime_error(options.model.string() + ": rate: " + std::to_string(intent.rate) +
+                             " Hz is outside the 100 to 100000 Hz of the simulated hand; give another with --rate");
+  }
+  return rate;
+}
+
+DeviceSetup device_setup(const SessionOptions& options, double rate, const BodySurface& surface,
+                         const layout::Info& info) {
   constexpr double round_seconds = 10;
   const double rounds = std::max(1.0, std::floor(options.seconds / round_seconds + 0.5));
   const ProbeSize probe = probe_size(surface);
@@ -45,8 +55,8 @@ DeviceSetup device_setup(const SessionOptions& options, const BodySurface& surfa
   setup.motion = make_script(options.script, surface, probe, options.seconds / rounds, options.tools);
   setup.coupling = coupling(info, surface, probe, setup.hand);
   setup.origin = surface.centre;
-  setup.period = 1 / options.rate;
-  setup.cycles = std::llround(options.seconds * options.rate);
+  setup.period = 1 / rate;
+  setup.cycles = std::llround(options.seconds * rate);
   setup.faults = options.faults;
   return setup;
 }
@@ -114,12 +124,15 @@ SessionResult run_session(const SessionOptions& options) {
   const Elastostatic::Limits limits = limits_of(model);
   const Elastostatic::Requirement need = Elastostatic::required(model, limits);
   SessionResult result;
+  const Elastostatic::Intent intent = Elastostatic::intended(model);
+  result.rate = rate_of(options, intent);
+  result.share = options.share.value_or(intent.share);
   result.least_work = need.least_work;
   result.budget = budget_of(options, model, need);
   const BodySurface surface = body_surface(model);
-  HapticDevice device(device_setup(options, surface, *model.view().info));
+  HapticDevice device(device_setup(options, result.rate, surface, *model.view().info));
   result.tools = device.state().num_tools;
-  result.cycles_asked = std::llround(options.seconds * options.rate);
+  result.cycles_asked = std::llround(options.seconds * result.rate);
   result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count());
 
   HostedLoopBody<Elastostatic> body(model, limits);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "sim_hw/control_loop/run_log.hpp"
@@ -12,10 +13,14 @@ namespace greenloop {
 
 enum class Transport { automatic, udpm, memq };
 
+inline constexpr double least_rate = 100, most_rate = 1e5;  // Hz; the hand's integration needs 100
+
 struct SessionOptions {
   std::filesystem::path model;
-  double seconds = 10;  ///< s of virtual time, > 0
-  double rate = 1000;   ///< Hz, 100 or more: the hand's integration needs it
+  double seconds = 10;          ///< s of virtual time, > 0
+  std::optional<double> rate;   ///< Hz, least_rate or more; else the model's
+  std::optional<double> share;  ///< of a period that a cycle's processor time may take, above 0 and at most 1; else the
+                                ///< model's
   Script script = Script::all;
   std::uint32_t tools = 2;   ///< 1..max_tools, at most so many hands
   std::uint64_t budget = 0;  ///< units per cycle; 0: the model's own, or else the worst case of its finest level
@@ -28,6 +33,8 @@ struct SessionOptions {
 
 /// A run that came to its end, well or badly.
 struct SessionResult {
+  double rate = 0;   ///< Hz
+  double share = 1;  ///< of a period
   std::int64_t cycles_asked = 0;
   Budget budget;
   std::uint64_t least_work = 0;

@@ -21,6 +21,13 @@ StepTime step_time(const std::vector<CycleRecord>& records) {
   return {time.front(), quantile(0.5), quantile(0.99), time.back()};
 }
 
+// bins of a microsecond up to the period: beyond it every time is late
+TimeHistogram histogram(const SessionResult& result) {
+  TimeHistogram times(static_cast<std::size_t>(1e6 / result.rate) + 1);
+  for (const CycleRecord& record : result.log.records()) times.add(record.cpu_us);
+  return times;
+}
+
 std::string digest_text(const SessionResult& result) {
   return fmt::format("{:016x}", static_cast<std::uint64_t>(result.loop_digest));
 }
@@ -35,7 +42,7 @@ std::string levels_text(const Verdict& verdict) {
 
 }  // namespace
 
-Verdict judge(const SessionResult& result) {
+Verdict judge(const SessionResult& result, bool judge_time) {
   Verdict verdict;
   verdict.cycles = static_cast<std::int64_t>(result.log.records().size());
   for (const CycleRecord& record : result.log.records()) {
@@ -49,10 +56,11 @@ Verdict judge(const SessionResult& result) {
     ++verdict.levels_used[record.report.constraint_level];
   }
   verdict.step_us = step_time(result.log.records());
+  verdict.time = judge_times(histogram(result), result.rate, result.share, judge_time);
   verdict.complete = verdict.cycles == result.cycles_asked && result.device.cycles == result.cycles_asked &&
                      result.device.digest == result.loop_digest && !result.device.stopped;
-  verdict.passed = verdict.misses == 0 && result.allocations == 0 &&
-                   result.device.late <= result.device.late_injected && verdict.complete;
+  verdict.held = verdict.misses == 0 && result.allocations == 0 && result.device.late <= result.device.late_injected &&
+                 verdict.complete;
   return verdict;
 }
 
@@ -60,10 +68,12 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
   nlohmann::ordered_json levels = nlohmann::ordered_json::array();
   for (const auto& [level, cycles] : verdict.levels_used) levels.push_back({{"level", level}, {"cycles", cycles}});
   nlohmann::ordered_json json{
-      {"passed", verdict.passed},
+      {"passed", verdict.passed()},
+      {"verdict", verdict.held ? "HELD" : "VIOLATED"},
+      {"time_verdict", verdict.time.word()},
       {"script", script_names[static_cast<std::size_t>(options.script)]},
       {"seconds", options.seconds},
-      {"rate", options.rate},
+      {"rate", result.rate},
       {"cycles", verdict.cycles},
       {"misses", verdict.misses},
       {"late", result.device.late},
@@ -83,6 +93,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
         {"median", verdict.step_us.median},
         {"p99", verdict.step_us.p99},
         {"max", verdict.step_us.max}}},
+      {"time", nlohmann::json(verdict.time)},
       {"transport", result.transport},
       {"processes", result.processes},
       {"retransmits", result.device.retransmits},
@@ -94,8 +105,9 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
 std::string to_text(const SessionOptions& options, const SessionResult& result, const Verdict& verdict) {
   const std::string reason = result.transport_reason.empty() ? "" : " (" + result.transport_reason + ")";
   std::string text = fmt::format("{}: {} of {} cycles at {} Hz, {} misses, {} late, {} allocations\n",
-                                 verdict.passed ? "HELD" : "FAILED", verdict.cycles, result.cycles_asked, options.rate,
+                                 verdict.held ? "HELD" : "VIOLATED", verdict.cycles, result.cycles_asked, result.rate,
                                  verdict.misses, result.device.late, result.allocations);
+  text += verdict.time.text("cycle");
   text += fmt::format("  model      {}\n", options.model.string());
   text += fmt::format("  script     {}: {} cycles in contact, at most {} contacts, {:.3g} N\n",
                       script_names[static_cast<std::size_t>(options.script)], verdict.contact_cycles,
@@ -108,8 +120,6 @@ std::string to_text(const SessionOptions& options, const SessionResult& result, 
   text += fmt::format("  digest     {}\n", digest_text(result));
   text += fmt::format("  transport  {}, {} process{}{}, {} retransmissions\n", result.transport, result.processes,
                       result.processes == 1 ? "" : "es", reason, result.device.retransmits);
-  text += fmt::format("  step       {:.1f} us median, {:.1f} p99, {:.1f} worst (thread CPU time, for information)\n",
-                      verdict.step_us.median, verdict.step_us.p99, verdict.step_us.max);
   if (verdict.first_miss >= 0) text += fmt::format("  first miss in cycle {}\n", verdict.first_miss);
   if (result.device.stopped) {
     text += fmt::format("  stopped    {} late commands in a row\n", CommandArrival::most_in_a_row);

@@ -1,9 +1,10 @@
-#include "rt_tests/stress/time_verdict.hpp"
+#include "sim_hw/guard/time_verdict.hpp"
 
 #include <fmt/format.h>
 #include <sched.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace greenloop {
@@ -43,14 +44,35 @@ std::string why_unfit() {
 
 }  // namespace
 
-TimeVerdict judge_times(const TimeHistogram& times, double rate, double share) {
+std::string TimeVerdict::word() const {
+  if (!is_asked || !unfit.empty()) return "NOT JUDGED";
+  return within() ? "WITHIN" : "LATE";
+}
+
+std::string TimeVerdict::text(const std::string& timed) const {
+  return fmt::format(
+             "time {}: p50 {:.0f}, p99 {:.0f}, p99.9 {:.0f}, worst {:.0f} us of processor time a {}; the period is "
+             "{:.0f} us, of which a step may take {:.0f} %\n",
+             word(), p50_us, p99_us, p999_us, worst_us, timed, period_us, 100 * share) +
+         (is_asked && !unfit.empty() ? "  " + unfit + "\n" : "");
+}
+
+void to_json(nlohmann::json& json, const TimeVerdict& time) {
+  json = {{"period_us", time.period_us}, {"share", time.share},
+          {"worst_us", time.worst_us},   {"p50_us", time.p50_us},
+          {"p99_us", time.p99_us},       {"p999_us", time.p999_us},
+          {"within", time.within()},     {"can_judge", time.unfit.empty()}};
+}
+
+TimeVerdict judge_times(const TimeHistogram& times, double rate, double share, bool is_asked) {
   return {.period_us = 1e6 / rate,
           .share = share,
           .worst_us = times.most(),
           .p50_us = times.quantile(0.5),
           .p99_us = times.quantile(0.99),
           .p999_us = times.quantile(0.999),
-          .unfit = why_unfit()};
+          .unfit = why_unfit(),
+          .is_asked = is_asked};
 }
 
 }  // namespace greenloop
