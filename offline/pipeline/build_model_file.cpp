@@ -64,7 +64,8 @@ void require_possible_work(const Scene& scene, const std::filesystem::path& file
   }
   require_work(scene, file,
                least_work_bound(mesh, flags, area, static_cast<std::uint32_t>(scene.budget.contacts),
-                                static_cast<std::uint32_t>(scene.coarsest_constraints)));
+                                static_cast<std::uint32_t>(scene.coarsest_constraints)),
+               LeastOf::any_wavelet);
 }
 
 /// The store of the scene's columns: the one on disk if it is that, else a new one with nothing solved.
@@ -200,7 +201,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
   const auto plain = encode(built.model);
   const auto bytes = scene.ready ? ready_model(plain) : plain;
-  require_work(scene, request.scene, least_work(bytes));
+  require_work(scene, request.scene, least_work(bytes), LeastOf::this_wavelet);
   write_file(request.model, bytes);
 
   record["compression"] = compression_record(built.report, built.model.info.max_contacts);

@@ -75,13 +75,14 @@ std::uint64_t least_work(std::span<const std::byte> model) {
   return Elastostatic::required(opened.model, Elastostatic::intended(opened.model).limits).least_work;
 }
 
-void require_work(const Scene& scene, const std::filesystem::path& file, std::uint64_t least) {
+void require_work(const Scene& scene, const std::filesystem::path& file, std::uint64_t least, LeastOf models) {
   const auto work = scene.budget.asked_work();
   if (!work || static_cast<std::uint64_t>(*work) >= least) {
     return;
   }
-  throw SceneError({fmt::format("{}: {}; {} contacts need at least {}, at the coarsest level; {}", file.string(),
-                                asked(scene.budget), scene.budget.contacts, least, mending(scene.budget))});
+  const char* other = models == LeastOf::this_wavelet ? "; another [compression] wavelet may need less" : "";
+  throw SceneError({fmt::format("{}: {}; {} contacts need at least {}, at the coarsest level; {}{}", file.string(),
+                                asked(scene.budget), scene.budget.contacts, least, mending(scene.budget), other)});
 }
 
 }  // namespace greenloop::offline

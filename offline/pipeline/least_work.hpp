@@ -20,8 +20,11 @@ namespace greenloop::offline {
 /// Least work of a body of the verified model's limits, as its scene intends them.
 [[nodiscard]] std::uint64_t least_work(std::span<const std::byte> model);
 
+/// Which models a least work holds for.
+enum class LeastOf { any_wavelet, this_wavelet };
+
 /// Throws SceneError, naming the file, the key, the work and how to mend it, if the work that the scene asks for is
 /// less than `least`, which its contacts need.
-void require_work(const Scene& scene, const std::filesystem::path& file, std::uint64_t least);
+void require_work(const Scene& scene, const std::filesystem::path& file, std::uint64_t least, LeastOf models);
 
 }  // namespace greenloop::offline

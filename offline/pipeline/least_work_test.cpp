@@ -38,9 +38,9 @@ Scene scene_with(const std::string& budget) {
       "bear.toml");
 }
 
-std::string refusal(const std::string& budget, std::uint64_t least) {
+std::string refusal(const std::string& budget, std::uint64_t least, LeastOf models = LeastOf::any_wavelet) {
   try {
-    require_work(scene_with(budget), "bear.toml", least);
+    require_work(scene_with(budget), "bear.toml", least, models);
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -51,6 +51,8 @@ TEST_CASE("a budget that cannot hold the least answer is refused by file, key, v
   CHECK(refusal("work = 999\n", 1000) ==
         "bear.toml: budget.work: 999 units a step; 16 contacts need at least 1000, at the coarsest level; raise work "
         "or lower contacts");
+  CHECK(refusal("work = 999\n", 1000, LeastOf::this_wavelet) ==
+        refusal("work = 999\n", 1000) + "; another [compression] wavelet may need less");
   CHECK(refusal("rate = \"4 kHz\"\nshare = 0.4\nunits_per_us = 2000\ncontacts = 5\n", 200001) ==
         "bear.toml: budget.share: 0.4 of a period of 4000 Hz is 100 us, 200000 work units at 2000 units per us; 5 "
         "contacts need at least 200001, at the coarsest level; raise share, lower rate or contacts, or state with "
