@@ -4,12 +4,19 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <string>
 
+#include "formats/mesh/surface_io.hpp"
+#include "formats/testing/temporary_folder.hpp"
+#include "formats/write/model_file.hpp"
 #include "formats/write/writer.hpp"
 #include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/compress/testing/test_body.hpp"
-#include "offline/compress/wavelet_choice.hpp"
+#include "offline/pipeline/build_model_file.hpp"
+#include "offline/volume/testing/shapes.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -63,6 +70,69 @@ TEST_CASE("a budget that holds the least answer is not refused, nor where the bu
   CHECK(refusal("work = 1000\n", 1000).empty());
   CHECK(refusal("rate = \"4 kHz\"\nshare = 0.4\nunits_per_us = 2000\n", 200000).empty());
   CHECK(refusal("rate = \"1 MHz\"\n", std::uint64_t{1} << 50).empty());
+}
+
+// A ball of 42 nodes in a folder of its own, built with one budget after the other.
+class BallBuild {
+ public:
+  BallBuild() {
+    const SemiRegularMesh ball = testing::ellipsoid(1, {1, 1, 1});
+    write_surface(folder_.path() / "ball.off", {ball.positions, triangles_of_level(ball, 1)});
+  }
+
+  // what a build with these keys of [budget] says, if it is refused
+  std::string refusal(const std::string& budget) {
+    std::ofstream(folder_.path() / "ball.toml") << "[surface]\nfile = \"ball.off\"\nsize = \"10 cm\"\n"
+                                                   "[remesh]\nbase_vertices = 12\nlevels = 1\n"
+                                                   "[material]\nyoung = \"20 kPa\"\npoisson = 0.4\n"
+                                                   "[[fixed]]\nbelow = 0.2\naxis = \"z\"\n"
+                                                   "[compression]\nwavelet = \"linear\"\n[budget]\n"
+                                                << budget;
+    progress_ = ProgressBar(true);
+    try {
+      build_model_file({.scene = folder_.path() / "ball.toml", .model = model(), .store = store()}, progress_);
+    } catch (const SceneError& error) {
+      return error.what();
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool went_through(const std::string& stage) const {
+    return std::any_of(progress_.stages().begin(), progress_.stages().end(),
+                       [&](const FinishedStage& finished) { return finished.name == stage; });
+  }
+  [[nodiscard]] std::filesystem::path model() const { return folder_.path() / "ball.gloop"; }
+  [[nodiscard]] std::filesystem::path store() const { return folder_.path() / "ball.h5"; }
+
+ private:
+  TemporaryFolder folder_{"least_work_test"};
+  ProgressBar progress_{true};
+};
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_CASE("a build refuses a budget before it solves, or else before it writes, and keeps what it solved") {
+  BallBuild ball;
+  CHECK(contains(ball.refusal("work = 1\n"), "ball.toml: budget.work: 1 units a step; 16 contacts need at least "));
+  CHECK_FALSE(ball.went_through("tetrahedra"));
+  CHECK_FALSE(std::filesystem::exists(ball.store()));
+
+  REQUIRE(ball.refusal("rate = \"4 kHz\"\n").empty());
+  const std::uint64_t least = least_work(open_model_file(ball.model()).bytes.span());
+  std::filesystem::remove(ball.model());
+  const std::string late = ball.refusal("work = " + std::to_string(least - 1) + "\n");
+  CHECK(contains(late, "16 contacts need at least " + std::to_string(least) + ", at the coarsest level"));
+  CHECK(contains(late, "another [compression] wavelet may need less"));
+  CHECK(ball.went_through("compress"));
+  CHECK_FALSE(std::filesystem::exists(ball.model()));
+  CHECK(std::filesystem::exists(ball.store()));
+
+  CHECK(ball.refusal("rate = \"4 kHz\"\nshare = 0.5\nunits_per_us = " + std::to_string(least) + "\n").empty());
+  CHECK_FALSE(ball.went_through("tetrahedra"));
+  const ModelFile built = open_model_file(ball.model());
+  CHECK(built.view.info->step_work == 125 * least);
+  CHECK(built.view.info->share == 0.5F);
+  CHECK(built.view.header->minor == 5);
 }
 
 }  // namespace
