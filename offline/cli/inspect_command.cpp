@@ -10,7 +10,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 
 #include "formats/stored_blocks.hpp"
 #include "formats/write/describe.hpp"
@@ -91,9 +90,9 @@ Json bits_of(const ModelView& view) {
 }
 
 // what the build recorded of its search, if the model is its work
-Json recorded(const ModelView& view, const std::string& key, Json otherwise) {
+Json recorded(const ModelView& view, const std::string& key, const Json& otherwise) {
   const Json provenance = provenance_of(view);
-  return provenance.is_object() && provenance.contains(key) ? provenance[key] : std::move(otherwise);
+  return provenance.is_object() && provenance.contains(key) ? provenance[key] : otherwise;
 }
 
 // what a body of the loop sums for a field, if there are bodies of such models

@@ -135,6 +135,7 @@ FactGroup compression_facts(const ModelView& model) {
 FactGroup loop_facts(const ModelView& model) {
   return {"Asked of the loop",
           {{"rate", readable(model.info->rate) + "\u202fHz"},
+           {"share of a period", model.info->share > 0 ? readable(100 * model.info->share) + "\u202f%" : "none stated"},
            {"contacts at most", readable_count(model.info->max_contacts)},
            {"work per step", readable_count(model.info->step_work) + " units"},
            {"constraint levels", fmt::format("{} to {}", model.info->coarsest_constraint_level,
