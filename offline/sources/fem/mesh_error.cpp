@@ -234,11 +234,12 @@ std::vector<Candidate> rank_patches(QuadraticBody& body, const MeshErrorProgress
   const std::vector<int> centers = spread_centers(body.problem, body.skin);
   for (std::size_t c = 0; c < centers.size(); ++c) {
     if (progress) progress(0.5 * static_cast<double>(c) / static_cast<double>(centers.size()));
-    std::vector<int> vertices = patch_around(body.problem, body.skin, centers[c]), sorted = vertices;
+    Candidate candidate{patch_around(body.problem, body.skin, centers[c])};
+    std::vector<int> sorted = candidate.vertices;
     std::sort(sorted.begin(), sorted.end());
     if (!seen.insert(std::move(sorted)).second) continue;
-    const HeldPatch patch(vertices, body.free, body.factors);
-    candidates.push_back({std::move(vertices), released_by_edges(body, patch)});
+    candidate.released = released_by_edges(body, HeldPatch(candidate.vertices, body.free, body.factors));
+    candidates.push_back(std::move(candidate));
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.released > b.released; });
