@@ -1,9 +1,12 @@
 #include "offline/pipeline/body_geometry.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "formats/layout.hpp"
@@ -61,14 +64,35 @@ PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& v
   return prepared;
 }
 
-std::vector<std::uint32_t> node_flags(const Scene& scene, const SemiRegularMesh& mesh) {
-  const auto sets = select_nodes(scene, mesh.positions, bounding_box(mesh.positions));
-  std::vector<std::uint32_t> flags(mesh.positions.size(), 0);
+std::vector<std::uint32_t> node_flags(const NodeSets& sets) {
+  std::vector<std::uint32_t> flags(sets.fixed.holds.size(), 0);
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    flags[i] = (sets.fixed[i] ? layout::node_fixed : 0U) | (sets.touched[i] ? layout::node_touchable : 0U) |
-               (sets.read[i] ? layout::node_read : 0U);
+    flags[i] = (sets.fixed.holds[i] ? layout::node_fixed : 0U) | (sets.touched.holds[i] ? layout::node_touchable : 0U) |
+               (sets.read.holds[i] ? layout::node_read : 0U);
   }
   return flags;
+}
+
+/// "8 touched (3 + 5 by region)"
+std::string role_text(const NodeSet& set, std::string_view role) {
+  std::string text = fmt::format("{} {}", set.count(), role);
+  return set.of_region.size() < 2 ? text : text + fmt::format(" ({} by region)", fmt::join(set.of_region, " + "));
+}
+
+// single precision has places to 2^-24 of the largest coordinate
+constexpr double most_sizes_from_origin = 1000;
+
+/// Refuses a body whose nodes a model could not tell apart.
+void require_near_origin(const Eigen::AlignedBox3d& box) {
+  const double size = box.sizes().maxCoeff(), far = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+  if (far > most_sizes_from_origin * size) {
+    const Eigen::Vector3d center = box.center();
+    throw std::runtime_error(fmt::format(
+        "the body is {:.3g} m long and lies up to {:.3g} m from the origin, where a model's single precision has "
+        "places "
+        "{:.2g} m apart; it may be {:.3g} m away: subtract ({:.6g}, {:.6g}, {:.6g}) m from all coordinates",
+        size, far, std::ldexp(far, -23), most_sizes_from_origin * size, center.x(), center.y(), center.z()));
+  }
 }
 
 /// A surface node that hangs on fixed vertices of the user's volume only does not move either.
@@ -104,8 +128,12 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   progress.begin("surface");
   std::optional<TetrahedralMesh> tetrahedra;
   const auto prepared = read_input(scene, tetrahedra);
-  progress.end(fmt::format("{} vertices, {} triangles, {} repairs", prepared.report.vertex_count,
-                           prepared.report.triangle_count, prepared.repairs.size()));
+  const Eigen::AlignedBox3d box = bounding_box(prepared.mesh.vertices);
+  const Eigen::Vector3d sides = box.sizes();
+  progress.end(fmt::format("{} vertices, {} triangles, {} repairs; {:.3g} x {:.3g} x {:.3g} m",
+                           prepared.report.vertex_count, prepared.report.triangle_count, prepared.repairs.size(),
+                           sides.x(), sides.y(), sides.z()));
+  naming_the_file(scene, [&] { require_near_origin(box); });
 
   progress.begin("remesh");
   RemeshOptions options;
@@ -121,7 +149,11 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
                   remeshed.mesh.positions.size(), remeshed.quality.levels + 1, remeshed.quality.base_vertices,
                   remeshed.quality.smallest_angle_degrees, 100 * remeshed.quality.hausdorff_relative));
 
-  auto flags = node_flags(scene, remeshed.mesh);
+  progress.begin("nodes");
+  const auto sets = select_nodes(scene, remeshed.mesh.positions, bounding_box(remeshed.mesh.positions));
+  progress.end(fmt::format("{}, {}, {}", role_text(sets.fixed, "fixed"), role_text(sets.touched, "touched"),
+                           role_text(sets.read, "read")));
+  auto flags = node_flags(sets);
   if (tetrahedra) {
     fix_nodes_without_free_vertices(attach(scene, *tetrahedra, remeshed.mesh), flags);
   }

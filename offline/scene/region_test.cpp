@@ -90,22 +90,22 @@ TEST_CASE_FIXTURE(Fixture, "regions of one role are united") {
 
 TEST_CASE_FIXTURE(Fixture, "by default everything that is not fixed is touched and read") {
   const auto sets = select_nodes(scene_with(lower_half), positions, box);
-  CHECK(text(sets.fixed) == "11001100");
-  CHECK(text(sets.touched) == "00110011");
-  CHECK(text(sets.read) == "00110011");
+  CHECK(text(sets.fixed.holds) == "11001100");
+  CHECK(text(sets.touched.holds) == "00110011");
+  CHECK(text(sets.read.holds) == "00110011");
 }
 
 TEST_CASE_FIXTURE(Fixture, "fixed nodes are neither touched nor read") {
   const auto sets =
       select_nodes(scene_with(lower_half + "[[touched]]\nabove = 1\naxis = \"z\"\n[[read]]\nbelow = 0\naxis = \"x\"\n"),
                    positions, box);
-  CHECK(text(sets.touched) == "00000011");
-  CHECK(text(sets.read) == "00100010");
+  CHECK(text(sets.touched.holds) == "00000011");
+  CHECK(text(sets.read.holds) == "00100010");
 }
 
 TEST_CASE_FIXTURE(Fixture, "refused: fixed regions that hold no node") {
   const auto message = refusal(scene_with("[[fixed]]\nsphere = { center = [0.5, 0.5, 0.5], radius = 0.01 }\n"), *this);
-  CHECK(message.find("fixed: the regions hold none of the 8 nodes") != std::string::npos);
+  CHECK(message.find("fixed: the region holds none of the 8 nodes") != std::string::npos);
   CHECK(message.find("from (10, 20, 30) m to (12, 24, 31) m") != std::string::npos);
 }
 
@@ -117,9 +117,23 @@ TEST_CASE_FIXTURE(Fixture, "refused: everything fixed") {
 TEST_CASE_FIXTURE(Fixture, "refused: touched and read regions that hold no node that can move, told together") {
   const std::string below = "below = 0.2\naxis = \"y\"\n";
   const auto message = refusal(scene_with(lower_half + "[[touched]]\n" + below + "[[read]]\n" + below), *this);
-  CHECK(message.find("touched: the regions hold none of the 4 nodes that can move (4 of 8 are fixed)") !=
+  CHECK(message.find("touched: the region holds none of the 4 nodes that can move (4 of 8 are fixed)") !=
         std::string::npos);
-  CHECK(message.find("\nread: the regions hold none of the 4 nodes") != std::string::npos);
+  CHECK(message.find("\nread: the region holds none of the 4 nodes") != std::string::npos);
+}
+
+TEST_CASE_FIXTURE(Fixture,
+                  "nodes are counted by region, and a region that holds none of its own is refused by its place") {
+  const std::string corner = "[[touched]]\nnear = [1, 1, 1]\n", all = "[[touched]]\nabove = 0\naxis = \"x\"\n";
+  const auto sets = select_nodes(scene_with(lower_half + corner + all), positions, box);
+  CHECK(sets.touched.of_region == std::vector<std::size_t>{1, 4});
+  CHECK(sets.touched.count() == 4);
+  CHECK(sets.fixed.of_region == std::vector<std::size_t>{4});
+  CHECK(sets.read.of_region.empty());
+
+  const std::string nowhere = "[[touched]]\nbox = [[0.4, 0.4, 0.4], [0.6, 0.6, 0.6]]\n";
+  const auto message = refusal(scene_with(lower_half + corner + nowhere), *this);
+  CHECK(message.find("touched 2 of 2: the region holds none of the 4 nodes that can move") != std::string::npos);
 }
 
 TEST_CASE("the example scene holds about a sixth of the teddy bear") {
@@ -136,7 +150,7 @@ TEST_CASE("the example scene holds about a sixth of the teddy bear") {
   box = {box.min() * scale, box.max() * scale};
   CHECK(box.sizes().maxCoeff() == doctest::Approx(0.3));
   const auto sets = select_nodes(scene, mesh.vertices, box);
-  const auto fixed = static_cast<double>(std::count(sets.fixed.begin(), sets.fixed.end(), true));
+  const auto fixed = static_cast<double>(sets.fixed.count());
   const double free_share = 1 - fixed / static_cast<double>(mesh.vertices.size());
   MESSAGE("free share of the bear's vertices: " << free_share);
   CHECK(free_share > 0.83);

@@ -18,10 +18,6 @@ std::string lines(const std::vector<std::string>& problems) {
   return text;
 }
 
-std::size_t count(const std::vector<bool>& flags) {
-  return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), true));
-}
-
 std::string box_text(const Eigen::AlignedBox3d& box) {
   std::array<char, 192> text{};
   std::snprintf(text.data(), text.size(), "(%.6g, %.6g, %.6g) m to (%.6g, %.6g, %.6g) m", box.min().x(), box.min().y(),
@@ -29,13 +25,33 @@ std::string box_text(const Eigen::AlignedBox3d& box) {
   return text.data();
 }
 
-std::vector<bool> movable(const std::vector<Region>& regions, const std::vector<bool>& fixed,
-                          std::span<const Eigen::Vector3d> positions, const Eigen::AlignedBox3d& box) {
-  auto flags = regions.empty() ? std::vector<bool>(positions.size(), true) : evaluate(regions, positions, box);
-  for (std::size_t i = 0; i < flags.size(); ++i) {
-    flags[i] = flags[i] && !fixed[i];
+/// The nodes of some regions, of all nodes if there are none, among those that `allowed` leaves.
+NodeSet nodes_of(const std::vector<Region>& regions, const std::vector<bool>& allowed,
+                 std::span<const Eigen::Vector3d> positions, const Eigen::AlignedBox3d& box) {
+  NodeSet set;
+  set.holds = regions.empty() ? allowed : std::vector<bool>(positions.size(), false);
+  for (const auto& region : regions) {
+    const auto flags = evaluate(region, positions, box);
+    std::size_t nodes = 0;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+      const bool held = flags[i] && allowed[i];
+      nodes += held ? 1 : 0;
+      set.holds[i] = set.holds[i] || held;
+    }
+    set.of_region.push_back(nodes);
   }
-  return flags;
+  return set;
+}
+
+/// Names every region of a role that holds no node.
+void name_empty_regions(const std::string& role, const NodeSet& set, const std::string& none,
+                        std::vector<std::string>& problems) {
+  const std::size_t regions = set.of_region.size();
+  for (std::size_t k = 0; k < regions; ++k) {
+    if (set.of_region[k] > 0) continue;
+    const std::string which = regions == 1 ? "" : " " + std::to_string(k + 1) + " of " + std::to_string(regions);
+    problems.push_back(role + which + ": the region holds none of the " + none);
+  }
 }
 
 }  // namespace
@@ -58,30 +74,28 @@ std::optional<std::int64_t> StepBudget::asked_work() const {
   return work || !share ? work : std::optional<std::int64_t>(std::llround(step_us() * speed()));
 }
 
+std::size_t NodeSet::count() const { return static_cast<std::size_t>(std::count(holds.begin(), holds.end(), true)); }
+
 NodeSets select_nodes(const Scene& scene, std::span<const Eigen::Vector3d> positions, const Eigen::AlignedBox3d& box) {
   NodeSets sets;
-  sets.fixed = evaluate(scene.fixed, positions, box);
-  sets.touched = movable(scene.touched, sets.fixed, positions, box);
-  sets.read = movable(scene.read, sets.fixed, positions, box);
+  sets.fixed = nodes_of(scene.fixed, std::vector<bool>(positions.size(), true), positions, box);
+  std::vector<bool> movable = sets.fixed.holds;
+  movable.flip();
+  sets.touched = nodes_of(scene.touched, movable, positions, box);
+  sets.read = nodes_of(scene.read, movable, positions, box);
 
   const auto total = std::to_string(positions.size());
-  const auto fixed_count = count(sets.fixed);
+  const auto fixed = sets.fixed.count();
   const auto where = "; the bounding box goes from " + box_text(box);
-  if (fixed_count == 0) {
-    throw SceneError({"fixed: the regions hold none of the " + total + " nodes, so nothing holds the body" + where});
-  }
-  if (fixed_count == positions.size()) {
+  if (fixed == positions.size()) {
     throw SceneError({"fixed: the regions hold all " + total + " nodes, so nothing can move" + where});
   }
-  const auto none = ": the regions hold none of the " + std::to_string(positions.size() - fixed_count) +
-                    " nodes that can move (" + std::to_string(fixed_count) + " of " + total + " are fixed)" + where;
   std::vector<std::string> problems;
-  if (count(sets.touched) == 0) {
-    problems.push_back("touched" + none);
-  }
-  if (count(sets.read) == 0) {
-    problems.push_back("read" + none);
-  }
+  name_empty_regions("fixed", sets.fixed, total + " nodes" + where, problems);
+  const auto none = std::to_string(positions.size() - fixed) + " nodes that can move (" + std::to_string(fixed) +
+                    " of " + total + " are fixed)" + where;
+  name_empty_regions("touched", sets.touched, none, problems);
+  name_empty_regions("read", sets.read, none, problems);
   if (!problems.empty()) {
     throw SceneError(std::move(problems));
   }

@@ -111,15 +111,21 @@ struct Scene {
 /// through fingerprint() to tell whether a stored result belongs to this scene.
 [[nodiscard]] std::string canonical_text(const Scene& scene);
 
-/// One flag per node for what the scene asks of it.
+/// The nodes of a role.
+struct NodeSet {
+  std::vector<bool> holds;             ///< one flag per node
+  std::vector<std::size_t> of_region;  ///< nodes in each of the scene's regions; none if it has no region
+
+  [[nodiscard]] std::size_t count() const;
+};
+
+/// What the scene asks of the nodes; no fixed node is touched or read.
 struct NodeSets {
-  std::vector<bool> fixed;
-  std::vector<bool> touched;  ///< never a fixed node
-  std::vector<bool> read;     ///< never a fixed node
+  NodeSet fixed, touched, read;
 };
 
 /// Finds the nodes of each role among positions [m] of a body with this bounding box. Throws SceneError with counts and
-/// box if nothing or everything is fixed, or nothing is left to touch or to read.
+/// box if everything is fixed, nothing is left to touch or to read, or a region holds no node of its role.
 [[nodiscard]] NodeSets select_nodes(const Scene& scene, std::span<const Eigen::Vector3d> positions,
                                     const Eigen::AlignedBox3d& box);
 

@@ -2,6 +2,7 @@
 #include <runtime/greenloop.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 int c_control_loop(const void* file, size_t size, int (*sense)(greenloop_constraint*), void (*actuate)(const float*));
 
@@ -9,10 +10,14 @@ static int cycles = 0;
 static uint32_t touched_node = 0;
 static double total_force = 0;
 
+/* NaN and infinity come between, and have to be refused; of bits, because this file is compiled with any flags */
 static int sense(greenloop_constraint* contact) {
   const greenloop_constraint pressed = {touched_node, {0.0F, 0.0F, 1e-6F * (float)cycles}, GREENLOOP_HOLD};
+  const uint32_t nan = 0x7fc00000, infinity = 0x7f800000;
   *contact = pressed;
-  return cycles++ < 100;
+  if (cycles == 50) memcpy(&contact->value[2], &nan, sizeof nan);
+  if (cycles == 51) memcpy(&contact->value[2], &infinity, sizeof infinity);
+  return cycles++ < 102;
 }
 
 static double magnitude(float value) { return value < 0 ? -(double)value : (double)value; }
@@ -51,5 +56,5 @@ int main(int argc, char** argv) {
   status = c_control_loop(file, size, sense, actuate);
   fprintf(stderr, "status %d after %d cycles, total force %g N\n", status, cycles, total_force);
   free(file);
-  return status == 0 && cycles == 101 && total_force > 0 ? 0 : 1;
+  return status == 0 && cycles == 103 && total_force > 0 ? 0 : 1;
 }
