@@ -100,7 +100,7 @@ TEST_CASE_TEMPLATE("steps add their terms to two rows, as many as are asked for,
       CHECK(bits(fastest) == bits(portable));
       const std::uint32_t first = s == 0 ? 0 : steps.step[s - 1].end;
       for (std::size_t e = 0; e < std::size_t{2} * N * N; ++e) {
-        const std::size_t row = e / (N * N), i = e % N, j = e / N % N;
+        const std::size_t row = e / N / N, i = e % N, j = e / N % N;
         double wanted = entry(before[s].row[row], i, j);
         for (std::uint32_t k = first; k < steps.step[s].end; ++k) {
           const Block<N>& source = before[steps.term[k].source].row[row];
