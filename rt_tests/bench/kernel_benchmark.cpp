@@ -32,7 +32,7 @@ class ChangingFactors {
 
   void factor() {
     factors_ = matrix_;
-    good_ = cholesky_factor(order_, stride_, factors_.data());
+    good_ = cholesky_factor_(order_, stride_, factors_.data());
   }
 
   void remove(std::size_t at) {
@@ -80,6 +80,7 @@ class ChangingFactors {
   }
 
   std::vector<Float4> matrix_, factors_;
+  CholeskyFactor cholesky_factor_ = fastest_cholesky_factor();
   std::uint32_t order_, stride_;
   std::vector<std::uint32_t> nodes_;
   std::uint32_t out_ = 0;

@@ -134,11 +134,12 @@ class RooflineRun {
          .flops = capacitance_flops(patch)},
         [&] { return time_once([&] { patch.assemble(matrix); }); });
     std::vector<Float4> factor;
+    const CholeskyFactor make_factor = fastest_cholesky_factor();
     bool good = true;
     add({.kernel = "Cholesky", .contacts = patch.set.size(), .bytes = 2 * triangle, .flops = order * order * order / 3},
         [&] {
           factor = matrix;
-          return time_once([&] { good = cholesky_factor(patch.order(), patch.stride(), factor.data()) && good; });
+          return time_once([&] { good = make_factor(patch.order(), patch.stride(), factor.data()) && good; });
         });
     if (!good) {
       throw std::runtime_error("a capacitance matrix of the model is not positive definite");

@@ -3,6 +3,11 @@
 #include <cfloat>
 #include <cstddef>
 #include <cstring>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "runtime/algebra/processor.hpp"
 
 namespace greenloop {
 namespace {
@@ -75,6 +80,59 @@ void subtract_panel(const Columns& a, std::uint32_t first, const float (&x)[4], 
   }
 }
 
+// four multipliers of each of two columns
+struct TwoMultipliers {
+  float of[2][4];
+};
+
+// subtract_panel of two columns b, which read the four once
+void subtract_two(const Columns& a, std::uint32_t first, const TwoMultipliers& x, std::uint32_t begin, Float4* b0,
+                  Float4* b1) {
+  const Float4* c0 = a.vector(first);
+  const Float4* c1 = a.vector(first + 1);
+  const Float4* c2 = a.vector(first + 2);
+  const Float4* c3 = a.vector(first + 3);
+  const auto subtracted = [&](const float(&of)[4], std::uint32_t v, Float4 b) {
+    return (((b - c0[v] * splat(of[0])) - c1[v] * splat(of[1])) - c2[v] * splat(of[2])) - c3[v] * splat(of[3]);
+  };
+  for (std::uint32_t v = begin; v < a.vectors; ++v) {
+    const Float4 other = subtracted(x.of[1], v, b1[v]);
+    b0[v] = subtracted(x.of[0], v, b0[v]);
+    b1[v] = other;
+  }
+}
+
+#if defined(__x86_64__)
+// two vectors in one operation, each lane as subtract_two has it
+[[gnu::target("avx2")]] void subtract_two_avx2(const Columns& a, std::uint32_t first, const TwoMultipliers& x,
+                                               std::uint32_t begin, Float4* b0, Float4* b1) {
+  const auto columns = [&](std::uint32_t k) { return reinterpret_cast<const float*>(a.vector(first + k)); };
+  const float* const c[4] = {columns(0), columns(1), columns(2), columns(3)};
+  __m256 x0[4];
+  __m256 x1[4];
+  for (std::size_t k = 0; k < 4; ++k) {
+    x0[k] = _mm256_set1_ps(x.of[0][k]);
+    x1[k] = _mm256_set1_ps(x.of[1][k]);
+  }
+  std::uint32_t v = begin;
+  for (; v + 2 <= a.vectors; v += 2) {
+    auto* const at0 = reinterpret_cast<float*>(b0 + v);
+    auto* const at1 = reinterpret_cast<float*>(b1 + v);
+    __m256 left0 = _mm256_loadu_ps(at0);
+    __m256 left1 = _mm256_loadu_ps(at1);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const __m256 column = _mm256_loadu_ps(c[k] + std::size_t{4} * v);
+      left0 = _mm256_sub_ps(left0, _mm256_mul_ps(column, x0[k]));
+      left1 = _mm256_sub_ps(left1, _mm256_mul_ps(column, x1[k]));
+    }
+    _mm256_storeu_ps(at0, left0);
+    _mm256_storeu_ps(at1, left1);
+  }
+  _mm256_zeroupper();
+  subtract_two(a, first, x, v, b0, b1);
+}
+#endif
+
 // unit lower triangle of the four columns from `first`, applied backwards to four entries
 Float4 solve_lower(const Columns& a, std::uint32_t first, Float4 b) {
   for (std::uint32_t k = 0; k < 3; ++k) {
@@ -143,9 +201,9 @@ void update(const Columns& a, std::uint32_t order, std::uint32_t first, float al
   }
 }
 
-}  // namespace
-
-bool cholesky_factor(std::uint32_t order, std::uint32_t stride, Float4* data) noexcept {
+// subtract: subtract_two in some form
+template <class Subtract>
+bool factor(std::uint32_t order, std::uint32_t stride, Float4* data, Subtract subtract) {
   const Columns a{data, stride / 4, padded_order(order) / 4};
   const std::uint32_t n = 4 * a.vectors;
   pad(order, a);
@@ -159,10 +217,13 @@ bool cholesky_factor(std::uint32_t order, std::uint32_t stride, Float4* data) no
     for (std::uint32_t done = 0; done < first; done += 4) {
       const Float4 inverse = {a(done, done), a(done + 1, done + 1), a(done + 2, done + 2), a(done + 3, done + 3)};
       const Float4 pivot = splat(1.0F) / inverse;
-      for (std::uint32_t j = first; j < first + 4; ++j) {
-        const float x[4] = {a(j, done) * pivot[0], a(j, done + 1) * pivot[1], a(j, done + 2) * pivot[2],
-                            a(j, done + 3) * pivot[3]};
-        subtract_panel(a, done, x, first / 4, a.vectors, a.vector(j));
+      for (std::uint32_t j = first; j < first + 4; j += 2) {
+        TwoMultipliers x;
+        for (std::uint32_t k = 0; k < 4; ++k) {
+          x.of[0][k] = a(j, done + k) * pivot[k];
+          x.of[1][k] = a(j + 1, done + k) * pivot[k];
+        }
+        subtract(a, done, x, first / 4, a.vector(j), a.vector(j + 1));
       }
     }
     if (!factor_panel(a, first, least)) {
@@ -170,6 +231,27 @@ bool cholesky_factor(std::uint32_t order, std::uint32_t stride, Float4* data) no
     }
   }
   return true;
+}
+
+#if defined(__x86_64__)
+bool cholesky_factor_avx2(std::uint32_t order, std::uint32_t stride, Float4* data) noexcept {
+  return factor(order, stride, data, subtract_two_avx2);
+}
+#endif
+
+}  // namespace
+
+bool cholesky_factor(std::uint32_t order, std::uint32_t stride, Float4* data) noexcept {
+  return factor(order, stride, data, subtract_two);
+}
+
+CholeskyFactor fastest_cholesky_factor() noexcept {
+#if defined(__x86_64__)
+  if (has_avx2()) {
+    return cholesky_factor_avx2;
+  }
+#endif
+  return cholesky_factor;
 }
 
 void cholesky_solve(std::uint32_t order, std::uint32_t stride, const Float4* data, Float4* b) noexcept {

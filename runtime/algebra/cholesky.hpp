@@ -46,6 +46,11 @@ constexpr std::uint64_t cholesky_remove_work(const Prices& prices, std::uint32_t
 /// left of: then the matrix is not positive definite to working precision.
 [[nodiscard]] bool cholesky_factor(std::uint32_t order, std::uint32_t stride, Float4* a) noexcept;
 
+using CholeskyFactor = bool (*)(std::uint32_t order, std::uint32_t stride, Float4* a) noexcept;
+
+/// cholesky_factor in its fastest form on this processor, of the same bits. Start-up.
+[[nodiscard]] CholeskyFactor fastest_cholesky_factor() noexcept;
+
 /// Solves in place. b: [padded order / 4], zero in the padding.
 void cholesky_solve(std::uint32_t order, std::uint32_t stride, const Float4* a, Float4* b) noexcept;
 

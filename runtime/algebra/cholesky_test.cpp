@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>
+#include <bit>
 #include <limits>
 #include <random>
 #include <vector>
@@ -36,9 +37,23 @@ struct Problem {
   std::vector<Float4> b;
 };
 
+// of the lower triangle, to the end of its padding
+std::vector<std::uint32_t> lower_bits(std::uint32_t order, std::uint32_t stride, const std::vector<Float4>& a) {
+  const auto* entry = reinterpret_cast<const float*>(a.data());
+  std::vector<std::uint32_t> bits;
+  for (std::uint32_t j = 0; j < order; ++j) {
+    for (std::uint32_t i = j; i < greenloop::padded_order(order); ++i) {
+      bits.push_back(std::bit_cast<std::uint32_t>(entry[i + std::size_t{j} * stride]));
+    }
+  }
+  return bits;
+}
+
 float uniform(std::mt19937_64& random) { return static_cast<float>(random() >> 40) * 0x1p-23F - 1.0F; }
 
-TEST_CASE("cholesky solves random systems of every padding to float precision, from the lower triangle alone") {
+TEST_CASE(
+    "cholesky solves random systems of every padding to float precision, from the lower triangle alone, on every "
+    "processor with the same bits") {
   std::mt19937_64 random(1);
   for (std::uint32_t order = 1; order <= 50; ++order) {
     CAPTURE(order);
@@ -54,7 +69,10 @@ TEST_CASE("cholesky solves random systems of every padding to float precision, f
     Eigen::MatrixXd a = root * root.transpose() + 0.1 * Eigen::MatrixXd::Identity(order, order);
     a = a.cast<float>().cast<double>().eval();
     problem.set(a);
+    std::vector<Float4> fastest = problem.a;
+    REQUIRE(greenloop::fastest_cholesky_factor()(order, problem.stride(), fastest.data()));
     REQUIRE(greenloop::cholesky_factor(order, problem.stride(), problem.a.data()));
+    CHECK(lower_bits(order, problem.stride(), fastest) == lower_bits(order, problem.stride(), problem.a));
     greenloop::cholesky_solve(order, problem.stride(), problem.a.data(), problem.b.data());
     Eigen::VectorXd x(order);
     for (std::uint32_t i = 0; i < order; ++i) {

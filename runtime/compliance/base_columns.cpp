@@ -72,10 +72,12 @@ void add_tiles(const std::byte* tiles, std::uint32_t count, Vector<N> force, Til
   for (std::size_t c = 0; c < N; ++c) {
     factor[c] = component(force, c);
   }
-  for (std::uint32_t t = 0; t < count; ++t, value += BaseColumns::tile_bytes<N>) {
-    for (std::uint32_t k = 0; k < N * BaseColumns::width; ++k, ++sum) {
-      const auto element = [&](std::size_t c) { return static_cast<float>(value[k + 8 * c]); };
-      *sum += row_product(element, 0, factor);
+  for (std::uint32_t t = 0; t < count; ++t, value += (N - 1) * N * BaseColumns::width) {
+    for (std::size_t r = 0; r < N; ++r, value += BaseColumns::width, sum += BaseColumns::width) {
+      for (std::size_t k = 0; k < BaseColumns::width; ++k) {  // short enough to be unrolled
+        const auto element = [&](std::size_t c) { return static_cast<float>(value[k + BaseColumns::width * c]); };
+        sum[k] += row_product(element, 0, factor);
+      }
     }
   }
 }

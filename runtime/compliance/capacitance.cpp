@@ -193,50 +193,11 @@ std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCap
          priced(meetings, meeting_price(prices, refinement.prediction));
 }
 
-// the sum of a step's terms alone: details are smaller than what they are added to
-template <unsigned N>
-BlockPair<N> sum_numbers(const SparseInverse::Term* term, const SparseInverse::Term* end, const BlockPair<N>* x) {
-  BlockPair<N> sum{};
-  for (; term != end; ++term) {
-    add(term->weight, x[term->source].row[0], sum.row[0]);
-    add(term->weight, x[term->source].row[1], sum.row[1]);
-  }
-  return sum;
-}
-
-template <unsigned N>
-BlockPair<N> sum_blocks(const SparseInverse::Term* term, const SparseInverse::Term* end, const std::byte* stored,
-                        const BlockPair<N>* x) {
-  BlockPair<N> sum{};
-  for (; term != end; ++term, stored += StoredBlock<N, 16>::bytes) {
-    const BlockSplats<N> weight = splats(transposed(StoredBlock<N, 16>::load(stored)));
-    add(product(x[term->source].row[0], weight), sum.row[0]);
-    add(product(x[term->source].row[1], weight), sum.row[1]);
-  }
-  return {{scaled(weight_unit<N>, sum.row[0]), scaled(weight_unit<N>, sum.row[1])}};
-}
-
-// T^-1 of two rows of coefficients, the first steps; x: what the rows are displaced by per force on each slot, so that
-// blocks apply from the right, transposed
-template <unsigned N>
-void reconstruct(const SparseInverse& inverse, std::uint32_t steps, BlockPair<N>* x) {
-  const SparseInverse::Term* term = inverse.term;
-  for (std::uint32_t k = 0; k < steps; ++k) {
-    const auto& [target, last] = inverse.step[k];
-    const SparseInverse::Term* const end = inverse.term + last;
-    const std::byte* const block = inverse.block == nullptr ? nullptr : inverse.block[k];
-    const BlockPair<N> sum = block == nullptr ? sum_numbers(term, end, x) : sum_blocks(term, end, block, x);
-    add(sum.row[0], x[target].row[0]);
-    add(sum.row[1], x[target].row[1]);
-    term = end;
-  }
-}
-
 // the couplings of two coefficients with those of the computed rows become sums of these
 template <unsigned N>
 void transform_panel(const PartialCapacitance& partial, std::uint32_t pair, CapacitanceScratch<N>& scratch) {
   BlockPair<N>* x = panel_pair(scratch, partial, pair);
-  reconstruct(scratch.inverse, scratch.inverse.steps, x);
+  scratch.invert_pair(scratch.inverse, scratch.inverse.steps, x);
   for (std::uint32_t t = 0; t < partial.computed; ++t) {
     const BlockPair<N>& own = x[scratch.answer[first_computed(partial) + t]];
     for (std::uint32_t s = 2 * pair; s < partial.slots && s < 2 * pair + 2; ++s) {
@@ -254,7 +215,7 @@ void transform_sums(const PartialCapacitance& partial, std::uint32_t pair, Capac
     const std::uint32_t settled = scratch.inverse.settled[scratch.answer[i]];
     steps = settled > steps ? settled : steps;
   }
-  reconstruct(scratch.inverse, steps, sum_pair(scratch, partial, pair));
+  scratch.invert_pair(scratch.inverse, steps, sum_pair(scratch, partial, pair));
 }
 
 // calls visit(i, block (t, i)) of the matrix for the columns up to the diagonal
@@ -288,6 +249,7 @@ void CapacitanceScratch<N>::carve(Arena& arena, const ModelView& view, const Cap
   coefficient = arena.take<std::uint32_t>(sizes.slots);
   root = arena.take<Block<N>>(sizes.slots);
   inverse.carve(arena, sizes.slots, prediction);
+  invert_pair = fastest_invert_pair<N>();
   sum = arena.take<BlockPair<N>>(room);
   places = arena.take<BlockPlace>(sizes.longest_column + std::uint64_t{1});
   blocks = arena.take<Block<N>>(sizes.longest_column + std::uint64_t{1});

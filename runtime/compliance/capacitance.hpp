@@ -8,17 +8,11 @@
 #include "runtime/compliance/functionals.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/wavelet/column.hpp"
+#include "runtime/wavelet/pair_inverse.hpp"
 #include "runtime/wavelet/reach.hpp"
 #include "runtime/wavelet/refinement.hpp"
-#include "runtime/wavelet/sparse_inverse.hpp"
 
 namespace greenloop {
-
-/// What two rows of a matrix have in the same column.
-template <unsigned N>
-struct BlockPair {
-  Block<N> row[2];
-};
 
 /// Bounds over all sets that a CapacitanceScratch has room for.
 struct CapacitanceSizes {
@@ -43,6 +37,7 @@ struct CapacitanceScratch {
   std::uint32_t* coefficient = nullptr;  ///< [slots] its place; layout::none: that of a column
   Block<N>* root = nullptr;              ///< [slots] scale
   SparseInverse inverse;                 ///< of the slots
+  InvertPair<N> invert_pair = nullptr;   ///< what applies it to two rows
   std::uint64_t room = 0;                ///< capacitance_room of the most there may be
   BlockPair<N>* sum = nullptr;           ///< [room]
   BlockPlace* places = nullptr;          ///< [longest column + 1]

@@ -25,36 +25,32 @@ class Product {
 };
 
 #if !defined(__SSE2__) && !defined(__ARM_NEON)
-// the elements of a stored 3x3 block, in quanta
-template <unsigned bits>
-class Elements {
- public:
-  explicit Elements(const std::byte* value) {
-    if constexpr (bits == 4) {
-      std::memcpy(&word_, value, sizeof word_);
-      last_ = std::to_integer<std::uint32_t>(value[4]);
-    } else {
-      value_ = value;
-    }
-  }
-  float operator[](std::uint32_t k) const {
-    if constexpr (bits == 4) {  // one instruction takes bits out with their sign
-      const std::uint32_t on_top = k < 8 ? word_ << (28 - 4 * k) : last_ << 28;
-      return static_cast<float>(static_cast<std::int32_t>(on_top) >> 28);
-    } else if constexpr (bits == 8) {
-      return static_cast<float>(static_cast<std::int8_t>(value_[k]));
-    } else {
-      std::int16_t two;
-      std::memcpy(&two, value_ + std::size_t{2} * k, sizeof two);
-      return static_cast<float>(two);
-    }
-  }
+// two values of 4 bits by the byte that holds them
+struct Nibbles {
+  float pair[256][2] = {};
 
- private:
-  std::uint32_t word_ = 0;
-  std::uint32_t last_ = 0;
-  const std::byte* value_ = nullptr;
+  constexpr Nibbles() {
+    for (int byte = 0; byte < 256; ++byte) {
+      pair[byte][0] = static_cast<float>((byte % 16 ^ 8) - 8);
+      pair[byte][1] = static_cast<float>((byte / 16 ^ 8) - 8);
+    }
+  }
 };
+constexpr Nibbles nibbles;
+
+// element k of a stored 3x3 block, in quanta
+template <unsigned bits>
+float element(const std::byte* value, std::size_t k) {
+  if constexpr (bits == 4) {  // one load instead of three instructions
+    return nibbles.pair[std::to_integer<std::size_t>(value[k / 2])][k % 2];
+  } else if constexpr (bits == 8) {
+    return static_cast<float>(static_cast<std::int8_t>(value[k]));
+  } else {
+    std::int16_t two;
+    std::memcpy(&two, value + 2 * k, sizeof two);
+    return static_cast<float>(two);
+  }
+}
 
 // the same on a processor without vectors: three lanes; the powers of two of the stored values are in the force
 template <unsigned bits>
@@ -65,11 +61,15 @@ class Product<3, bits> {
                force[2] / StoredBlock<3, bits>::widening} {}
 
   void add(const std::byte* value, Float4& sum) const {
-    const Elements<bits> at(value);
+    const auto moved = [&](std::size_t r) {
+      return (element<bits>(value, r) * force_[0] + element<bits>(value, r + 3) * force_[1]) +
+             element<bits>(value, r + 6) * force_[2];
+    };
+    const float by[] = {moved(0), moved(1), moved(2)};  // before what a value might be part of is written
     auto* const x = reinterpret_cast<float*>(&sum);
-    x[0] += (at[0] * force_[0] + at[3] * force_[1]) + at[6] * force_[2];
-    x[1] += (at[1] * force_[0] + at[4] * force_[1]) + at[7] * force_[2];
-    x[2] += (at[2] * force_[0] + at[5] * force_[1]) + at[8] * force_[2];
+    x[0] += by[0];
+    x[1] += by[1];
+    x[2] += by[2];
   }
 
  private:

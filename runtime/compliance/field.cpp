@@ -84,10 +84,10 @@ void add_four(const TileSums<3>& tile, std::size_t half, Float4* sums) {
   const Float4 xy_high = __builtin_shufflevector(x, y, 2, 6, 3, 7);
   const Float4 z_low = __builtin_shufflevector(z, Float4{}, 0, 4, 1, 5);
   const Float4 z_high = __builtin_shufflevector(z, Float4{}, 2, 6, 3, 7);
-  sums[0] += __builtin_shufflevector(xy_low, z_low, 0, 1, 4, 5);
-  sums[1] += __builtin_shufflevector(xy_low, z_low, 2, 3, 6, 7);
-  sums[2] += __builtin_shufflevector(xy_high, z_high, 0, 1, 4, 5);
-  sums[3] += __builtin_shufflevector(xy_high, z_high, 2, 3, 6, 7);
+  sums[0] = added(sums[0], __builtin_shufflevector(xy_low, z_low, 0, 1, 4, 5));
+  sums[1] = added(sums[1], __builtin_shufflevector(xy_low, z_low, 2, 3, 6, 7));
+  sums[2] = added(sums[2], __builtin_shufflevector(xy_high, z_high, 0, 1, 4, 5));
+  sums[3] = added(sums[3], __builtin_shufflevector(xy_high, z_high, 2, 3, 6, 7));
 }
 
 void add_four(const TileSums<1>& tile, std::size_t half, float* sums) {

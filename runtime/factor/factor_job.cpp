@@ -76,7 +76,7 @@ template <unsigned N>
     factor.node[k] = set.column[k];
     factor.position[k] = k;
   }
-  return cholesky_factor(N * set.count, tools.cache.stride(), factor.matrix) ? &factor : nullptr;
+  return tools.cholesky_factor(N * set.count, tools.cache.stride(), factor.matrix) ? &factor : nullptr;
 }
 
 template <unsigned N>

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/capacitance.hpp"
 #include "runtime/factor/factor_cache.hpp"
 #include "runtime/factor/factor_changes.hpp"
@@ -40,6 +41,7 @@ struct FactorTools {
   FactorScratch& scratch;
   Vector<N>* force;               ///< [domain], 0 before and after
   std::uint32_t* index_of_place;  ///< [domain], layout::none before and after
+  CholeskyFactor cholesky_factor = fastest_cholesky_factor();
 };
 
 /// A factor that is made in slices.

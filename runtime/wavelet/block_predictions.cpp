@@ -48,14 +48,15 @@ struct Spread {
 }
 
 // terms 2 k in the low halves, 2 k + 1 in the high ones
-[[gnu::target("avx2")]] void predict_blocks_avx2(const LevelView& level, const std::uint32_t* sources,
+[[gnu::target("avx2")]] void predict_blocks_avx2(const LevelView& level, const std::uint32_t* sources, Float4* details,
                                                  Float4* x) noexcept {
   static constexpr Spread spread;
   constexpr std::size_t block_bytes = StoredBlock<3, 16>::bytes;
   const std::uint32_t terms = level.predictions.terms;
   const std::byte* block = level.predictions.weight;
   const __m128 unit = _mm_set1_ps(weight_unit<3>);
-  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+  auto* node = reinterpret_cast<float*>(x + level.node_begin);
+  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i, node += 4) {
     __m256 sum = _mm256_setzero_ps();
     std::uint32_t k = 0;
     for (; k + 2 <= terms; k += 2, block += 2 * block_bytes, sources += 2) {
@@ -74,8 +75,12 @@ struct Spread {
       even = _mm_add_ps(even, reinterpret_cast<__m128>(xyz(moved)));
       block += block_bytes;
     }
-    const __m128 whole = _mm_add_ps(even, _mm256_extractf128_ps(sum, 1));
-    _mm_store_ps(reinterpret_cast<float*>(x + level.node_begin + i), _mm_mul_ps(unit, whole));
+    __m128 whole = _mm_mul_ps(unit, _mm_add_ps(even, _mm256_extractf128_ps(sum, 1)));
+    if (details != nullptr) {
+      whole = _mm_add_ps(whole, reinterpret_cast<__m128>(details[i]));
+      details[i] = Float4{};
+    }
+    _mm_store_ps(node, whole);
   }
 }
 #endif
@@ -83,7 +88,7 @@ struct Spread {
 }  // namespace
 
 template <unsigned N>
-void predict_blocks(const LevelView& level, const std::uint32_t* sources, Vector<N>* x) noexcept {
+void predict_blocks(const LevelView& level, const std::uint32_t* sources, Vector<N>* details, Vector<N>* x) noexcept {
   constexpr std::size_t block_bytes = StoredBlock<N, 16>::bytes;
   const std::uint32_t terms = level.predictions.terms;
   const std::byte* block = level.predictions.weight;
@@ -99,12 +104,17 @@ void predict_blocks(const LevelView& level, const std::uint32_t* sources, Vector
       even += predicted<N>(block, x, *sources++);
       block += block_bytes;
     }
-    x[level.node_begin + i] = components(scaled(weight_unit<N>, even + odd));
+    Vector<N>& node = x[level.node_begin + i];
+    node = components(scaled(weight_unit<N>, even + odd));
+    if (details != nullptr) {
+      node = added(node, details[i]);
+      details[i] = Vector<N>{};
+    }
   }
 }
 
-template void predict_blocks<1>(const LevelView&, const std::uint32_t*, Vector<1>*) noexcept;
-template void predict_blocks<3>(const LevelView&, const std::uint32_t*, Vector<3>*) noexcept;
+template void predict_blocks<1>(const LevelView&, const std::uint32_t*, Vector<1>*, Vector<1>*) noexcept;
+template void predict_blocks<3>(const LevelView&, const std::uint32_t*, Vector<3>*, Vector<3>*) noexcept;
 
 template <>
 PredictBlocks<1> fastest_predict_blocks<1>() noexcept {

@@ -53,14 +53,16 @@ struct Level {
   std::vector<Vector<N>> x;
 };
 
-TEST_CASE_TEMPLATE("nodes are predicted from their terms, other nodes are left alone, on every processor the same bits",
-                   Components, One, Three) {
+TEST_CASE_TEMPLATE(
+    "nodes are predicted from their terms and take their details, other nodes are left alone, on every "
+    "processor the same bits",
+    Components, One, Three) {
   constexpr unsigned N = Components::value;
   for (std::uint32_t terms = 0; terms <= layout::most_prediction_terms; ++terms) {
     CAPTURE(terms);
     Level<N> level(terms);
     auto x = level.x;
-    predict_blocks<N>(level.view, level.sources.data(), x.data());
+    predict_blocks<N>(level.view, level.sources.data(), nullptr, x.data());
     CHECK(std::memcmp(x.data(), level.x.data(), coarse * sizeof(Vector<N>)) == 0);
     CHECK(std::memcmp(&x[coarse + odd], &level.x[coarse + odd], 2 * sizeof(Vector<N>)) == 0);
     for (std::uint32_t i = 0; i < odd; ++i) {
@@ -83,8 +85,23 @@ TEST_CASE_TEMPLATE("nodes are predicted from their terms, other nodes are left a
       CHECK(is_padded(x[coarse + i]));
     }
     auto fastest = level.x;
-    fastest_predict_blocks<N>()(level.view, level.sources.data(), fastest.data());
+    fastest_predict_blocks<N>()(level.view, level.sources.data(), nullptr, fastest.data());
     CHECK(std::memcmp(fastest.data(), x.data(), x.size() * sizeof(Vector<N>)) == 0);
+
+    const std::vector<Vector<N>> given(level.x.begin(), level.x.begin() + odd);
+    for (const PredictBlocks<N> predict : {PredictBlocks<N>{predict_blocks<N>}, fastest_predict_blocks<N>()}) {
+      auto detailed = level.x;
+      auto details = given;
+      predict(level.view, level.sources.data(), details.data(), detailed.data());
+      for (std::uint32_t i = 0; i < odd; ++i) {
+        detailed[coarse + i] = added(detailed[coarse + i], -given[i]);
+      }
+      for (std::size_t n = 0; n < x.size() * N; ++n) {
+        CHECK(component(detailed[n / N], n % N) == doctest::Approx(component(x[n / N], n % N)).epsilon(1e-5));
+      }
+      const std::vector<Vector<N>> none(odd, Vector<N>{});
+      CHECK(std::memcmp(details.data(), none.data(), odd * sizeof(Vector<N>)) == 0);
+    }
   }
 }
 

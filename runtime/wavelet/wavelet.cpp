@@ -32,37 +32,35 @@ void clear_fixed(const LevelView& level, Vector* x) {
   std::memset(x + level.node_begin + count, 0, sizeof(Vector) * (level.counts->node_count - count));
 }
 
-// halfway between the parents
+// moves the coefficients of level 0 to its nodes
 template <class Vector>
-void predict(const LevelView& level, const ParentOffsets* parents, Vector* x) {
+void start(const LevelView& level, Vector* coefficients, Vector* x) {
+  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
+    x[i] = added(Vector{}, coefficients[i]);  // no zero is negative
+    coefficients[i] = Vector{};
+  }
+  clear_fixed(level, x);
+}
+
+// halfway between the parents; the level's details, if any are given, are moved to its nodes
+template <class Vector>
+void predict(const LevelView& level, const ParentOffsets* parents, Vector* details, Vector* x) {
   Vector* odd = x + level.node_begin;
   const ParentOffsets* of_level = parents + level.domain_begin;
   const std::uint32_t count = level.counts->domain_count;
   const auto halfway = [&](std::uint32_t i) {
     const auto both = std::bit_cast<std::uint64_t>(of_level[i]);  // one load; their order does not matter
-    odd[i] = mean(at_offset(x, static_cast<std::uint32_t>(both)), at_offset(x, static_cast<std::uint32_t>(both >> 32)));
+    return mean(at_offset(x, static_cast<std::uint32_t>(both)), at_offset(x, static_cast<std::uint32_t>(both >> 32)));
   };
-  std::uint32_t i = 0;
-  for (; i + 4 <= count; i += 4) {
-    halfway(i);
-    halfway(i + 1);
-    halfway(i + 2);
-    halfway(i + 3);
+  if (details == nullptr) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      odd[i] = halfway(i);
+    }
+    return;
   }
-  for (; i < count; ++i) {
-    halfway(i);
-  }
-  clear_fixed(level, x);
-}
-
-// moves a level's details to its nodes
-template <class Vector>
-void add_details(const LevelView& level, Vector* coefficients, Vector* x) {
-  Vector* node = x + level.node_begin;
-  Vector* detail = coefficients + level.domain_begin;
-  for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-    node[i] = added(node[i], detail[i]);
-    detail[i] = Vector{};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    odd[i] = added(halfway(i), details[i]);
+    details[i] = Vector{};
   }
 }
 
@@ -189,23 +187,20 @@ void inverse_transform(const ModelView& view, const PredictionOffsets<N>& offset
   const auto wavelet = static_cast<layout::Wavelet>(view.info->wavelet);
   const bool lifted = layout::is_lifted(wavelet);
   const std::uint32_t* sources = offsets.sources;
-  std::memset(x, 0, sizeof(Vector<N>) * view.level[0].counts->node_count);
-  add_details(view.level[0], coefficients, x);
+  start(view.level[0], coefficients, x);
   for (std::uint32_t q = 1; q <= levels.nodes; ++q) {
     const LevelView& level = view.level[q];
     if (lifted && q <= levels.details) {
       undo_lifting(level, offsets.parents, coefficients, x);
     }
+    Vector<N>* const details = q <= levels.details ? coefficients + level.domain_begin : nullptr;
     if (wavelet == layout::Wavelet::equilibrated) {
-      offsets.predict_blocks(level, sources, x);
-      clear_fixed(level, x);
+      offsets.predict_blocks(level, sources, details, x);
       sources += term_count(level);
     } else {
-      predict(level, offsets.parents, x);
+      predict(level, offsets.parents, details, x);
     }
-    if (q <= levels.details) {
-      add_details(level, coefficients, x);
-    }
+    clear_fixed(level, x);
     if (level.stencils != nullptr) {
       add_stencils(level, x);
     }
