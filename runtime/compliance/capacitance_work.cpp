@@ -7,6 +7,7 @@ namespace greenloop {
 namespace {
 
 std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
+std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
 
 // of touching the computed rows alone; the steps of T^-1 have no more terms
 std::uint64_t own_visits(const CapacitanceCounts& counts) { return smaller(counts.set_visits, counts.visits); }
@@ -48,15 +49,59 @@ std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
   return pairs(slots) * panel_pair_work(*counts.prices, counts.prediction, own_visits(counts), counts.rows);
 }
 
+std::uint64_t whole_work(const CapacitanceCounts& counts) {
+  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
+  const std::uint64_t batches = panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
+  const std::uint64_t more = batches > 1 ? batches - 1 : 0;
+  return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
+         more * (begin_batch_work(counts) + stored_work(counts)) +
+         counts.rows * store_capacitance_work(*counts.prices, counts.columns);
+}
+
+// what sets of so many columns that have a panel hold at most: all that the bounds hold, of which each column has its
+// share, and no more slots than a panel has; without lifting each of these is predicted once
+CapacitanceCounts bound_with_panel(const CapacitanceCounts& bounds, std::uint64_t columns, std::uint64_t slots) {
+  CapacitanceCounts counts = bounds;
+  counts.columns = counts.rows = columns;
+  counts.visits = bounds.visits / bounds.rows * columns;
+  counts.coefficients = bounds.coefficients / bounds.rows * columns;
+  counts.slots = smaller(slots, counts.coefficients);
+  counts.set_visits = smaller(bounds.set_visits, counts.visits);
+  if (!bounds.prediction.lifted) {
+    counts.set_visits = smaller(counts.set_visits, columns + bounds.prediction.length * counts.slots);
+  }
+  return counts;
+}
+
+// of any set that holds no more; bounds.visits and coefficients: as many for each row
+std::uint64_t bound_of_whole(CapacitanceCounts bounds) {
+  bounds.bounds = false;
+  std::uint64_t most = whole_work(bounds);
+  if (panel_of(bounds)) {
+    return most;
+  }
+  std::uint64_t slots = most_panel_slots(bounds);
+  for (std::uint64_t columns = 1; columns <= bounds.rows; ++columns) {
+    while (!has_panel(bounds.room, slots, columns)) {
+      --slots;
+    }
+    most = larger(most, whole_work(bound_with_panel(bounds, columns, slots)));
+  }
+  return most;
+}
+
 }  // namespace
 
-void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept {
+void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t end, std::uint32_t* degree) noexcept {
   const LevelView& level = view.level[q];
   for (const CouplingsView& couplings : level.couplings) {
     for (std::uint32_t j = 0; j < couplings.columns; ++j) {
       const std::uint32_t column = level.domain_begin + j;
-      degree[column] += column_length(couplings, j);
-      visit_rows(couplings, j, 0, column, [degree](std::uint32_t row, std::uint32_t) { ++degree[row]; });
+      if (column < end) {
+        degree[column] += column_length(couplings, j);
+      }
+      visit_rows(couplings, j, 0, column < end ? column : end,
+                 [degree](std::uint32_t row, std::uint32_t) { ++degree[row]; });
     }
   }
 }
@@ -95,12 +140,7 @@ std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcep
   if (counts.rows == 0) {
     return 0;
   }
-  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
-  const std::uint64_t batches = panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
-  const std::uint64_t more = batches > 1 ? batches - 1 : 0;
-  return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
-         more * (begin_batch_work(counts) + stored_work(counts)) +
-         counts.rows * store_capacitance_work(*counts.prices, counts.columns);
+  return counts.bounds ? bound_of_whole(counts) : whole_work(counts);
 }
 
 std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept {

@@ -52,9 +52,9 @@ constexpr std::uint64_t capacitance_room(std::uint64_t slots, std::uint32_t colu
   return slots * pairs(columns < least_batch ? columns : least_batch);
 }
 
-/// Adds the blocks, of all layers, that level q stores to the counts of both of their coefficients. degree: [domain of
-/// K(q)]. Start-up.
-void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept;
+/// Adds the blocks, of all layers, that level q stores to the counts of both of their coefficients, of those before
+/// `end`. degree: [end]. Start-up.
+void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t end, std::uint32_t* degree) noexcept;
 
 /// What a column of level c costs. degree: by levels 0..c, as add_degrees counts. Start-up.
 [[nodiscard]] ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const std::uint32_t* degree,

@@ -33,37 +33,37 @@ std::uint32_t choose(const Index* index, std::uint32_t begin, std::uint32_t end,
   return count;
 }
 
-// some coefficients of one level, and their blocks with another level
+// some coefficients of one level, and their blocks with others
 struct Window {
-  static constexpr std::uint32_t most = 512;
+  static constexpr std::uint32_t most = 1024;
   std::uint32_t level;
   std::uint32_t first;
   std::uint32_t end;
-  std::uint32_t stored[most];
+  std::uint32_t blocks[most];
 };
 
-void count_with_level(const ModelView& view, std::uint32_t other, Window& window) {
-  std::fill(window.stored, window.stored + Window::most, 0U);
-  for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-    const auto count = [&](std::uint32_t place) { ++window.stored[place - window.first]; };
-    if (other <= window.level) {
-      const LevelView& own = view.level[window.level];
-      for (std::uint32_t j = window.first; j < window.end; ++j) {
-        visit_rows(own.couplings[layer], j - own.domain_begin, view.level[other].domain_begin,
-                   domain_up_to(view, other), [&](std::uint32_t, std::uint32_t) { count(j); });
-      }
-    }
-    for (std::uint32_t j = 0; other >= window.level && j < view.level[other].counts->domain_count; ++j) {
-      visit_rows(view.level[other].couplings[layer], j, window.first, window.end,
-                 [&](std::uint32_t row, std::uint32_t) { count(row); });
+// those in their own columns, with levels 0..other
+void count_own(const ModelView& view, std::uint32_t layer, std::uint32_t other, Window& window) {
+  const LevelView& level = view.level[window.level];
+  for (std::uint32_t j = window.first; j < window.end; ++j) {
+    std::uint32_t& blocks = window.blocks[j - window.first];
+    const std::uint32_t own = j - level.domain_begin;
+    if (other >= window.level) {
+      blocks += column_length(level.couplings[layer], own);
+    } else {
+      visit_rows(level.couplings[layer], own, 0, domain_up_to(view, other),
+                 [&](std::uint32_t, std::uint32_t) { ++blocks; });
     }
   }
 }
 
-void add_counts(const std::uint32_t* counts, std::uint32_t size, LevelPair& pair) {
-  for (std::uint32_t i = 0; i < size; ++i) {
-    pair.all += counts[i];
-    pair.most = std::max(pair.most, counts[i]);
+// those in the columns of another level
+void count_rows(const ModelView& view, std::uint32_t layer, std::uint32_t other, std::uint32_t in_tiles,
+                Window& window) {
+  const CouplingsView& couplings = view.level[other].couplings[layer];
+  for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+    visit_rows(couplings, j, std::max(window.first, in_tiles), window.end,
+               [&](std::uint32_t row, std::uint32_t) { ++window.blocks[row - window.first]; });
   }
 }
 
@@ -107,20 +107,32 @@ CouplingCounts count_couplings(const ModelView& view) noexcept {
     }
   }
   counts.countable = block_count(view, 0, layout::layers) < std::uint64_t{1} << 30;
-  for (std::uint32_t q = 0; counts.countable && q < view.levels; ++q) {
-    const std::uint32_t end = domain_up_to(view, q);
-    for (std::uint32_t first = view.level[q].domain_begin; first < end; first += Window::most) {
-      Window window;
-      window.level = q;
-      window.first = first;
-      window.end = std::min(first + Window::most, end);
-      for (std::uint32_t other = 0; other < view.levels; ++other) {
-        count_with_level(view, other, window);
-        add_counts(window.stored, window.end - first, counts.stored[q][other]);
+  return counts;
+}
+
+void count_stored(const ModelView& view, std::uint32_t q, ValueCounts<>& counts) noexcept {
+  for (std::uint32_t j = 0; j < view.level[q].counts->domain_count; ++j) {
+    std::uint32_t stored = 0;
+    for (const CouplingsView& couplings : view.level[q].couplings) {
+      stored += column_length(couplings, j);
+    }
+    counts.add(stored);
+  }
+}
+
+void count_blocks(const ModelView& view, std::uint32_t q, std::uint32_t other, const BaseColumns& base,
+                  ValueCounts<>& counts) noexcept {
+  const std::uint32_t end = domain_up_to(view, q);
+  for (std::uint32_t first = view.level[q].domain_begin; first < end; first += Window::most) {
+    Window window{q, first, std::min(first + Window::most, end), {}};
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      count_own(view, layer, other, window);
+      for (std::uint32_t with = q; with <= other; ++with) {
+        count_rows(view, layer, with, base.holds[layer] ? base.columns : 0, window);
       }
     }
+    std::for_each(window.blocks, window.blocks + (window.end - first), [&](std::uint32_t n) { counts.add(n); });
   }
-  return counts;
 }
 
 template float block_factor<1>(const layout::Info&, std::uint32_t) noexcept;

@@ -5,6 +5,7 @@
 #include "formats/stored_blocks.hpp"
 #include "formats/view.hpp"
 #include "runtime/algebra/block.hpp"
+#include "runtime/algebra/value_counts.hpp"
 
 namespace greenloop {
 
@@ -28,20 +29,24 @@ std::uint32_t load_slotted(const CouplingsView& view, std::uint32_t layer, std::
                            const std::uint32_t* slot, std::uint32_t slots, BlockPlace* places,
                            Block<N>* blocks) noexcept;
 
-/// Blocks between the coefficients of a level and those of another.
-struct LevelPair {
-  std::uint32_t all = 0;   ///< summed over the coefficients of the first: a block within one level counts twice
-  std::uint32_t most = 0;  ///< of one of them
-};
-
-/// How many blocks there are, by pairs of levels.
+/// What a body's memory follows from.
 struct CouplingCounts {
-  bool countable = false;                                    ///< fewer than 2^30 blocks; else nothing is counted
-  LevelPair stored[layout::max_levels][layout::max_levels];  ///< in all layers
-  std::uint32_t longest_column = 0;                          ///< in one layer
+  bool countable = false;            ///< fewer than 2^30 blocks
+  std::uint32_t longest_column = 0;  ///< in one layer
 };
 
-/// Start-up; linear in the blocks and, for every 512 coefficients, in the coefficients.
+/// Start-up; linear in the coefficients.
 [[nodiscard]] CouplingCounts count_couplings(const ModelView& view) noexcept;
+
+// What bounds the blocks of a set of coefficients: those of any t of a level are no more than its t largest counts.
+
+/// Blocks in the columns of level q's coefficients, in all layers. Start-up; linear in the coefficients.
+void count_stored(const ModelView& view, std::uint32_t q, ValueCounts<>& counts) noexcept;
+
+/// Blocks of level q's coefficients with those of levels 0..other, in all layers, without those that tiles of `base`
+/// hold. A block within level q counts for both of its coefficients. Start-up; linear in the blocks and, for every
+/// 1,024 coefficients, in the coefficients.
+void count_blocks(const ModelView& view, std::uint32_t q, std::uint32_t other, const BaseColumns& base,
+                  ValueCounts<>& counts) noexcept;
 
 }  // namespace greenloop

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "formats/stored_blocks.hpp"
@@ -61,20 +62,33 @@ TEST_CASE_TEMPLATE("the blocks of a column in rows with a slot are read as they 
   }
 }
 
-TEST_CASE("blocks are counted by pairs of levels, from both sides") {
+// whose sum of the t largest is `exact` or at most a 32nd more
+bool bounds(std::uint64_t bound, std::uint64_t exact) { return bound >= exact && bound <= exact + exact / 32; }
+
+void check_largest(const ValueCounts<>& counts, std::vector<std::uint32_t> values) {
+  std::sort(values.rbegin(), values.rend());
+  CHECK(counts.most() == values.front());
+  std::uint64_t sum = 0;
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    CHECK(bounds(counts.largest(t), sum));
+    sum += values[t];
+  }
+  CHECK(bounds(counts.largest(values.size() + 5), sum));
+}
+
+TEST_CASE("the largest numbers of blocks of a level are counted, from both sides") {
   const ModelData data = synthetic_model(every_layer(3));
   const TestModel model(encode(data));
   const ModelView& view = model.view();
-  const auto level_of_place = [&view](std::uint32_t place) {
-    std::uint32_t q = 0;
-    while (place >= domain_up_to(view, q)) {
-      ++q;
-    }
-    return q;
-  };
-  // [coefficient][level]
-  std::vector<std::vector<std::uint32_t>> stored(view.domain_count, std::vector<std::uint32_t>(view.levels));
+  BaseColumns base;  // as if the 8-bit blocks of level 0's rows stood in tiles
+  base.columns = view.level[0].counts->domain_count;
+  base.holds[BaseColumns::quantum_layer] = true;
   std::uint32_t longest_column = 0;
+  // [coefficient]
+  std::vector<std::uint32_t> own(view.domain_count);
+  std::vector<std::uint32_t> in_tiles(view.domain_count);
+  // [other][coefficient] with levels up to it
+  std::vector<std::vector<std::uint32_t>> blocks(view.levels, std::vector<std::uint32_t>(view.domain_count));
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
       const CouplingsData& couplings = data.levels[q].couplings[layer];
@@ -83,8 +97,12 @@ TEST_CASE("blocks are counted by pairs of levels, from both sides") {
         for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
           const std::uint32_t column = view.level[q].domain_begin + j;
           const std::uint32_t row = couplings.index[b];
-          ++stored[column][level_of_place(row)];
-          ++stored[row][q];
+          ++own[column];
+          in_tiles[row] += base.holds[layer] && row < base.columns ? 1 : 0;
+          for (std::uint32_t other = 0; other < view.levels; ++other) {
+            blocks[other][column] += row < domain_up_to(view, other) ? 1 : 0;
+            blocks[other][row] += q <= other ? 1 : 0;
+          }
         }
       }
     }
@@ -93,15 +111,23 @@ TEST_CASE("blocks are counted by pairs of levels, from both sides") {
   CHECK(counts.countable);
   CHECK(counts.longest_column == longest_column);
   for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const auto of_level = [&](const std::vector<std::uint32_t>& all) {
+      return std::vector(all.begin() + view.level[q].domain_begin, all.begin() + domain_up_to(view, q));
+    };
+    ValueCounts<> stored;
+    count_stored(view, q, stored);
+    check_largest(stored, of_level(own));
     for (std::uint32_t other = 0; other < view.levels; ++other) {
-      LevelPair in_all;
-      for (std::uint32_t i = view.level[q].domain_begin; i < domain_up_to(view, q); ++i) {
-        in_all.all += stored[i][other];
-        in_all.most = std::max(in_all.most, stored[i][other]);
-      }
-      CHECK(counts.stored[q][other].all == in_all.all);
-      CHECK(counts.stored[q][other].most == in_all.most);
+      ValueCounts<> all;
+      count_blocks(view, q, other, {}, all);
+      check_largest(all, of_level(blocks[other]));
     }
+    std::vector<std::uint32_t> without_tiles = of_level(blocks[view.levels - 1]);
+    const std::vector<std::uint32_t> left_out = of_level(in_tiles);
+    std::transform(without_tiles.begin(), without_tiles.end(), left_out.begin(), without_tiles.begin(), std::minus<>());
+    ValueCounts<> beside_tiles;
+    count_blocks(view, q, view.levels - 1, base, beside_tiles);
+    check_largest(beside_tiles, without_tiles);
   }
 }
 

@@ -178,7 +178,7 @@ void count_stored(const ModelView& view, std::uint32_t* stored) {
 void fill_costs(const ModelView& view, const Tables& tables, std::uint32_t* degree, Body& body) {
   std::memset(degree, 0, sizeof(std::uint32_t) * view.domain_count);
   for (std::uint32_t c = 0; c < view.levels; ++c) {
-    add_degrees(view, c, degree);
+    add_degrees(view, c, view.domain_count, degree);
     for (std::uint32_t place = 0; tables.cost[c] != nullptr && place < domain_up_to(view, c); ++place) {
       tables.cost[c][place] = column_cost(body.refinement, make_column(c, place), degree, body.touched);
     }

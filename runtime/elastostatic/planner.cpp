@@ -230,13 +230,6 @@ std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noex
          find_changes_work(model.prices, model.cached_factors, set.columns);
 }
 
-std::uint64_t most_change_work(const ModelCounts& model, const SetCounts& most) noexcept {
-  const std::uint64_t fresh = factor_work(model, most);
-  const std::uint64_t change =
-      change_work(model, most, most.columns < FactorChanges::most ? most.columns : FactorChanges::most);
-  return change < fresh ? change : fresh;
-}
-
 std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept {
   return Mixture::choose_work(model.prices, set.contacts) + resolve_work(model, set) + plan_set_work(model, set);
 }

@@ -33,10 +33,6 @@ struct Plan {
 /// Work units of planning a set whose factor is not cached.
 [[nodiscard]] std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
-/// Bound of the work units of the factor of a mixed set, which is a cached one or differs from one by
-/// FactorChanges::most nodes.
-[[nodiscard]] std::uint64_t most_change_work(const ModelCounts& model, const SetCounts& most) noexcept;
-
 /// Work units of planning a mixed set of such counts.
 [[nodiscard]] std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept;
 

@@ -1,7 +1,8 @@
 #include "runtime/elastostatic/requirement.hpp"
 
+#include <algorithm>
+
 #include "runtime/elastostatic/planner.hpp"
-#include "runtime/factor/factor_job.hpp"
 #include "runtime/wavelet/domain.hpp"
 #include "runtime/wavelet/point_support.hpp"
 
@@ -25,7 +26,7 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.keeps_capacitance = limits.keep_capacitance;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
-      sizes.most_neighbours[q] = count_lifting(view, q).most_neighbours;
+      sizes.lifting[q] = count_lifting(view, q);
     }
     counts.nodes[q] = nodes_up_to(view, q);
     counts.rows[q] = domain_up_to(view, q);
@@ -34,84 +35,71 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
 
 std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
 
-// bound of what a column of either reaches
-ReachBound larger_reach(const ReachBound& a, const ReachBound& b) {
-  ReachBound both = a;
+std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
+
+// of columns of two levels in one set
+ColumnBounds larger_bounds(const ColumnBounds& a, const ColumnBounds& b) {
+  ColumnBounds both = a;
+  both.columns += b.columns;
   both.visits = larger(a.visits, b.visits);
   for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
-    both.coefficients[q] = a.coefficients[q] > b.coefficients[q] ? a.coefficients[q] : b.coefficients[q];
+    both.coefficients[q] += b.coefficients[q];
+    both.forced[q] = std::max(a.forced[q], b.forced[q]);
+    both.even[q] = std::max(a.even[q], b.even[q]);
   }
   return both;
 }
 
-// the dearest that a step may have done before and after it is answered, over the levels looked at
-struct OtherWork {
-  std::uint64_t plans = 0;    // of the sets of one level
-  std::uint64_t mixture = 0;  // of a mixed one, and going back to the level's
-  std::uint64_t dropped = 0;  // batch of a finer set
-  std::uint64_t older = 0;    // forces of the level before
-  std::uint64_t slices = 0;   // of the factor of a finer set
-};
-
-// a step's work with what it may spend on the factor of a finer set
-std::uint64_t with_slices(std::uint64_t answer, std::uint64_t slices, std::uint64_t refining_work) {
-  const std::uint64_t whole = answer + slices;
-  return larger(answer, whole < refining_work ? whole : refining_work);
+// most coefficients of a column
+std::uint64_t functional_of(const ModelView& view, const ReachBound& reach) {
+  std::uint64_t functional = 0;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    functional += smaller(view.level[q].counts->domain_count, reach.coefficients[q]);
+  }
+  return functional;
 }
 
-// planning a set of some level, and giving a batch of it up
-void add_set(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
-  other.plans += plan_set_work(model, most);
-  other.dropped = larger(other.dropped, priced(most.coefficients, model.prices.dropped));
+// planning a mixed set, that of its coarser level before it and after it
+std::uint64_t plan_mixture_work(const ModelCounts& model, const SetCounts& coarser, const SetCounts& mixed) {
+  return mixture_work(model, mixed) + plan_set_work(model, mixed) + plan_set_work(model, coarser);
 }
 
-void add_slices(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
-  const std::uint64_t slice =
-      resolve_contacts_work(model.prices, most.contacts) + most_slice_work(model, most) + other.dropped;
-  other.slices = larger(other.slices, slice);
-}
-
-// forces of a set with a fresh factor
-std::uint64_t fresh_forces_work(const ModelCounts& model, const SetCounts& most, const OtherWork& other) {
-  return other.dropped + factor_work(model, most) + force_work(model.prices, most);
-}
-
+// most_of, mixed_of: by constraint level
 void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const MostCounts* most_of,
-                const MostCounts* mixed_of, const BodySizes& sizes, Elastostatic::Requirement& requirement) {
+                const SetCounts* mixed_of, const BodySizes& sizes, Elastostatic::Requirement& requirement) {
   const ModelCounts& counts = sizes.counts;
   const std::uint32_t finest = view.levels - 1;
-  const auto field = [&](const MostCounts& most, std::uint32_t field_level) {
-    const std::uint64_t blocks = most.field_blocks[field_level];
-    return limits.forces_only ? 0 : field_work(counts, most.set, {finest, field_level}, blocks);
+  const std::uint32_t coarsest = view.info->coarsest_constraint_level;
+  const auto field = [&](const MostCounts& most, std::uint32_t details) {
+    const std::uint64_t blocks = details == 0 && finest > 0 ? most.least_field_blocks : most.field_blocks;
+    return limits.forces_only ? 0 : field_work(counts, most.set, {finest, details}, blocks);
   };
-  // a mixed set may be planned after all levels were, whatever its own
-  std::uint64_t all_plans = check_contacts_work(counts.prices, limits.max_contacts);
-  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
-    all_plans += plan_set_work(counts, most_of[c].set);
+  const std::uint64_t checking = check_contacts_work(counts.prices, limits.max_contacts);
+  const std::uint64_t older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
+  std::uint64_t dropped = 0;
+  for (std::uint32_t c = coarsest; c < view.levels; ++c) {
+    dropped = larger(dropped, priced(most_of[c].set.coefficients, counts.prices.dropped));
   }
-  OtherWork other;
-  other.plans = check_contacts_work(counts.prices, limits.max_contacts);
-  other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
-  for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
+  std::uint64_t planned = checking;
+  std::uint64_t mixture = 0;
+  std::uint64_t finer_answer = 0;
+  for (std::uint32_t c = view.levels; c-- > coarsest;) {
     const SetCounts& most = most_of[c].set;
-    add_set(counts, most, other);
-    // at the coarsest level the field is cut as well
-    const std::uint64_t cuts =
-        c == view.info->coarsest_constraint_level ? finest * count_field_work(counts.prices, most) : 0;
-    const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
-    std::uint64_t answer = forces + field(most_of[c], finest);
-    std::uint64_t mixed_factor = 0;
-    if (limits.mixtures && c < finest) {
-      const SetCounts& mixed = mixed_of[c].set;
-      other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
-      const std::uint64_t mixed_answer = all_plans + force_work(counts.prices, mixed) + field(mixed_of[c], finest);
-      mixed_factor = mixed_answer + other.dropped + most_change_work(counts, mixed);
-      answer = larger(answer, mixed_answer);
+    planned += plan_set_work(counts, most);
+    const std::uint64_t forces = planned + dropped + factor_work(counts, most) + force_work(counts.prices, most);
+    const std::uint64_t answer = forces + field(most_of[c], finest);
+    if (c == finest) {
+      requirement.worst_work[c] = answer + older;
+    } else {
+      // the budget of such a step did not hold an answer of the next finer level; what is not the answer's is bounded
+      // by refining_work, too
+      mixture = limits.mixtures ? larger(mixture, plan_mixture_work(counts, most, mixed_of[c])) : 0;
+      const std::uint64_t refining = checking + smaller(limits.refining_work, finer_answer);
+      requirement.worst_work[c] = smaller(finer_answer, larger(answer + mixture, refining) + older);
     }
-    const std::uint64_t refined = larger(with_slices(answer, other.slices, limits.refining_work), mixed_factor);
-    requirement.worst_work[c] = refined + other.mixture + other.older;
-    requirement.least_work = forces + field(most_of[c], 0);
-    add_slices(counts, most, other);
+    const std::uint64_t cuts = finest * count_field_work(counts.prices, most);
+    requirement.least_work = forces + cuts + field(most_of[c], 0);
+    finer_answer = answer;
   }
 }
 
@@ -138,23 +126,21 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   BaseColumnsMaker<3> base;
   base.carve(counting, view);
   MostCounts most_of[layout::max_levels];
-  MostCounts mixed_of[layout::max_levels];
-  const std::uint32_t finest = view.levels - 1;
-  ReachBound finest_reach;
+  SetCounts mixed_of[layout::max_levels];
+  ColumnBounds finest;
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
-    const ReachBound reach = bound_reach(view, c, sizes.most_neighbours);
+    const ReachBound reach = bound_reach(view, c, sizes.lifting);
     if (!reach.bounded) {
       return;
     }
-    finest_reach = c == finest ? reach : finest_reach;
-    most_of[c] = most_counts(view, couplings, c, limits.max_contacts, reach, base.columns());
+    sizes.functional = larger(sizes.functional, functional_of(view, reach));
+    const ColumnBounds bounds = bound_columns(view, c, limits.max_contacts, sizes.lifting);
+    finest = c + 1 == view.levels ? bounds : finest;
+    most_of[c] = most_counts(view, c, limits.max_contacts, bounds, sizes.lifting);
     mixed_of[c] =
-        most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach), base.columns());
-    mixed_of[c].set.slots += mixed_of[c].set.columns;
-    const SetCounts& most = most_of[c].set;
-    const std::uint64_t functional = most.columns > 0 ? most.column.coefficients / most.columns : 0;
-    sizes.functional = larger(sizes.functional, functional);
+        most_counts(view, view.levels - 1, limits.max_contacts, larger_bounds(finest, bounds), sizes.lifting).set;
   }
+  add_blocks(view, base.columns(), most_of);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
   sizes.counts.capacitance_room = capacitance_room(sizes.slots, sizes.set_columns);

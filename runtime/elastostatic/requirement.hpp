@@ -14,7 +14,7 @@ struct BodySizes {
   ModelCounts counts;
   std::uint32_t set_columns = 0;     ///< most columns of a contact set
   std::uint32_t longest_column = 0;  ///< most blocks in a column of a layer
-  std::uint32_t most_neighbours[layout::max_levels] = {};
+  LiftingCounts lifting[layout::max_levels] = {};
   std::uint64_t functional = 0;  ///< most coefficients of a point functional
   std::uint64_t slots = 0;       ///< bound of the coefficients that a set's functionals have
 };
@@ -22,7 +22,7 @@ struct BodySizes {
 /// Whether each limit is within the range that Limits states.
 [[nodiscard]] bool in_range(const Elastostatic::Limits& limits) noexcept;
 
-/// Start-up; work: that of bound_reach, count_lifting and count_couplings.
+/// Start-up; work: that of bound_reach, bound_columns and add_blocks.
 void measure_body(const ModelView& view, const Elastostatic::Limits& limits, BodySizes& sizes,
                   Elastostatic::Requirement& requirement) noexcept;
 

@@ -1,6 +1,7 @@
 #include "runtime/elastostatic/step_work.hpp"
 
 #include "runtime/algebra/cholesky.hpp"
+#include "runtime/compliance/couplings.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/factor/factor_cache.hpp"
@@ -11,14 +12,33 @@ namespace {
 
 std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
 
-// most coefficients of level q that forces on `nodes` nodes of K(c) touch
-std::uint64_t most_touched(const ModelView& view, const ReachBound& reach, std::uint32_t q, std::uint64_t nodes) {
-  return smaller(view.level[q].counts->domain_count, nodes * reach.coefficients[q]);
+// a bound for each of the constraint levels that touch a level's coefficients
+template <class Visit>
+void visit_touching(const ModelView& view, std::uint32_t q, MostCounts* most_of, Visit visit) {
+  const std::uint32_t coarsest = view.info->coarsest_constraint_level;
+  for (std::uint32_t c = q > coarsest ? q : coarsest; c < view.levels; ++c) {
+    visit(most_of[c]);
+  }
 }
 
-// most blocks that some coefficients have with a level
-std::uint64_t most_blocks(const LevelPair& pair, std::uint64_t coefficients) {
-  return smaller(pair.all, coefficients * pair.most);
+[[gnu::noinline]] void add_stored(const ModelView& view, std::uint32_t q, MostCounts* most_of) {
+  ValueCounts<> stored;
+  count_stored(view, q, stored);
+  visit_touching(view, q, most_of, [&](MostCounts& most) { most.set.stored += stored.largest(most.touched[q]); });
+}
+
+// blocks that forces on level q's coefficients are summed with to move levels 0..details
+[[gnu::noinline]] void add_field_blocks(const ModelView& view, const BaseColumns& base, std::uint32_t q,
+                                        std::uint32_t details, std::uint64_t MostCounts::*field_blocks,
+                                        MostCounts* most_of) {
+  ValueCounts<> blocks;
+  count_blocks(view, q, details, base, blocks);
+  const std::uint32_t tiles = q == 0 && base.columns > 0 ? tiles_of(domain_up_to(view, details)) : 0;
+  const std::uint64_t diagonal = q <= details ? 1 : 0;
+  const std::uint64_t of_each = diagonal + std::uint64_t{tiles} * FieldBlocks::of_tile<3>;
+  visit_touching(view, q, most_of, [&](MostCounts& most) {
+    most.*field_blocks += blocks.largest(most.touched[q]) + most.touched[q] * of_each;
+  });
 }
 
 }  // namespace
@@ -67,33 +87,35 @@ std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touch
   return sum;
 }
 
-MostCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
-                       std::uint32_t max_contacts, const ReachBound& reach, const BaseColumns& base) noexcept {
+MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max_contacts, const ColumnBounds& bounds,
+                       const LiftingCounts* lifting) noexcept {
+  const std::uint64_t length = prediction_of(view).length;
   MostCounts most;
   SetCounts& counts = most.set;
   counts.bounds = true;
   counts.contacts = max_contacts;
-  counts.columns = smaller(domain_up_to(view, c), max_contacts);
-  counts.visits = counts.columns * reach.visits;
-  counts.column.visits = counts.visits;
+  counts.columns = smaller(bounds.columns, max_contacts);
+  counts.column = {counts.columns * bounds.all_coefficients, bounds.blocks, counts.columns * bounds.visits};
+  counts.visits = counts.columns;
   for (std::uint32_t q = 0; q <= c; ++q) {
-    const std::uint64_t of_set = most_touched(view, reach, q, counts.columns);
-    const std::uint64_t of_column = most_touched(view, reach, q, 1);
-    counts.coefficients += of_set;
-    counts.column.coefficients += counts.columns * of_column;
-    for (std::uint32_t other = 0; other <= c; ++other) {
-      counts.stored += other <= q ? most_blocks(couplings.stored[q][other], of_set) : 0;
-      counts.column.blocks += counts.columns * most_blocks(couplings.stored[q][other], of_column);
-    }
-    std::uint64_t blocks = of_set;  // on the diagonal
-    for (std::uint32_t other = 0; other < view.levels; ++other) {
-      const std::uint64_t tiles = q == 0 && base.columns > 0 ? tiles_of(domain_up_to(view, other)) : 0;
-      blocks += most_blocks(couplings.stored[q][other], of_set);
-      most.field_blocks[other] += blocks + of_set * tiles * FieldBlocks::of_tile<3>;
-    }
+    const std::uint64_t in_level = view.level[q].counts->domain_count;
+    most.touched[q] = smaller(in_level, bounds.coefficients[q]);
+    counts.coefficients += most.touched[q];
+    // a coefficient of level 0 is predicted by none, and without lifting a force is on every other one
+    const std::uint64_t forced = q > 0 ? smaller(most.touched[q], counts.columns * bounds.forced[q]) : 0;
+    const std::uint64_t listed = std::uint64_t{OddNeighbours::most} * lifting[q].records;
+    counts.visits += length * forced + smaller(listed, neighbour_visits(lifting[q], counts.columns * bounds.even[q]));
   }
   counts.slots = counts.coefficients;
   return most;
+}
+
+void add_blocks(const ModelView& view, const BaseColumns& base, MostCounts* most_of) noexcept {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    add_stored(view, q, most_of);
+    add_field_blocks(view, base, q, view.levels - 1, &MostCounts::field_blocks, most_of);
+    add_field_blocks(view, base, q, 0, &MostCounts::least_field_blocks, most_of);
+  }
 }
 
 }  // namespace greenloop

@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
-#include "runtime/compliance/couplings.hpp"
+#include "runtime/compliance/base_columns.hpp"
+#include "runtime/compliance/column_bounds.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/factor/factor_work.hpp"
-#include "runtime/wavelet/point_support.hpp"
 
 namespace greenloop {
 
@@ -46,12 +46,18 @@ struct ModelCounts : FactorCounts {
 /// Bounds of the counts of any set of contacts at a constraint level.
 struct MostCounts {
   SetCounts set;
-  std::uint64_t field_blocks[layout::max_levels] = {};  ///< by field level, of count_field_blocks
+  std::uint64_t touched[layout::max_levels] = {};  ///< coefficients of each level
+  std::uint64_t field_blocks = 0;                  ///< of count_field_blocks, of the whole field
+  std::uint64_t least_field_blocks = 0;            ///< the same with the coarsest details alone
 };
 
-/// Of at most `max_contacts` contacts at constraint level c. Start-up.
-[[nodiscard]] MostCounts most_counts(const ModelView& view, const CouplingCounts& couplings, std::uint32_t c,
-                                     std::uint32_t max_contacts, const ReachBound& reach,
-                                     const BaseColumns& base) noexcept;
+/// Of at most `max_contacts` contacts at constraint level c, but for their blocks. lifting: of every level. Start-up.
+[[nodiscard]] MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max_contacts,
+                                     const ColumnBounds& bounds, const LiftingCounts* lifting) noexcept;
+
+/// Adds the blocks of the coefficients that sets touch, of constraint levels coarsest..finest: as many of each level's
+/// longest lists as a set touches there. most_of: by constraint level. Start-up; work: that of count_blocks, twice a
+/// level.
+void add_blocks(const ModelView& view, const BaseColumns& base, MostCounts* most_of) noexcept;
 
 }  // namespace greenloop

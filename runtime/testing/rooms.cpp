@@ -11,11 +11,11 @@ namespace {
 
 // bound of the slots of so many columns, as a body has it
 std::uint64_t most_slots(const ModelView& view, std::uint32_t set_columns) {
-  std::uint32_t most_neighbours[layout::max_levels] = {};
-  for (std::uint32_t q = 1; q < view.levels; ++q) most_neighbours[q] = count_lifting(view, q).most_neighbours;
+  LiftingCounts lifting[layout::max_levels] = {};
+  for (std::uint32_t q = 1; q < view.levels; ++q) lifting[q] = count_lifting(view, q);
   std::uint64_t most = 0;
   for (std::uint32_t c = 0; c < view.levels; ++c) {
-    const ReachBound reach = bound_reach(view, c, most_neighbours);
+    const ReachBound reach = bound_reach(view, c, lifting);
     std::uint64_t of_column = 0;
     for (std::uint32_t q = 0; q <= c; ++q) {
       of_column += std::min(view.level[q].counts->domain_count, reach.coefficients[q]);
@@ -76,7 +76,7 @@ void Rooms<N>::list_costs() {
         stored[level.domain_begin + i] += column_length(couplings, i);
       }
     }
-    add_degrees(view, c, degree.data());
+    add_degrees(view, c, view.domain_count, degree.data());
     for (std::uint32_t place = 0; place < domain_up_to(view, c); ++place) {
       costs_[c].push_back(column_cost(refinement, make_column(c, place), degree.data(), touched));
     }

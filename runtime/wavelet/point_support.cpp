@@ -3,7 +3,6 @@
 #include "formats/stored_blocks.hpp"
 #include "runtime/wavelet/domain.hpp"
 #include "runtime/wavelet/prediction.hpp"
-#include "runtime/wavelet/wavelet.hpp"
 
 namespace greenloop {
 namespace {
@@ -52,9 +51,8 @@ std::uint32_t orphans(const ModelView& view, std::uint32_t level, const PointSup
   return count;
 }
 
-// forced: nodes of each level's mesh that a force on the node is shared among
-bool follow(const ModelView& view, std::uint32_t c, std::uint32_t node, const std::uint32_t* most_neighbours,
-            std::uint32_t* forced, ReachBound& bound) {
+bool follow(const ModelView& view, std::uint32_t c, std::uint32_t node, const LiftingCounts* lifting,
+            ReachBound& bound) {
   PointSupport supports[2] = {PointSupport(most_support(view)), PointSupport(most_support(view))};
   PointSupport* support = supports;
   PointSupport* coarse = supports + 1;
@@ -67,9 +65,9 @@ bool follow(const ModelView& view, std::uint32_t c, std::uint32_t node, const st
     PointSupport* const finer = support;
     support = coarse;
     coarse = finer;
-    raise(bound.coefficients[level], support->count() * most_neighbours[level] + alone);
-    raise(forced[level - 1], support->count());
+    raise(bound.coefficients[level], support->count() * lifting[level].most_neighbours + alone);
   }
+  raise(bound.coefficients[0], support->count());
   return true;
 }
 
@@ -116,24 +114,14 @@ bool coarsen(const ModelView& view, std::uint32_t level, const PointSupport& sup
   return true;
 }
 
-ReachBound bound_reach(const ModelView& view, std::uint32_t c, const std::uint32_t* most_neighbours) noexcept {
+ReachBound bound_reach(const ModelView& view, std::uint32_t c, const LiftingCounts* lifting) noexcept {
   ReachBound bound;
-  std::uint32_t forced[layout::max_levels] = {};
-  forced[c] = 1;
   for (std::uint32_t q = 0; q <= c; ++q) {
     for (std::uint32_t i = 0; i < view.level[q].counts->domain_count; ++i) {
-      if (!follow(view, c, view.level[q].node_begin + i, most_neighbours, forced, bound)) {
+      if (!follow(view, c, view.level[q].node_begin + i, lifting, bound)) {
         return bound;
       }
     }
-  }
-  bound.coefficients[0] = forced[0];
-  // the node, what predicts each force, all odd neighbours of each support
-  bound.visits = 1;
-  for (std::uint32_t level = c; level > 0; --level) {
-    constexpr std::uint32_t slots = OddNeighbours::most;
-    bound.visits += std::uint64_t{prediction_of(view).length} * forced[level];
-    bound.visits += std::uint64_t{forced[level - 1]} * slots * ((most_neighbours[level] + slots - 1) / slots);
   }
   bound.bounded = true;
   return bound;

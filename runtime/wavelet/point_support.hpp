@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "formats/view.hpp"
+#include "runtime/wavelet/wavelet.hpp"
 
 namespace greenloop {
 
@@ -45,12 +46,10 @@ class PointSupport {
 /// Most coefficients that a force on one node of K(c) reaches.
 struct ReachBound {
   bool bounded = false;  ///< no node of K(c) hangs on more than most_support nodes of a coarser level
-  std::uint64_t visits = 0;
   std::uint32_t coefficients[layout::max_levels] = {};  ///< of each level
 };
 
-/// most_neighbours, of every level: LiftingCounts::most_neighbours. Start-up; linear in domain nodes times levels.
-[[nodiscard]] ReachBound bound_reach(const ModelView& view, std::uint32_t c,
-                                     const std::uint32_t* most_neighbours) noexcept;
+/// lifting: of every level. Start-up; linear in domain nodes times levels.
+[[nodiscard]] ReachBound bound_reach(const ModelView& view, std::uint32_t c, const LiftingCounts* lifting) noexcept;
 
 }  // namespace greenloop

@@ -17,7 +17,9 @@ Prediction prediction_of(const ModelView& view) noexcept {
   const auto wavelet = static_cast<layout::Wavelet>(view.info->wavelet);
   const std::uint32_t components = view.info->components;
   if (wavelet != layout::Wavelet::equilibrated) {
-    return {.components = components, .length = layout::is_butterfly(wavelet) ? 8U : 2U};
+    return {.components = components,
+            .length = layout::is_butterfly(wavelet) ? 8U : 2U,
+            .lifted = layout::is_lifted(wavelet)};
   }
   return {.components = components,
           .length = most_terms(view),

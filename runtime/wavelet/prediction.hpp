@@ -15,6 +15,7 @@ struct Prediction {
   std::uint32_t length = 2;       ///< nodes that it reads at most
   bool blocks = false;            ///< its weights are blocks, which are read in place, not numbers
   std::uint32_t block_bytes = 0;  ///< of one of those
+  bool lifted = false;            ///< and other nodes are lifted into those
 };
 
 /// Of a model's wavelets. Work: a unit per level.

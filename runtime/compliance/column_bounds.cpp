@@ -1,0 +1,189 @@
+#include "runtime/compliance/column_bounds.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "runtime/algebra/value_counts.hpp"
+#include "runtime/compliance/capacitance_work.hpp"
+#include "runtime/compliance/couplings.hpp"
+#include "runtime/wavelet/domain.hpp"
+#include "runtime/wavelet/point_support.hpp"
+
+namespace greenloop {
+namespace {
+
+void raise(std::uint32_t& bound, std::uint32_t value) { bound = std::max(bound, value); }
+
+// bounds of the blocks that a coefficient has with those of levels 0..c
+struct Degrees {
+  static constexpr std::uint32_t exact = 1024;
+  std::uint32_t first[exact] = {};
+  std::uint64_t most[layout::max_levels] = {};  // of a level that is not all among the first
+
+  [[nodiscard]] std::uint64_t of(std::uint32_t level, std::uint32_t place) const {
+    return place < exact ? first[place] : most[level];
+  }
+  // the largest of a level
+  [[nodiscard]] std::uint64_t largest(const ModelView& view, std::uint32_t level) const {
+    const std::uint32_t end = domain_up_to(view, level);
+    return end > exact ? most[level] : *std::max_element(first + view.level[level].domain_begin, first + end);
+  }
+};
+
+[[gnu::noinline]] std::uint64_t most_blocks(const ModelView& view, std::uint32_t q, std::uint32_t c) {
+  ValueCounts<> blocks;
+  count_blocks(view, q, c, {}, blocks);
+  return blocks.most();
+}
+
+void fill_degrees(const ModelView& view, std::uint32_t c, Degrees& degrees) {
+  for (std::uint32_t q = 0; q <= c; ++q) {
+    add_degrees(view, q, std::min(view.domain_count, Degrees::exact), degrees.first);
+    degrees.most[q] = domain_up_to(view, q) > Degrees::exact ? most_blocks(view, q, c) : 0;
+  }
+}
+
+// what one column reaches
+struct Reach {
+  std::uint32_t coefficients[layout::max_levels] = {};
+  std::uint32_t forced[layout::max_levels] = {};
+  std::uint32_t even[layout::max_levels] = {};
+  std::uint64_t blocks = 0;
+};
+
+// nodes of M(level) in a support, by what lifts them
+struct OddNodes {
+  std::uint32_t count = 0;
+  std::uint32_t alone = 0;  // lifted into no node: nobody's neighbours
+  std::uint32_t twice = 0;  // lifted into two, neighbours of both
+};
+
+// forces on the odd nodes of a support, whose coefficients are known unless others are lifted into the same nodes
+OddNodes add_odd_nodes(const ModelView& view, std::uint32_t level, const PointSupport& support, const Degrees* degrees,
+                       Reach& reach) {
+  const LevelView& at = view.level[level];
+  OddNodes odd;
+  for (std::uint32_t k = 0; k < support.count(); ++k) {
+    if (support.node(k) < at.node_begin) {
+      continue;
+    }
+    const std::uint32_t i = support.node(k) - at.node_begin;
+    const float* lift = at.refinement[i].lift;
+    ++odd.count;
+    odd.alone += lift[0] == 0 && lift[1] == 0 ? 1 : 0;
+    odd.twice += lift[0] != 0 && lift[1] != 0 ? 1 : 0;
+    reach.blocks += degrees != nullptr ? degrees->of(level, at.domain_begin + i) : 0;
+  }
+  return odd;
+}
+
+[[gnu::noinline]] Reach reach_of(const ModelView& view, std::uint32_t column, const LiftingCounts* lifting,
+                                 const Degrees& degrees) {
+  PointSupport supports[2] = {PointSupport(most_support(view)), PointSupport(most_support(view))};
+  PointSupport* support = supports;
+  PointSupport* coarse = supports + 1;
+  Reach reach;
+  support->add(domain_node(view, column_place(column)));
+  for (std::uint32_t level = column_level(column); level > 0; --level) {
+    const bool lifted = lifting[level].most_neighbours > 0;
+    const OddNodes odd = add_odd_nodes(view, level, *support, lifted ? nullptr : &degrees, reach);
+    static_cast<void>(coarsen(view, level, *support, *coarse));
+    reach.forced[level] = odd.count;
+    reach.even[level] = coarse->count();
+    reach.coefficients[level] = odd.count;
+    if (lifted) {
+      const std::uint32_t neighbours = coarse->count() * lifting[level].most_neighbours - odd.twice + odd.alone;
+      reach.coefficients[level] = std::min(view.level[level].counts->domain_count, neighbours);
+      reach.blocks += reach.coefficients[level] * degrees.largest(view, level);
+    }
+    std::swap(support, coarse);
+  }
+  reach.coefficients[0] = support->count();
+  for (std::uint32_t k = 0; k < support->count(); ++k) {
+    reach.blocks += degrees.of(0, domain_place(view, support->node(k)));
+  }
+  return reach;
+}
+
+// what the columns of a level reach
+struct AllReach {
+  const ModelView& view;
+  const LiftingCounts* lifting;
+  std::uint32_t length;  // of a prediction
+  ColumnBounds bounds;
+  ValueCounts<0> coefficients[layout::max_levels];
+  ValueCounts<> blocks;
+
+  void add(const Reach& reach) {
+    std::uint64_t sum = 0;
+    std::uint64_t visits = 1;
+    for (std::uint32_t q = 0; q < view.levels; ++q) {
+      raise(bounds.forced[q], reach.forced[q]);
+      raise(bounds.even[q], reach.even[q]);
+      coefficients[q].add(reach.coefficients[q]);
+      sum += reach.coefficients[q];
+      visits += std::uint64_t{length} * reach.forced[q] + neighbour_visits(lifting[q], reach.even[q]);
+    }
+    bounds.all_coefficients = std::max(bounds.all_coefficients, sum);
+    bounds.visits = std::max(bounds.visits, visits);
+    blocks.add(reach.blocks);
+    ++bounds.columns;
+  }
+  void sum_up(std::uint32_t set_columns) {
+    for (std::uint32_t q = 0; q < view.levels; ++q) {
+      bounds.coefficients[q] = coefficients[q].largest(set_columns);
+    }
+    bounds.blocks = blocks.largest(set_columns);
+  }
+};
+
+// the places, from `first` on, of the columns of level c that touchable nodes are represented by
+struct Places {
+  static constexpr std::uint32_t most = 8192;
+  std::uint64_t bits[most / 64] = {};
+};
+
+void mark_places(const ModelView& view, std::uint32_t c, std::uint32_t first, Places& places) {
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
+      if ((level.nodes[i].flags & layout::node_touchable) != 0) {
+        const std::uint32_t place = domain_place(view, view.representatives[c][q][i]) - first;
+        places.bits[place < Places::most ? place / 64 : 0] |= std::uint64_t{place < Places::most} << place % 64;
+      }
+    }
+  }
+}
+
+template <class Visit>
+void visit_columns(const ModelView& view, std::uint32_t c, Visit visit) {
+  for (std::uint32_t first = 0; first < domain_up_to(view, c); first += Places::most) {
+    Places places;
+    mark_places(view, c, first, places);
+    for (std::uint32_t word = 0; word < Places::most / 64; ++word) {
+      for (std::uint64_t bits = places.bits[word]; bits != 0; bits &= bits - 1) {
+        visit(make_column(c, first + 64 * word + static_cast<std::uint32_t>(std::countr_zero(bits))));
+      }
+    }
+  }
+}
+
+// apart, so that the degrees have a frame of their own
+[[gnu::noinline]] ColumnBounds bound_with(const ModelView& view, std::uint32_t c, std::uint32_t set_columns,
+                                          const LiftingCounts* lifting, const Degrees& degrees) {
+  AllReach all{view, lifting, prediction_of(view).length, {}, {}, {}};
+  visit_columns(view, c, [&](std::uint32_t column) { all.add(reach_of(view, column, lifting, degrees)); });
+  all.sum_up(set_columns);
+  return all.bounds;
+}
+
+}  // namespace
+
+ColumnBounds bound_columns(const ModelView& view, std::uint32_t c, std::uint32_t set_columns,
+                           const LiftingCounts* lifting) noexcept {
+  Degrees degrees;
+  fill_degrees(view, c, degrees);
+  return bound_with(view, c, set_columns, lifting, degrees);
+}
+
+}  // namespace greenloop
