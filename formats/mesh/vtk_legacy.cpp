@@ -105,8 +105,9 @@ VtkCells VtkLegacy::read_cells(std::size_t point_count) {
   const auto count = text_.count("the number of cells", 1);
   const auto size = text_.count("the size of the cell list", 1);
   VtkCells cells;
-  // in a binary file of the older form the list begins right behind this line
-  const auto begins_offsets = text_.rest().substr(0, 64).find("OFFSETS") != std::string_view::npos;
+  // in a binary file of the older form numbers begin right behind this line
+  const auto next = text_.rest().substr(std::min(text_.rest().find_first_not_of(" \t\r\n"), text_.rest().size()));
+  const bool begins_offsets = next.starts_with("OFFSETS");
   begins_offsets ? read_offset_cells(count, size, point_count, cells)
                  : read_counted_cells(count, size, point_count, cells);
   return cells;

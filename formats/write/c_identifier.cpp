@@ -358,9 +358,10 @@ std::string identifier_from(std::string_view stem) {
     name += allowed ? c : '_';
   }
   if (name.ends_with('_')) name.pop_back();
-  const bool begins_badly = name.empty() || is_digit(name.front()) || name.front() == '_';
-  return fmt::format("{}{}_{:08x}", begins_badly ? (name.starts_with('_') ? "model" : "model_") : "", name,
-                     hash_of(stem));
+  if (name.empty() || is_digit(name.front()) || name.front() == '_') {
+    name.insert(0, name.empty() || name.front() == '_' ? "model" : "model_");
+  }
+  return fmt::format("{}_{:08x}", name, hash_of(stem));
 }
 
 }  // namespace greenloop
