@@ -7,15 +7,10 @@
 namespace greenloop {
 namespace {
 
-constexpr const char* surface_file = "a surface file: .off, .obj, .stl or .ply";
+constexpr const char* surface_file = "a surface file: .off, .obj, .stl, .ply or .vtk";
+constexpr const char* written_surface = "a surface file: .off, .obj, .stl or .ply";
 
 }  // namespace
-
-void append_fan(TriangleMesh& mesh, std::span<const int> polygon) {
-  for (std::size_t i = 2; i < polygon.size(); ++i) {
-    mesh.triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
-  }
-}
 
 void append_corner_lists(std::string& text, const TriangleMesh& mesh) {
   for (const auto& vertex : mesh.vertices) {
@@ -27,21 +22,27 @@ void append_corner_lists(std::string& text, const TriangleMesh& mesh) {
   }
 }
 
-TriangleMesh read_surface(const std::filesystem::path& file) {
+TriangleMesh read_surface(const std::filesystem::path& file, MeshNotes& notes) {
   const auto extension = lower_extension(file);
   auto* const parse = extension == ".off"   ? parse_off
                       : extension == ".obj" ? parse_obj
                       : extension == ".stl" ? parse_stl
                       : extension == ".ply" ? parse_ply
+                      : extension == ".vtk" ? parse_vtk_surface
                                             : nullptr;
   if (parse == nullptr) {
     refuse_extension(file, surface_file);
   }
-  auto mesh = parse(file, read_file(file));
+  auto mesh = triangulate(file, parse(file, read_file(file), notes), notes);
   if (mesh.triangles.empty()) {
     throw MeshFileError(file.string() + ": found no face, expected a surface");
   }
   return mesh;
+}
+
+TriangleMesh read_surface(const std::filesystem::path& file) {
+  MeshNotes unheard;
+  return read_surface(file, unheard);
 }
 
 void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh) {
@@ -52,7 +53,7 @@ void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh) 
                        : extension == ".ply" ? format_ply
                                              : nullptr;
   if (format == nullptr) {
-    refuse_extension(file, surface_file);
+    refuse_extension(file, written_surface);
   }
   write_file(file, format(mesh));
 }

@@ -7,12 +7,16 @@
 
 namespace greenloop {
 
-/// Reads a triangle surface; the extension chooses the format: .off (also COFF and NOFF, colours and normals skipped),
-/// .obj (v and f; everything else skipped), .stl (ascii or binary; vertices with the same coordinates become one),
-/// .ply (ascii or binary little endian; only positions and faces kept).
-/// Polygons become a fan of triangles around their first vertex. Vertices stay in the file's order and unit, those that
-/// no face uses too. Indices are in range and coordinates finite; nothing else is checked (see offline/surface).
-/// Throws MeshFileError with file, line, what was found and what was expected. Work: linear in the file's length.
+/// Reads a triangle surface; the extension, in any case, chooses the format: .off (also with colours, normals and
+/// texture coordinates, which are skipped), .obj (v and f; everything else skipped), .stl (ascii or binary, all its
+/// solids; vertices with the same coordinates become one), .ply (ascii or binary of either byte order; only positions,
+/// faces and strips kept), .vtk (legacy, ascii or binary: polygons and strips of POLYDATA). Polygons become triangles
+/// (see triangulate in polygon_mesh.hpp). Vertices stay in the file's order and unit, those that no face uses too.
+/// Indices are in range and coordinates finite; nothing else is checked (see offline/surface). What a reader passes
+/// over beyond that is appended to `notes`. Throws MeshFileError with file, line, what was found and what was expected.
+/// The file has at most largest_mesh_file bytes. Work: linear in its length, but for polygons that are not convex (see
+/// triangulate). Memory: at most 16 times its length.
+[[nodiscard]] TriangleMesh read_surface(const std::filesystem::path& file, MeshNotes& notes);
 [[nodiscard]] TriangleMesh read_surface(const std::filesystem::path& file);
 
 /// Writes .off, .obj, .ply (ascii) or .stl (ascii, which stores positions only). Numbers read back as the same doubles.

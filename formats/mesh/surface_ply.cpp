@@ -4,17 +4,15 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "formats/mesh/binary_scalar.hpp"
 #include "formats/mesh/surface_formats.hpp"
 
 namespace greenloop {
 namespace {
-
-enum class Scalar { i8, u8, i16, u16, i32, u32, f32, f64 };
 
 struct Property {
   std::string name;
@@ -28,11 +26,6 @@ struct Element {
   std::size_t count = 0;
   std::vector<Property> properties;
 };
-
-std::size_t size_of(Scalar type) {
-  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
 
 Scalar read_type(MeshText& text) {
   struct Name {
@@ -75,20 +68,32 @@ Property read_property(MeshText& text) {
   return property;
 }
 
+enum class Encoding { ascii, little_endian, big_endian };
+
 struct Header {
-  bool binary = false;
+  Encoding encoding = Encoding::ascii;
   std::vector<Element> elements;
 };
+
+Encoding read_encoding(MeshText& text) {
+  const auto format = text.token("a format");
+  if (same_word(format, "ascii")) {
+    return Encoding::ascii;
+  }
+  if (same_word(format, "binary_little_endian")) {
+    return Encoding::little_endian;
+  }
+  if (!same_word(format, "binary_big_endian")) {
+    text.fail(format, "format \"ascii\", \"binary_little_endian\" or \"binary_big_endian\"");
+  }
+  return Encoding::big_endian;
+}
 
 Header read_header(MeshText& text) {
   Header header;
   text.word("ply");
   text.word("format");
-  const auto format = text.token("a format");
-  if (format != "ascii" && format != "binary_little_endian") {
-    text.fail(format, "format \"ascii\" or \"binary_little_endian\"");
-  }
-  header.binary = format == "binary_little_endian";
+  header.encoding = read_encoding(text);
   text.skip_line();
   while (true) {
     const auto keyword = text.token("\"end_header\"");
@@ -115,20 +120,15 @@ Header read_header(MeshText& text) {
 /// Reads one value after the other, from text or from bytes.
 class Values {
  public:
-  Values(MeshText& text, const std::filesystem::path& file, bool binary) : text_(text), file_(file), binary_(binary) {}
+  Values(MeshText& text, const std::filesystem::path& file, Encoding encoding)
+      : text_(text), file_(file), encoding_(encoding) {}
 
   double next(Scalar type) {
-    if (!binary_) {
-      return text_.real("a property value");
-    }
-    const auto bytes = text_.rest();
-    if (bytes.size() < size_of(type)) {
-      fail("the end of the file", "a property value");
-    }
-    const double value = decode(type, bytes.data());
-    text_.skip_bytes(size_of(type));
-    return value;
+    return is_binary() ? decode(type, next_bytes(type), order()) : text_.real("a property value");
   }
+
+  /// Passes over a value whatever it is.
+  void skip(Scalar type) { static_cast<void>(is_binary() ? next_bytes(type) : text_.token("a property value").data()); }
 
   /// A value that has to be a whole number in [low, high].
   std::int64_t next_whole(Scalar type, std::string_view what, double low, double high) {
@@ -143,9 +143,11 @@ class Values {
   }
 
   [[nodiscard]] std::size_t bytes_left() const { return text_.rest().size(); }
+  /// 0 in the binary part.
+  [[nodiscard]] std::size_t line() const { return is_binary() ? 0 : text_.line_number(); }
 
   [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
-    if (!binary_) {
+    if (!is_binary()) {
       text_.fail(found, expected);
     }
     throw MeshFileError(file_.string() + ": found " + std::string(found) + " in the binary part, expected " +
@@ -153,41 +155,23 @@ class Values {
   }
 
  private:
-  template <typename T>
-  static double number(const char* bytes) {
-    std::array<char, sizeof(T)> copy{};
-    std::memcpy(copy.data(), bytes, sizeof(T));
-    if constexpr (std::endian::native == std::endian::big) {
-      std::reverse(copy.begin(), copy.end());
-    }
-    return static_cast<double>(std::bit_cast<T>(copy));
+  [[nodiscard]] std::endian order() const {
+    return encoding_ == Encoding::big_endian ? std::endian::big : std::endian::little;
   }
+  [[nodiscard]] bool is_binary() const { return encoding_ != Encoding::ascii; }
 
-  static double decode(Scalar type, const char* bytes) {
-    switch (type) {
-      case Scalar::i8:
-        return number<std::int8_t>(bytes);
-      case Scalar::u8:
-        return number<std::uint8_t>(bytes);
-      case Scalar::i16:
-        return number<std::int16_t>(bytes);
-      case Scalar::u16:
-        return number<std::uint16_t>(bytes);
-      case Scalar::i32:
-        return number<std::int32_t>(bytes);
-      case Scalar::u32:
-        return number<std::uint32_t>(bytes);
-      case Scalar::f32:
-        return number<float>(bytes);
-      case Scalar::f64:
-        break;
+  const char* next_bytes(Scalar type) {
+    const auto bytes = text_.rest();
+    if (bytes.size() < size_of(type)) {
+      fail("the end of the file", "a property value");
     }
-    return number<double>(bytes);
+    text_.skip_bytes(size_of(type));
+    return bytes.data();
   }
 
   MeshText& text_;
   const std::filesystem::path& file_;
-  bool binary_;
+  Encoding encoding_;
 };
 
 std::size_t read_length(Values& values, const Property& property) {
@@ -198,11 +182,11 @@ std::size_t read_length(Values& values, const Property& property) {
 void skip_property(Values& values, const Property& property) {
   const std::size_t length = property.is_list ? read_length(values, property) : 1;
   for (std::size_t i = 0; i < length; ++i) {
-    static_cast<void>(values.next(property.value));
+    values.skip(property.value);
   }
 }
 
-void read_vertex(Values& values, const Element& element, TriangleMesh& mesh) {
+void read_vertex(Values& values, const Element& element, PolygonMesh& mesh) {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (const auto& property : element.properties) {
     const auto axis = property.name.size() == 1 ? std::string_view("xyz").find(property.name[0]) : std::string::npos;
@@ -223,22 +207,61 @@ bool is_polygon(const Property& property) {
   return property.is_list && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-void read_face(Values& values, const Element& element, TriangleMesh& mesh, std::vector<int>& polygon) {
-  for (const auto& property : element.properties) {
-    if (!is_polygon(property)) {
-      skip_property(values, property);
+std::size_t read_corner(Values& values, const Property& property, std::size_t vertex_count) {
+  const double last = static_cast<double>(vertex_count) - 1;
+  return static_cast<std::size_t>(values.next_whole(property.value, "a vertex index", 0, last));
+}
+
+void read_face(Values& values, const Property& property, std::size_t vertex_count, PolygonMesh& mesh,
+               std::vector<int>& polygon) {
+  const auto length = read_length(values, property);
+  if (length < 3) {
+    values.fail(std::to_string(length), "at least 3 vertices of a face");
+  }
+  polygon.clear();
+  for (std::size_t i = 0; i < length; ++i) {
+    polygon.push_back(static_cast<int>(read_corner(values, property, vertex_count)));
+  }
+  mesh.add(polygon, values.line());
+}
+
+/// Vertices of strips of triangles that turn in alternate senses; -1 ends a strip.
+void read_strips(Values& values, const Property& property, std::size_t vertex_count, PolygonMesh& mesh) {
+  const auto length = read_length(values, property);
+  const double last = static_cast<double>(vertex_count) - 1;
+  std::vector<int> strip;
+  for (std::size_t i = 0; i < length; ++i) {
+    const auto vertex = static_cast<int>(values.next_whole(property.value, "a vertex index or -1", -1, last));
+    if (vertex < 0) {
+      strip.clear();
       continue;
     }
-    const auto length = read_length(values, property);
-    if (length < 3) {
-      values.fail(std::to_string(length), "at least 3 vertices of a face");
+    strip.push_back(vertex);
+    if (strip.size() >= 3) {
+      const std::size_t n = strip.size() - 3;
+      mesh.add(n % 2 == 0 ? std::array{strip[n], strip[n + 1], strip[n + 2]}
+                          : std::array{strip[n + 1], strip[n], strip[n + 2]},
+               values.line());
     }
-    polygon.resize(length);
-    for (int& vertex : polygon) {
-      const double last = static_cast<double>(mesh.vertices.size()) - 1;
-      vertex = static_cast<int>(values.next_whole(property.value, "a vertex index", 0, last));
+  }
+}
+
+bool holds_faces(const Element& element) { return element.name == "face" || element.name == "tristrips"; }
+
+void read_element(Values& values, const Element& element, std::size_t vertex_count, PolygonMesh& mesh,
+                  std::vector<int>& polygon) {
+  if (element.name == "vertex") {
+    read_vertex(values, element, mesh);
+    return;
+  }
+  for (const auto& property : element.properties) {
+    if (!holds_faces(element) || !is_polygon(property)) {
+      skip_property(values, property);
+    } else if (element.name == "face") {
+      read_face(values, property, vertex_count, mesh, polygon);
+    } else {
+      read_strips(values, property, vertex_count, mesh);
     }
-    append_fan(mesh, polygon);
   }
 }
 
@@ -251,32 +274,30 @@ void require_properties(const MeshText& text, const Element& element) {
       }
     }
   }
-  if (element.name == "face" && !has(is_polygon)) {
-    text.fail("element face without a list", "a list property vertex_indices");
+  if (holds_faces(element) && !has(is_polygon)) {
+    text.fail("element " + element.name + " without a list", "a list property vertex_indices");
   }
 }
 
 }  // namespace
 
-TriangleMesh parse_ply(const std::filesystem::path& file, std::string content) {
+PolygonMesh parse_ply(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
   MeshText text(file, std::move(content), '\0');
   const auto header = read_header(text);
-  Values values(text, file, header.binary);
-  TriangleMesh mesh;
-  std::vector<int> polygon;
+  std::size_t vertex_count = 0;
   for (const auto& element : header.elements) {
     require_properties(text, element);
+    vertex_count += element.name == "vertex" ? element.count : 0;
+  }
+  Values values(text, file, header.encoding);
+  PolygonMesh mesh;
+  std::vector<int> polygon;
+  for (const auto& element : header.elements) {
     for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i) {
-      if (element.name == "vertex") {
-        read_vertex(values, element, mesh);
-      } else if (element.name == "face") {
-        read_face(values, element, mesh, polygon);
-      } else {
-        std::for_each(element.properties.begin(), element.properties.end(),
-                      [&](const Property& property) { skip_property(values, property); });
-      }
+      read_element(values, element, vertex_count, mesh, polygon);
     }
   }
+  text.note_rest(notes, "element");
   return mesh;
 }
 

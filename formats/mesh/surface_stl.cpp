@@ -5,10 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <map>
+#include <optional>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "formats/mesh/binary_scalar.hpp"
 #include "formats/mesh/surface_formats.hpp"
 
 namespace greenloop {
@@ -29,7 +32,7 @@ class Soup {
     return it->second;
   }
 
-  TriangleMesh mesh;
+  PolygonMesh mesh;
 
  private:
   std::map<std::array<double, 3>, int> index_;
@@ -37,79 +40,147 @@ class Soup {
 
 template <typename T>
 T little_endian(const char* bytes) {
-  std::array<char, sizeof(T)> copy{};
-  std::memcpy(copy.data(), bytes, sizeof(T));
-  if constexpr (std::endian::native == std::endian::big) {
-    std::reverse(copy.begin(), copy.end());
-  }
-  return std::bit_cast<T>(copy);
+  return decode_as<T>(bytes, std::endian::little);
 }
 
-bool is_binary(const std::string& content) {
-  if (content.size() < binary_header) {
-    return false;
+/// Facets that a header counts, if the bytes hold that many.
+std::optional<std::size_t> counted_facets(std::string_view bytes) {
+  if (bytes.size() < binary_header) {
+    return std::nullopt;
   }
-  const auto facets = little_endian<std::uint32_t>(content.data() + 80);
-  return content.size() - binary_header == std::uint64_t{facets} * binary_facet;
+  const std::size_t facets = little_endian<std::uint32_t>(bytes.data() + 80);
+  return (bytes.size() - binary_header) / binary_facet >= facets ? std::optional(facets) : std::nullopt;
 }
 
-TriangleMesh parse_binary(const std::filesystem::path& file, const std::string& content) {
-  Soup soup;
-  const std::size_t facets = (content.size() - binary_header) / binary_facet;
-  soup.mesh.triangles.reserve(facets);
-  for (std::size_t f = 0; f < facets; ++f) {
-    const char* corner = content.data() + binary_header + f * binary_facet + 12;
-    std::array<int, 3> triangle{};
-    for (int& vertex : triangle) {
-      const Eigen::Vector3d p(little_endian<float>(corner), little_endian<float>(corner + 4),
-                              little_endian<float>(corner + 8));
-      if (!p.allFinite()) {
-        throw MeshFileError(file.string() + ": facet " + std::to_string(f) +
-                            ": found a coordinate that is not finite, expected finite numbers");
-      }
-      vertex = soup.vertex(p);
-      corner += 12;
+void read_facet(const std::filesystem::path& file, const char* corner, Soup& soup) {
+  std::array<int, 3> triangle{};
+  for (int& vertex : triangle) {
+    const Eigen::Vector3d p(little_endian<float>(corner), little_endian<float>(corner + 4),
+                            little_endian<float>(corner + 8));
+    if (!p.allFinite()) {
+      throw MeshFileError(file.string() + ": facet " + std::to_string(soup.mesh.size()) +
+                          ": found a coordinate that is not finite, expected finite numbers");
     }
-    soup.mesh.triangles.push_back(triangle);
+    vertex = soup.vertex(p);
+    corner += 12;
   }
+  soup.mesh.add(triangle, 0);
+}
+
+/// What follows the facets that were counted: facets that were not are refused, anything else is noted.
+void judge_rest(const std::filesystem::path& file, std::string_view rest, std::size_t facets, MeshNotes& notes) {
+  const auto found = file.string() + ": " + std::to_string(rest.size()) + " bytes behind the last facet";
+  if (rest.find_first_not_of(std::string_view("\0\x1a\r\n\t ", 6)) == std::string_view::npos) {
+    return;
+  }
+  if (rest.size() % binary_facet == 0) {
+    throw MeshFileError(found + ", as long as " + std::to_string(rest.size() / binary_facet) +
+                        " facets, expected no more than the " + std::to_string(facets) + " that the header counts");
+  }
+  notes.push_back(found + " skipped");
+}
+
+/// Several files one behind the other are several solids.
+PolygonMesh parse_binary(const std::filesystem::path& file, std::string_view content, MeshNotes& notes) {
+  Soup soup;
+  for (auto facets = counted_facets(content); facets.value_or(0) > 0; facets = counted_facets(content)) {
+    for (std::size_t f = 0; f < *facets; ++f) {
+      read_facet(file, content.data() + binary_header + f * binary_facet + 12, soup);
+    }
+    content.remove_prefix(binary_header + *facets * binary_facet);
+  }
+  judge_rest(file, content, soup.mesh.size(), notes);
   return std::move(soup.mesh);
 }
 
-TriangleMesh parse_ascii(const std::filesystem::path& file, std::string content) {
+/// Takes the word, whole or in two ("endfacet", "end facet").
+void take_end(MeshText& text, std::string_view what) {
+  if (same_word(text.peek(), "end")) {
+    text.word("end");
+    text.word(what);
+  } else {
+    text.word("end" + std::string(what));
+  }
+}
+
+/// "solid" and a name, up to the end of the line or a facet on it.
+void take_solid(MeshText& text) {
+  text.word("solid");
+  while (text.more_on_line() && !same_word(text.peek(), "facet")) {
+    static_cast<void>(text.token("a name"));
+  }
+}
+
+/// "facet normal x y z"; the normal is not looked at.
+void take_facet(MeshText& text) {
+  text.word("facet");
+  for (int i = 0; i < 4 && !same_word(text.peek(), "outer"); ++i) {
+    static_cast<void>(text.token("\"normal\" and three numbers"));
+  }
+}
+
+void read_ascii_facet(MeshText& text, Soup& soup) {
+  take_facet(text);
+  text.word("outer");
+  text.word("loop");
+  std::vector<int> corners;
+  while (corners.size() < 3 || same_word(text.peek(), "vertex")) {
+    text.word("vertex");
+    corners.push_back(soup.vertex(text.point()));
+  }
+  soup.mesh.add(corners, text.line_number());
+  take_end(text, "loop");
+  take_end(text, "facet");
+}
+
+bool begins_end(std::string_view word) { return same_word(word, "endsolid") || same_word(word, "end"); }
+
+bool holds_facet(std::string_view bytes) {
+  constexpr std::string_view word = "facet";
+  for (std::size_t at = 0; at + word.size() <= bytes.size(); ++at) {
+    if (same_word(bytes.substr(at, word.size()), word)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Solids up to the end of the file; behind the last one only what holds no facet.
+PolygonMesh parse_ascii(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
   MeshText text(file, std::move(content), '\0');
   Soup soup;
-  text.word("solid");
-  text.skip_line();
-  while (text.peek() == "facet") {
-    text.word("facet");
-    text.skip_line();
-    text.word("outer");
-    text.word("loop");
-    std::array<int, 3> triangle{};
-    for (int& vertex : triangle) {
-      text.word("vertex");
-      vertex = soup.vertex(text.point());
+  do {
+    take_solid(text);
+    while (!begins_end(text.peek())) {
+      if (same_word(text.peek(), "color")) {
+        text.skip_line();
+      } else {
+        read_ascii_facet(text, soup);
+      }
     }
-    soup.mesh.triangles.push_back(triangle);
-    text.word("endloop");
-    text.word("endfacet");
+    take_end(text, "solid");
+    text.skip_line();
+  } while (same_word(text.peek(), "solid"));
+  if (!text.at_end() && holds_facet(text.rest())) {
+    text.word("solid");
   }
-  text.word("endsolid");
+  text.note_rest(notes, "solid");
   return std::move(soup.mesh);
 }
 
 }  // namespace
 
-TriangleMesh parse_stl(const std::filesystem::path& file, std::string content) {
-  if (is_binary(content)) {
-    return parse_binary(file, content);
+PolygonMesh parse_stl(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
+  if (counted_facets(content).value_or(0) > 0) {
+    return parse_binary(file, content, notes);
   }
-  if (content.find_first_not_of(" \t\r\n") != content.find("solid")) {
+  MeshText head(file, content.substr(0, 256), '\0');
+  if (!content.empty() && !same_word(head.peek(), "solid")) {
     throw MeshFileError(file.string() + ": found " + std::to_string(content.size()) +
                         " bytes that are neither, expected ascii STL beginning with \"solid\" or binary STL whose "
                         "facet count fits its length");
   }
-  return parse_ascii(file, std::move(content));
+  return parse_ascii(file, std::move(content), notes);
 }
 
 std::string format_stl(const TriangleMesh& mesh) {

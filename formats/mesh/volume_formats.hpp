@@ -7,11 +7,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/mesh/mesh_text.hpp"
+#include "formats/mesh/number_array.hpp"
 #include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/mesh/vtk_cells.hpp"
 
 namespace greenloop {
 
@@ -23,10 +26,14 @@ class VolumeBuilder {
   void reserve_nodes(std::size_t count);
   /// Adds a node; a number that is taken already is refused at the token read last.
   void add_node(const MeshText& text, std::int64_t number, const Eigen::Vector3d& position);
+  /// Adds nodes numbered from the count so far on.
+  void add_nodes(const std::vector<Eigen::Vector3d>& positions);
   /// Reads a node number and the node's position.
   void read_node(MeshText& text);
   /// Reads four node numbers.
   void read_tetrahedron(MeshText& text);
+  /// Index of a node in order of appearance, by its number.
+  [[nodiscard]] std::optional<int> find_node(std::int64_t number) const { return numbers_.find(number); }
   /// Adds a tetrahedron of four node indices in order of appearance, which stands on a line of the file.
   void add_tetrahedron(const std::array<int, 4>& nodes, std::size_t line);
 
@@ -49,12 +56,19 @@ class VolumeBuilder {
 /// Any whole number, as node and element numbers may be.
 [[nodiscard]] std::int64_t read_number(MeshText& text, std::string_view expected);
 
-[[nodiscard]] TetrahedralMesh parse_gmsh(const std::filesystem::path& file, std::string content);
-[[nodiscard]] TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content);
-[[nodiscard]] TetrahedralMesh parse_vtk(const std::filesystem::path& file, std::string content);
-[[nodiscard]] TetrahedralMesh parse_vtu(const std::filesystem::path& file, std::string content);
-[[nodiscard]] TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content);
-[[nodiscard]] TetrahedralMesh parse_vega(const std::filesystem::path& file, std::string content);
+/// Adds a cell of a VTK grid if it is a linear tetrahedron; throws for other volumes, naming the place in `numbers`.
+void add_vtk_cell(const NumberArray& numbers, const VtkCells& cells, std::size_t cell, std::int64_t type,
+                  VolumeBuilder& builder);
+
+[[nodiscard]] TetrahedralMesh parse_gmsh(const std::filesystem::path& file, std::string content, MeshNotes& notes);
+[[nodiscard]] TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content, MeshNotes& notes);
+[[nodiscard]] TetrahedralMesh parse_vtk(const std::filesystem::path& file, std::string content, MeshNotes& notes);
+[[nodiscard]] TetrahedralMesh parse_vtu(const std::filesystem::path& file, std::string content, MeshNotes& notes);
+[[nodiscard]] TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content, MeshNotes& notes);
+[[nodiscard]] TetrahedralMesh parse_vega(const std::filesystem::path& file, std::string content, MeshNotes& notes);
+
+/// The other file of a TetGen mesh: .ele beside .node and back, in the case of the letters of this one's extension.
+[[nodiscard]] std::filesystem::path tetgen_sibling(const std::filesystem::path& file);
 
 [[nodiscard]] std::string format_gmsh(const TetrahedralMesh& mesh);
 [[nodiscard]] std::string format_medit(const TetrahedralMesh& mesh);

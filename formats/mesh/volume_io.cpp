@@ -46,6 +46,14 @@ void VolumeBuilder::add_node(const MeshText& text, std::int64_t number, const Ei
   mesh_.vertices.push_back(position);
 }
 
+void VolumeBuilder::add_nodes(const std::vector<Eigen::Vector3d>& positions) {
+  reserve_nodes(node_count() + positions.size());
+  for (const auto& position : positions) {
+    static_cast<void>(numbers_.add(static_cast<std::int64_t>(node_count())));
+    mesh_.vertices.push_back(position);
+  }
+}
+
 void VolumeBuilder::read_node(MeshText& text) {
   const auto number = read_number(text, "a node number");
   add_node(text, number, text.point());
@@ -74,8 +82,11 @@ std::string VolumeBuilder::place(std::size_t tetrahedron) const {
   for (const int node : mesh_.tetrahedra[tetrahedron]) {
     centre += mesh_.vertices[node] / 4;
   }
-  std::string text = file_.string() + ":" + std::to_string(lines_[tetrahedron]) + ": found tetrahedron " +
-                     std::to_string(tetrahedron) + " (counted from 0, centre ";
+  std::string text = file_.string();
+  if (lines_[tetrahedron] > 0) {
+    text.append(":").append(std::to_string(lines_[tetrahedron]));
+  }
+  text.append(": found tetrahedron ").append(std::to_string(tetrahedron)).append(" (counted from 0, centre ");
   append_point(text, centre);
   return text + ")";
 }
@@ -136,7 +147,7 @@ TetrahedralMesh VolumeBuilder::finish() {
   return std::move(mesh_);
 }
 
-TetrahedralMesh read_volume(const std::filesystem::path& file) {
+TetrahedralMesh read_volume(const std::filesystem::path& file, MeshNotes& notes) {
   const auto extension = lower_extension(file);
   auto* const parse = extension == ".msh"                           ? parse_gmsh
                       : extension == ".mesh"                        ? parse_medit
@@ -148,7 +159,20 @@ TetrahedralMesh read_volume(const std::filesystem::path& file) {
   if (parse == nullptr) {
     refuse_extension(file, "a file of tetrahedra: .msh, .mesh, .vtk, .vtu, .node, .ele or .veg");
   }
-  return parse(file, read_file(file));
+  return parse(file, read_file(file), notes);
+}
+
+TetrahedralMesh read_volume(const std::filesystem::path& file) {
+  MeshNotes unheard;
+  return read_volume(file, unheard);
+}
+
+std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& file) {
+  const auto extension = lower_extension(file);
+  if (extension == ".node" || extension == ".ele") {
+    return {file, tetgen_sibling(file)};
+  }
+  return {file};
 }
 
 void write_volume(const std::filesystem::path& file, const TetrahedralMesh& mesh) {

@@ -11,7 +11,7 @@ namespace {
 
 bool is_other_volume(std::string_view keyword) {
   constexpr std::array<std::string_view, 5> keywords{"Hexahedra", "Prisms", "Pentahedra", "Pyramids", "TetrahedraP2"};
-  return std::find(keywords.begin(), keywords.end(), keyword) != keywords.end();
+  return std::any_of(keywords.begin(), keywords.end(), [&](auto known) { return same_word(known, keyword); });
 }
 
 void read_vertices(MeshText& text, VolumeBuilder& builder) {
@@ -39,21 +39,21 @@ void skip_numbers(MeshText& text) {
 
 }  // namespace
 
-TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content) {
+TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
   MeshText text(file, std::move(content), '#');
   VolumeBuilder builder(file);
   text.word("MeshVersionFormatted");
   skip_numbers(text);
   while (!text.at_end()) {
     const auto keyword = text.token("a keyword");
-    if (keyword == "End") {
+    if (same_word(keyword, "End")) {
       break;
     }
-    if (keyword == "Dimension") {
+    if (same_word(keyword, "Dimension")) {
       static_cast<void>(text.integer("dimension 3", 3, 3));
-    } else if (keyword == "Vertices") {
+    } else if (same_word(keyword, "Vertices")) {
       read_vertices(text, builder);
-    } else if (keyword == "Tetrahedra") {
+    } else if (same_word(keyword, "Tetrahedra")) {
       read_tetrahedra(text, builder);
     } else if (is_other_volume(keyword) && text.peek() != "0") {
       text.fail(keyword, "linear tetrahedra only");
@@ -61,6 +61,7 @@ TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string conte
       skip_numbers(text);
     }
   }
+  text.note_rest(notes, "section");
   return builder.finish();
 }
 

@@ -34,36 +34,45 @@ void read_elements(MeshText& text, VolumeBuilder& builder) {
 
 }  // namespace
 
-TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content) {
-  const auto node_file = std::filesystem::path(file).replace_extension(".node");
-  const auto element_file = std::filesystem::path(file).replace_extension(".ele");
-  const bool has_nodes = lower_extension(file) == ".node";
-  auto other_content = read_file(has_nodes ? element_file : node_file);
-  if (!has_nodes) {
+std::filesystem::path tetgen_sibling(const std::filesystem::path& file) {
+  const auto extension = file.extension().string();
+  const bool upper = extension.size() > 1 && extension[1] >= 'A' && extension[1] <= 'Z';
+  const bool nodes = lower_extension(file) == ".node";
+  return std::filesystem::path(file).replace_extension(nodes ? (upper ? ".ELE" : ".ele") : (upper ? ".NODE" : ".node"));
+}
+
+TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
+  auto node_file = file;
+  auto element_file = tetgen_sibling(file);
+  auto other_content = read_file(element_file);
+  if (lower_extension(file) == ".ele") {
+    node_file.swap(element_file);
     content.swap(other_content);
   }
   MeshText nodes(node_file, std::move(content), '#');
   MeshText elements(element_file, std::move(other_content), '#');
   VolumeBuilder builder(element_file);
   read_nodes(nodes, builder);
+  nodes.note_rest(notes, "node");
   read_elements(elements, builder);
+  elements.note_rest(notes, "element");
   return builder.finish();
 }
 
-TetrahedralMesh parse_vega(const std::filesystem::path& file, std::string content) {
+TetrahedralMesh parse_vega(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
   MeshText text(file, std::move(content), '#');
   VolumeBuilder builder(file);
   while (!text.at_end()) {
     const auto keyword = text.token("a keyword");
-    if (keyword == "*VERTICES") {
+    if (same_word(keyword, "*VERTICES")) {
       read_nodes(text, builder);
-    } else if (keyword == "*ELEMENTS") {
+    } else if (same_word(keyword, "*ELEMENTS")) {
       const auto type = text.token("an element type");
-      if (type != "TET" && type != "TETS") {
+      if (!same_word(type, "TET") && !same_word(type, "TETS")) {
         text.fail(type, "\"TET\"");
       }
       read_elements(text, builder);
-    } else if (keyword == "*INCLUDE") {
+    } else if (same_word(keyword, "*INCLUDE")) {
       text.fail(keyword, "all lists in one file");
     } else {
       text.skip_line();

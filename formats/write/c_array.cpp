@@ -2,31 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <stdexcept>
 
+#include "formats/write/c_identifier.hpp"
 #include "formats/write/writer.hpp"
 
 namespace greenloop {
 namespace {
 
 constexpr std::size_t bytes_per_line = 24;
-
-bool is_letter(char character) { return std::isalpha(static_cast<unsigned char>(character)) != 0 || character == '_'; }
-bool is_digit(char character) { return std::isdigit(static_cast<unsigned char>(character)) != 0; }
-
-bool is_identifier(std::string_view name) {
-  return !name.empty() && is_letter(name.front()) &&
-         std::all_of(name.begin(), name.end(), [](char c) { return is_letter(c) || is_digit(c); });
-}
-
-std::string identifier_from(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !is_letter(c) && !is_digit(c); }, '_');
-  return name.empty() || is_digit(name.front()) ? "model_" + name : name;
-}
 
 std::string numbers(std::span<const std::byte> file) {
   std::string text;

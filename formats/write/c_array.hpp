@@ -19,7 +19,7 @@ struct CArray {
 [[nodiscard]] CArray c_array(std::span<const std::byte> file, std::string_view name, std::string_view header_file);
 
 /// Writes BASE.h and BASE.c beside each other for BASE = `path` without its extension; the array is called after the
-/// file's stem, with an underscore for every character that C does not allow. Throws std::runtime_error.
+/// file's stem (see identifier_from). Throws std::runtime_error.
 void write_c_array(const std::filesystem::path& path, std::span<const std::byte> file);
 
 }  // namespace greenloop

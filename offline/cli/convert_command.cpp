@@ -68,7 +68,7 @@ ModelFile read_stream(const ConvertArguments& arguments) {
 }
 
 ModelFile read_levels(const ConvertArguments& arguments) {
-  if (is_stream(arguments.input.extension().string())) return read_stream(arguments);
+  if (is_stream(lower_extension(arguments.input))) return read_stream(arguments);
   ModelFile model = open_model_file(arguments.input);
   check_levels(arguments, model.view.levels);
   if (!arguments.levels) return model;
@@ -85,7 +85,7 @@ ModelFile read_model(const ConvertArguments& arguments) {
 }
 
 void convert_model(const ConvertArguments& arguments, const std::string& to) {
-  if (arguments.input.extension() == to && !arguments.levels && !arguments.ready) {
+  if (lower_extension(arguments.input) == to && !arguments.levels && !arguments.ready) {
     refuse(arguments, "name the mesh levels to keep with --levels, or say --ready or --no-ready");
   }
   if (is_stream(to) && arguments.ready.value_or(false)) {
@@ -112,25 +112,35 @@ void refuse_model_options(const ConvertArguments& arguments) {
   if (arguments.ready) refuse(arguments, "--ready and --no-ready are for models; leave them out");
 }
 
+void print_notes(const MeshNotes& notes) {
+  for (const std::string& note : notes) fmt::print(std::cerr, "note: {}\n", note);
+}
+
 void convert_surface(const ConvertArguments& arguments, const std::string& to) {
   refuse_model_options(arguments);
   if (!is_surface(to)) refuse(arguments, "a surface becomes .off, .obj, .stl or .ply; `greenloop build` makes models");
-  write_surface(arguments.output, read_surface(arguments.input));
+  MeshNotes notes;
+  const TriangleMesh mesh = read_surface(arguments.input, notes);
+  print_notes(notes);
+  write_surface(arguments.output, mesh);
 }
 
 void convert_volume(const ConvertArguments& arguments, const std::string& to) {
   refuse_model_options(arguments);
   if (!is_volume(to)) refuse(arguments, "a volume becomes .msh, .mesh or .vtk");
-  write_volume(arguments.output, read_volume(arguments.input));
+  MeshNotes notes;
+  const TetrahedralMesh mesh = read_volume(arguments.input, notes);
+  print_notes(notes);
+  write_volume(arguments.output, mesh);
 }
 
 }  // namespace
 
 int run_convert(const ConvertArguments& arguments, std::ostream& out) {
-  const std::string from = arguments.input.extension().string(), to = arguments.output.extension().string();
+  const std::string from = lower_extension(arguments.input), to = lower_extension(arguments.output);
   if (is_model(from) || is_stream(from)) {
     convert_model(arguments, to);
-  } else if (is_surface(from)) {
+  } else if (is_surface(from) || (from == ".vtk" && is_surface(to))) {
     convert_surface(arguments, to);
   } else if (is_volume(from)) {
     convert_volume(arguments, to);

@@ -49,7 +49,7 @@ class StreamedBody {
         progress_(progress),
         scene_(read_scene(arguments.scene)),
         geometry_(make_body_geometry(scene_, progress)),
-        fingerprint_(column_fingerprint(scene_, read_text(scene_.mesh.path))),
+        fingerprint_(column_fingerprint(scene_, mesh_bytes(scene_))),
         wavelet_(geometry_.surface, geometry_.flags, geometry_.area, wavelet_of(arguments.wavelet)),
         strata_(stratified_sample(wavelet_, arguments.columns)),
         compression_(wavelet_, arguments.thresholds),

@@ -49,19 +49,28 @@ auto naming_the_file(const Scene& scene, const Work& work) {
 /// The skin in metres, checked and repaired before it is scaled: defects are reported in the file's own coordinates.
 PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& volume) {
   TriangleMesh surface;
+  MeshNotes notes;
   if (scene.mesh.tetrahedra) {
-    volume = read_volume(scene.mesh.path);
+    volume = read_volume(scene.mesh.path, notes);
     surface = naming_the_file(scene, [&] { return extract_boundary(*volume).surface; });
   } else {
-    surface = read_surface(scene.mesh.path);
+    surface = read_surface(scene.mesh.path, notes);
   }
   const double unit = scene.mesh.scale(bounding_box(volume ? volume->vertices : surface.vertices));
-  auto prepared = naming_the_file(scene, [&] { return prepare_surface(surface); });
+  const Weld weld = scene.mesh.weld ? Weld(*scene.mesh.weld / unit) : std::nullopt;
+  auto prepared = naming_the_file(scene, [&] { return prepare_surface(surface, weld); });
+  prepared.repairs.insert(prepared.repairs.begin(), notes.begin(), notes.end());
   scale(prepared.mesh.vertices, unit);
   if (volume) {
     scale(volume->vertices, unit);
   }
   return prepared;
+}
+
+/// "2 repairs: ...; ..."
+std::string repairs_text(const std::vector<std::string>& repairs) {
+  return fmt::format("{} repair{}{}{}", repairs.size(), repairs.size() == 1 ? "" : "s", repairs.empty() ? "" : ": ",
+                     fmt::join(repairs, "; "));
 }
 
 std::vector<std::uint32_t> node_flags(const NodeSets& sets) {
@@ -130,9 +139,9 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   const auto prepared = read_input(scene, tetrahedra);
   const Eigen::AlignedBox3d box = bounding_box(prepared.mesh.vertices);
   const Eigen::Vector3d sides = box.sizes();
-  progress.end(fmt::format("{} vertices, {} triangles, {} repairs; {:.3g} x {:.3g} x {:.3g} m",
-                           prepared.report.vertex_count, prepared.report.triangle_count, prepared.repairs.size(),
-                           sides.x(), sides.y(), sides.z()));
+  progress.end(fmt::format("{} vertices, {} triangles, {:.3g} x {:.3g} x {:.3g} m, {}", prepared.report.vertex_count,
+                           prepared.report.triangle_count, sides.x(), sides.y(), sides.z(),
+                           repairs_text(prepared.repairs)));
   naming_the_file(scene, [&] { require_near_origin(box); });
 
   progress.begin("remesh");

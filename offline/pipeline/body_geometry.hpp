@@ -29,7 +29,7 @@ struct Volume {
 struct GeometryReport {
   std::string file;                  ///< of the mesh, as the scene names it
   SurfaceReport surface;             ///< what was remeshed
-  std::vector<std::string> repairs;  ///< of the mesh, one sentence each
+  std::vector<std::string> repairs;  ///< of the mesh, and what its reader passed over, one sentence each
   RemeshQuality remesh;
 };
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "formats/layout.hpp"
+#include "formats/mesh/volume_io.hpp"
 #include "offline/pipeline/stage_records.hpp"
 #include "offline/scene/fingerprint.hpp"
 
@@ -66,6 +67,15 @@ std::string read_text(const std::filesystem::path& path) {
     throw std::runtime_error(fmt::format("{}: cannot be opened; does it exist?", path.string()));
   }
   return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::string mesh_bytes(const Scene& scene) {
+  std::string bytes;
+  for (const auto& file : files_of_mesh(scene.mesh.path)) {
+    if (!bytes.empty()) bytes += '\0';
+    bytes += read_file(file);
+  }
+  return bytes;
 }
 
 std::string column_fingerprint(const Scene& scene, const std::string& mesh) {

@@ -18,7 +18,11 @@ inline constexpr std::string_view pipeline_version = "greenloop 0.2.0";
 /// The whole file. Throws std::runtime_error if it cannot be opened.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// Of what the exact columns of a scene over the text of its mesh follow from: see body_text.
+/// All files that the scene's mesh consists of, one behind the other with a zero between. Throws MeshFileError if one
+/// of them cannot be read.
+[[nodiscard]] std::string mesh_bytes(const Scene& scene);
+
+/// Of what the exact columns of a scene over the bytes of its mesh follow from: see body_text.
 [[nodiscard]] std::string column_fingerprint(const Scene& scene, const std::string& mesh);
 
 /// Domain nodes, each of which is a row and a column.

@@ -2,10 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "formats/mesh/mesh_text.hpp"
 #include "offline/scene/fingerprint.hpp"
 
 namespace greenloop::offline {
@@ -53,6 +55,28 @@ TEST_CASE("every part of the body's text is in the fingerprint of its columns") 
     CAPTURE(more);
     CHECK(column_fingerprint(parse_scene(smallest + more, "s.toml"), "mesh") != of_smallest);
   }
+}
+
+TEST_CASE("all files of a mesh are in its bytes") {
+  const auto folder = std::filesystem::temp_directory_path() / "greenloop_body_problem_test";
+  std::filesystem::create_directories(folder);
+  const auto bytes_with = [&](const char* nodes, const char* elements, const char* named) {
+    write_file(folder / "m.node", nodes);
+    write_file(folder / "m.ele", elements);
+    std::string text = smallest;
+    text.replace(text.find("[surface]"), 9, "[volume]");
+    text.replace(text.find("bear.off"), 8, named);
+    return mesh_bytes(parse_scene(text, folder / "s.toml"));
+  };
+  for (const char* named : {"m.node", "m.ele"}) {
+    const std::string before = bytes_with("1 2", "3 4", named);
+    CHECK(bytes_with("1 2", "3 4", named) == before);
+    CHECK(bytes_with("1 3", "3 4", named) != before);
+    CHECK(bytes_with("1 2", "3 5", named) != before);
+    CHECK(bytes_with("1 23", " 4", named) != before);
+  }
+  std::filesystem::create_directories(folder / "bear.off");
+  CHECK_THROWS_AS(mesh_bytes(parse_scene(smallest, folder / "s.toml")), MeshFileError);
 }
 
 TEST_CASE("stores made before scenes had goals for fields keep their fingerprint") {

@@ -171,7 +171,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   if (request.store.empty()) {
     request.store = scene.store.value_or(std::filesystem::path(request.model).replace_extension(".h5"));
   }
-  const std::string mesh = read_text(scene.mesh.path);
+  const std::string mesh = mesh_bytes(scene);
   const std::string wanted = request_fingerprint(scene, mesh);
   if (auto record = up_to_date_record(request, wanted); !record.empty()) {
     record["up_to_date"] = true;

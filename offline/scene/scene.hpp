@@ -35,6 +35,7 @@ struct MeshSource {
   std::filesystem::path path;    ///< seen from the working directory
   std::optional<double> unit;    ///< length of one mesh unit [m]
   std::optional<double> size;    ///< longest side of the bounding box after scaling [m]
+  std::optional<double> weld;    ///< vertices of a surface within this become one [m]; none: as far as it takes
   bool keep_vertex_map = false;  ///< tell in the model where the surface's vertices lie on it
 
   /// Metres per unit of a mesh with this bounding box. Throws SceneError if the box has no extent to scale.

@@ -15,6 +15,16 @@ std::filesystem::path beside(const std::filesystem::path& scene_file, const std:
   return (scene_file.parent_path() / name).lexically_normal();
 }
 
+/// "auto", a length, or 0.
+void read_weld(const Table& table, MeshSource& mesh) {
+  const auto* node = table.find("weld");
+  if (node == nullptr || node->value<std::string>() == "auto") {
+    return;
+  }
+  const bool zero = node->is_number() && *node->value<double>() == 0;
+  mesh.weld = zero ? std::optional<double>(0) : table.quantity("weld", Dimension::length);
+}
+
 void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource& mesh) {
   if (scene.has("surface") == scene.has("volume")) {
     scene.problems().add({}, scene.has("volume") ? "volume" : "surface",
@@ -23,7 +33,7 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
                              : "missing; write for example [surface] file = \"bear.off\", unit = \"cm\"");
   }
   for (const std::string_view name : {"surface", "volume"}) {
-    const auto table = section(scene, name, {"file", "unit", "size", "keep_vertex_map"});
+    const auto table = section(scene, name, {"file", "unit", "size", "weld", "keep_vertex_map"});
     if (!table) {
       continue;
     }
@@ -33,6 +43,10 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
     mesh.path = beside(file, mesh.name);
     mesh.unit = table->quantity("unit", Dimension::length);
     mesh.size = table->quantity("size", Dimension::length);
+    read_weld(*table, mesh);
+    if (mesh.tetrahedra && table->has("weld")) {
+      table->refuse("weld", "does not go with [volume], whose tetrahedra share their vertices; remove it");
+    }
     set_if(mesh.keep_vertex_map, table->boolean("keep_vertex_map"));
     if (mesh.tetrahedra && table->has("keep_vertex_map")) {
       table->refuse("keep_vertex_map", "does not go with [volume], whose surface is not the author's; remove it");

@@ -232,6 +232,12 @@ TEST_CASE("refused: a vertex map that is no flag, and one of a volume") {
                 {"volume.keep_vertex_map: does not go with [volume]"});
 }
 
+TEST_CASE("refused: a weld that is no length, and one of a volume") {
+  check_refused(with("unit =", "weld = 0.1\nunit ="), {":3:8: surface.weld: 0.1 has no unit"});
+  check_refused(with("unit =", "weld = \"automatic\"\nunit ="), {":3:8: surface.weld: "});
+  check_refused(with("[surface]", "[volume]\nweld = \"1 mm\""), {"volume.weld: does not go with [volume]"});
+}
+
 TEST_CASE("refused: levels out of range") {
   check_refused(smallest + "[remesh]\nlevels = 8\n", {"remesh.levels: 8 is out of range; it has to be from 0 to 7"});
   check_refused(smallest + "[remesh]\nlevels = -1\n", {"remesh.levels: -1 is out of range"});

@@ -163,6 +163,21 @@ TEST_CASE("a scene that differs has another canonical text") {
   CHECK(canonical_text(parse_scene(smallest, "s.toml")) != canonical_text(parse_scene(with("0.1", "0.2"), "s.toml")));
 }
 
+TEST_CASE("welding: as far as it takes, a length, or not by distance") {
+  const Scene plain = parse_scene(smallest, "s.toml");
+  CHECK(!plain.mesh.weld);
+  const Scene automatic = parse_scene(with("unit =", "weld = \"auto\"\nunit ="), "s.toml");
+  CHECK(!automatic.mesh.weld);
+  CHECK(body_text(automatic) == body_text(plain));
+  const Scene length = parse_scene(with("unit =", "weld = \"0.1 mm\"\nunit ="), "s.toml");
+  CHECK(length.mesh.weld == 0.0001);
+  CHECK(parse_scene(canonical_text(length), "s.toml").mesh.weld == 0.0001);
+  CHECK(body_text(length) != body_text(plain));
+  const Scene off = parse_scene(with("unit =", "weld = 0\nunit ="), "s.toml");
+  CHECK(off.mesh.weld == 0);
+  CHECK(parse_scene(canonical_text(off), "s.toml").mesh.weld == 0);
+}
+
 TEST_CASE("a vertex map is kept if the scene says so, and only then part of the canonical text") {
   CHECK(!parse_scene(smallest, "s.toml").mesh.keep_vertex_map);
   const Scene asks = parse_scene(with("unit =", "keep_vertex_map = true\nunit ="), "s.toml");

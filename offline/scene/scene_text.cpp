@@ -64,8 +64,10 @@ std::string regions_text(const std::string& role, const std::vector<Region>& reg
 }
 
 std::string mesh_text(const MeshSource& mesh) {
+  const std::string weld =
+      !mesh.weld ? "" : "weld = " + (*mesh.weld > 0 ? quantity(*mesh.weld, "m") : std::string("0")) + "\n";
   return std::string(mesh.tetrahedra ? "[volume]" : "[surface]") + "\nfile = " + string(mesh.name) + "\n" +
-         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n";
+         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n" + weld;
 }
 
 std::string remesh_text(const Scene& scene) {

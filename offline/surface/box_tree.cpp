@@ -20,7 +20,7 @@ struct Node {
 
 class BoxTree {
  public:
-  BoxTree(const std::vector<Eigen::AlignedBox3d>& boxes, const std::function<void(int, int)>& visit)
+  BoxTree(const std::vector<Eigen::AlignedBox3d>& boxes, const std::function<bool(int, int)>& visit)
       : boxes_(boxes), visit_(visit), items_(boxes.size()) {
     std::iota(items_.begin(), items_.end(), 0);
     if (!items_.empty()) {
@@ -30,7 +30,7 @@ class BoxTree {
 
   void visit_pairs() const {
     if (!nodes_.empty()) {
-      within(0);
+      static_cast<void>(within(0));
     }
   }
 
@@ -59,57 +59,58 @@ class BoxTree {
     return index;
   }
 
-  void within(int index) const {
+  // each of these returns false once the visitor did
+
+  [[nodiscard]] bool within(int index) const {
     const auto& node = nodes_[index];
     if (node.left >= 0) {
-      within(node.left);
-      within(node.right);
-      between(node.left, node.right);
-      return;
+      return within(node.left) && within(node.right) && between(node.left, node.right);
     }
     for (int i = node.begin; i < node.end; ++i) {
       for (int j = i + 1; j < node.end; ++j) {
-        visit_if_overlapping(items_[i], items_[j]);
-      }
-    }
-  }
-
-  void between(int a, int b) const {
-    const auto& s = nodes_[a];
-    const auto& t = nodes_[b];
-    if (!s.box.intersects(t.box)) {
-      return;
-    }
-    if (s.left >= 0 && (t.left < 0 || s.end - s.begin >= t.end - t.begin)) {
-      between(s.left, b);
-      between(s.right, b);
-    } else if (t.left >= 0) {
-      between(a, t.left);
-      between(a, t.right);
-    } else {
-      for (int i = s.begin; i < s.end; ++i) {
-        for (int j = t.begin; j < t.end; ++j) {
-          visit_if_overlapping(items_[i], items_[j]);
+        if (!visit_if_overlapping(items_[i], items_[j])) {
+          return false;
         }
       }
     }
+    return true;
   }
 
-  void visit_if_overlapping(int i, int j) const {
-    if (boxes_[i].intersects(boxes_[j])) {
-      visit_(i, j);
+  [[nodiscard]] bool between(int a, int b) const {
+    const auto& s = nodes_[a];
+    const auto& t = nodes_[b];
+    if (!s.box.intersects(t.box)) {
+      return true;
     }
+    if (s.left >= 0 && (t.left < 0 || s.end - s.begin >= t.end - t.begin)) {
+      return between(s.left, b) && between(s.right, b);
+    }
+    if (t.left >= 0) {
+      return between(a, t.left) && between(a, t.right);
+    }
+    for (int i = s.begin; i < s.end; ++i) {
+      for (int j = t.begin; j < t.end; ++j) {
+        if (!visit_if_overlapping(items_[i], items_[j])) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool visit_if_overlapping(int i, int j) const {
+    return !boxes_[i].intersects(boxes_[j]) || visit_(i, j);
   }
 
   const std::vector<Eigen::AlignedBox3d>& boxes_;
-  const std::function<void(int, int)>& visit_;
+  const std::function<bool(int, int)>& visit_;
   std::vector<int> items_;
   std::vector<Node> nodes_;
 };
 
 }  // namespace
 
-void for_each_overlap(const std::vector<Eigen::AlignedBox3d>& boxes, const std::function<void(int, int)>& visit) {
+void for_each_overlap(const std::vector<Eigen::AlignedBox3d>& boxes, const std::function<bool(int, int)>& visit) {
   BoxTree(boxes, visit).visit_pairs();
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "offline/surface/surface_report.hpp"
+#include "offline/surface/triangle_intersection.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -112,7 +113,10 @@ std::vector<std::string> describe_defects(const TriangleMesh& mesh, const Surfac
   add(defects, report.zero_area_faces, "face of zero area", "faces of zero area",
       "Collapse their short edges or flip their long ones.", [&](int f) { return face_text(mesh, f); });
   add(defects, report.duplicate_faces, "face that occurs twice", "faces that occur twice", "Delete one of each.", pair);
-  add(defects, report.intersecting_faces, "pair of faces that intersect", "pairs of faces that intersect",
+  const std::string pairs = report.intersecting_faces.size() < most_pairs
+                                ? "pairs of faces that intersect"
+                                : "pairs of faces that intersect, and perhaps more";
+  add(defects, report.intersecting_faces, "pair of faces that intersect", pairs,
       "Move them apart, or rebuild the skin by a boolean union or a voxel remesh.", pair);
   if (defects.empty() && report.volume == 0) {
     defects.emplace_back("the surface encloses no volume");

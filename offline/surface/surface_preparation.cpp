@@ -1,7 +1,9 @@
 #include "offline/surface/surface_preparation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdio>
 #include <optional>
 #include <set>
 #include <utility>
@@ -25,6 +27,12 @@ std::string joined(const std::vector<std::string>& defects, const std::vector<st
 
 std::string counted(std::size_t count, const std::string& one, const std::string& many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
 }
 
 /// A way to repair the connectivity, and what it did.
@@ -65,7 +73,7 @@ void merge_coincident_vertices(Candidate& candidate) {
       }
     }
   }
-  candidate.merged_count = merged.size();
+  candidate.merged_count += merged.size();
   if (!merged.empty()) {
     candidate.repairs.push_back(counted(merged.size(), "vertex", "vertices") +
                                 " at exactly the same position as another merged into it");
@@ -89,11 +97,72 @@ void drop_duplicate_faces(Candidate& candidate) {
   }
 }
 
+/// Merges the vertices that are `considered` within a distance of each other; returns how many faces that collapsed,
+/// which are dropped.
+std::size_t weld_vertices(Candidate& candidate, double distance, const std::vector<bool>& considered) {
+  const auto target = first_vertex_within(candidate.mesh.vertices, distance, considered);
+  std::set<int> merged;
+  std::vector<std::array<int, 3>> kept;
+  for (auto triangle : candidate.mesh.triangles) {
+    for (int& vertex : triangle) {
+      if (target[vertex] != vertex) {
+        merged.insert(vertex);
+        vertex = target[vertex];
+      }
+    }
+    const auto& [a, b, c] = triangle;
+    if (a != b && b != c && c != a) {
+      kept.push_back(triangle);
+    }
+  }
+  const auto collapsed = candidate.mesh.triangles.size() - kept.size();
+  candidate.mesh.triangles = std::move(kept);
+  candidate.merged_count += merged.size();
+  if (!merged.empty()) {
+    candidate.repairs.push_back(counted(merged.size(), "vertex", "vertices") + " within " + shortest(distance) +
+                                " of another welded to it");
+  }
+  if (collapsed > 0) {
+    candidate.repairs.push_back(counted(collapsed, "face", "faces") + " without an area left dropped");
+  }
+  return collapsed;
+}
+
+double diagonal(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const auto& vertex : mesh.vertices) {
+    box.extend(vertex);
+  }
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+/// The shortest weld of the boundary that closes the surface and collapses nothing but what rounding made.
+std::optional<Candidate> weld_boundary(const Candidate& start) {
+  constexpr double rounding = 1e-12;
+  constexpr std::array distances{rounding, 1e-9, 1e-7, 1e-6, 1e-5};  // of the diagonal
+  const double size = diagonal(start.mesh);
+  const auto boundary = boundary_vertices(start.mesh);
+  if (!(size > 0) || std::none_of(boundary.begin(), boundary.end(), [](bool on) { return on; })) {
+    return std::nullopt;
+  }
+  for (const double distance : distances) {
+    Candidate candidate = start;
+    if (weld_vertices(candidate, distance * size, boundary) > 0 && distance > rounding) {
+      return std::nullopt;
+    }
+    drop_duplicate_faces(candidate);
+    if (is_closed_manifold(candidate.mesh)) {
+      return candidate;
+    }
+  }
+  return std::nullopt;
+}
+
 /// The mildest repair of the connectivity that closes the surface; the mesh as it is if none does.
-Candidate repair_connectivity(const TriangleMesh& mesh) {
+Candidate repair_connectivity(const Candidate& start, bool weld) {
   for (const bool merge : {false, true}) {
     for (const bool drop : {false, true}) {
-      Candidate candidate{mesh, {}, 0};
+      Candidate candidate = start;
       if (merge) {
         merge_coincident_vertices(candidate);
       }
@@ -105,7 +174,7 @@ Candidate repair_connectivity(const TriangleMesh& mesh) {
       }
     }
   }
-  return {mesh, {}, 0};
+  return (weld ? weld_boundary(start) : std::nullopt).value_or(start);
 }
 
 void drop_unreferenced_vertices(Candidate& candidate) {
@@ -208,8 +277,12 @@ SurfaceError::SurfaceError(std::vector<std::string> defects, const std::vector<s
                            SurfaceReport report)
     : std::runtime_error(joined(defects, repairs)), defects_(std::move(defects)), report_(std::move(report)) {}
 
-PreparedSurface prepare_surface(const TriangleMesh& mesh) {
-  auto candidate = repair_connectivity(mesh);
+PreparedSurface prepare_surface(const TriangleMesh& mesh, Weld weld) {
+  Candidate start{mesh, {}, 0};
+  if (weld.value_or(0) > 0) {
+    weld_vertices(start, *weld, std::vector<bool>(mesh.vertices.size(), true));
+  }
+  auto candidate = repair_connectivity(start, !weld);
   drop_unreferenced_vertices(candidate);
   orient_consistently(candidate);
   auto report = check_surface(candidate.mesh);

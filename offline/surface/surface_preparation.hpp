@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -29,10 +30,17 @@ struct PreparedSurface {
   SurfaceReport report;              ///< of `mesh`
 };
 
+/// Welding by distance: nothing for "as far as it takes", else vertices within this of another become one with it, in
+/// the mesh's unit; 0 welds none by distance.
+using Weld = std::optional<double>;
+
 /// Makes the surface usable where that cannot change its shape, and says what it did:
 /// vertices in no face are dropped; faces that occur twice are dropped and vertices at exactly the same position merged
-/// if that leaves a closed manifold surface; faces are turned to one consistent outward orientation.
-/// Everything else is an error. Throws SurfaceError naming each remaining defect. Work: that of check_surface.
-[[nodiscard]] PreparedSurface prepare_surface(const TriangleMesh& mesh);
+/// if that leaves a closed manifold surface; if it does not and `weld` is nothing, vertices on the boundary that are
+/// within 1e-12, 1e-9, 1e-7, 1e-6 or 1e-5 of the bounding box's diagonal are merged, the shortest of these that leaves
+/// a closed manifold surface and collapses no face (but by 1e-12, which is rounding); faces are turned to one
+/// consistent outward orientation. A `weld` above 0 is done first, to all vertices, and faces that it collapses are
+/// dropped. Everything else is an error. Throws SurfaceError naming each remaining defect. Work: that of check_surface.
+[[nodiscard]] PreparedSurface prepare_surface(const TriangleMesh& mesh, Weld weld = std::nullopt);
 
 }  // namespace greenloop::offline

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <initializer_list>
+#include <random>
 #include <string_view>
 
 #include "offline/surface/test_surfaces.hpp"
@@ -29,6 +30,7 @@ void check_refused(const TriangleMesh& mesh, std::initializer_list<std::string_v
   }
 }
 
+using Eigen::Vector3d;
 using Repairs = std::vector<std::string>;
 
 }  // namespace
@@ -90,6 +92,60 @@ TEST_CASE("a soup of faces is merged") {
   CHECK(prepared.repairs == Repairs{"28 vertices at exactly the same position as another merged into it"});
   CHECK(prepared.mesh.vertices.size() == 8);
   CHECK(prepared.report.volume == doctest::Approx(1));
+}
+
+TEST_CASE("a soup whose seams do not quite meet is welded, by the shortest distance that closes it, seed 5") {
+  std::mt19937_64 random(5);
+  for (const double noise : {1e-17, 1e-14, 1e-10, 1e-8, 4e-7, 1e-6, 4e-6}) {
+    CAPTURE(noise);
+    auto mesh = soup(cube());
+    for (auto& vertex : mesh.vertices) {
+      for (double& x : vertex) {
+        x += noise * (static_cast<double>(random() % 3) - 1);
+      }
+    }
+    const auto prepared = prepare_surface(mesh);
+    CHECK(prepared.mesh.vertices.size() == 8);
+    CHECK(prepared.mesh.triangles.size() == 12);
+    CHECK(prepared.report.volume == doctest::Approx(1));
+    REQUIRE(prepared.repairs.size() == 1);
+    CHECK(prepared.repairs[0].find("28 vertices within ") == 0);
+    CHECK_THROWS_AS(prepare_surface(mesh, 0), SurfaceError);
+    CHECK(prepare_surface(mesh, 1e-4).mesh.vertices.size() == 8);
+  }
+}
+
+TEST_CASE("no real face is collapsed by a weld that nobody asked for") {
+  auto needle = soup(cube());
+  needle.vertices[1] += Vector3d(3e-6, 0, 0);  // a seam that only a weld longer than the little face below would close
+  const Vector3d tip = needle.vertices[0];
+  const int first = static_cast<int>(needle.vertices.size());
+  for (const double x : {0.0, 1e-7, 2e-7}) needle.vertices.push_back(tip + Vector3d(x, x * x, x));
+  needle.triangles.push_back({first, first + 1, first + 2});
+  CHECK_THROWS_AS(prepare_surface(needle), SurfaceError);
+}
+
+TEST_CASE("a weld that was asked for drops and counts the faces that it collapses") {
+  auto mesh = cube();  // a corner cut off, 0.001 long
+  mesh.vertices.push_back({0.001, 0, 0});
+  mesh.vertices.push_back({0, 0.001, 0});
+  mesh.vertices.push_back({0, 0, 0.001});
+  mesh.triangles = {{9, 2, 3}, {9, 3, 8}, {8, 3, 1},  {4, 5, 7},  {4, 7, 6}, {8, 1, 5}, {8, 5, 10}, {10, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {10, 4, 6}, {10, 6, 9}, {9, 6, 2}, {1, 3, 7}, {1, 7, 5},  {8, 10, 9}};
+  CHECK(prepare_surface(mesh).mesh.triangles.size() == 16);
+  const auto welded = prepare_surface(mesh, 0.002);
+  CHECK(welded.mesh.triangles.size() == 12);
+  CHECK(welded.mesh.vertices.size() == 8);
+  REQUIRE(welded.repairs.size() >= 2);
+  CHECK(welded.repairs[0].find("vertices within 0.002 of another welded to it") != std::string::npos);
+  CHECK(welded.repairs[1] == "4 faces without an area left dropped");
+}
+
+TEST_CASE("sheets that lie close to each other are not welded to one") {
+  TriangleMesh stack;
+  for (int i = 0; i < 8; ++i)
+    stack = together(stack, {{{0, 0, 1e-6 * i}, {1, 0, 1e-6 * i}, {0, 1, 1e-6 * i}}, {{0, 1, 2}}});
+  check_refused(stack, {"24 boundary edges", "several pieces: 8"});
 }
 
 TEST_CASE("a face twice is dropped") {

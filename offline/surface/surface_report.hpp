@@ -30,7 +30,8 @@ struct SurfaceReport {
   std::vector<std::array<int, 2>> duplicate_faces;     ///< {face, earlier face with the same three vertices}
   std::vector<int> unreferenced_vertices;              ///< in no face
   std::vector<std::array<int, 2>> duplicate_vertices;  ///< {vertex, first vertex at exactly the same position}
-  std::vector<std::array<int, 2>> intersecting_faces;  ///< pairs that meet elsewhere than in common vertices or edges
+  std::vector<std::array<int, 2>> intersecting_faces;  ///< pairs that meet elsewhere than in common vertices or edges,
+                                                       ///< not more than most_pairs
 
   int euler_characteristic = 0;  ///< V - E + F with V the vertices in use
   double volume = 0;             ///< signed; positive if faces look outwards; 0 if not closed and oriented

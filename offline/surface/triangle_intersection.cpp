@@ -2,7 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 
 #include "offline/surface/box_tree.hpp"
 #include "offline/surface/coincident_vertices.hpp"
@@ -109,14 +112,50 @@ Pair common_first(std::array<int, 3> s, std::array<int, 3> t) {
   return {s, t, common};
 }
 
+/// Part of the sizes at hand by which rounding cannot move a projection.
+constexpr double margin = 1e-12;
+
+/// Certainly no common point: all of t lies beyond s along this axis, which is orthogonal to s or to one of its sides.
+bool beyond(const Triangle& t, const Eigen::Vector3d& from, const Eigen::Vector3d& axis) {
+  const double size = from.norm() + t[0].norm() + t[1].norm() + t[2].norm();
+  const double reach = margin * axis.norm() * size;
+  return axis.dot(t[0] - from) > reach && axis.dot(t[1] - from) > reach && axis.dot(t[2] - from) > reach;
+}
+
+/// Certainly no common point: a plane through s, or one across that through a side of s, parts them. Spares faces in
+/// one plane the exact tests.
+bool clearly_apart(const Triangle& s, const Triangle& t) {
+  const Eigen::Vector3d normal = (s[1] - s[0]).cross(s[2] - s[0]);
+  if (beyond(t, s[0], normal) || beyond(t, s[0], -normal)) {
+    return true;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (beyond(t, s[i], (s[(i + 1) % 3] - s[i]).cross(normal))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Certainly no common point but s[0] = t[0]: the other corners lie on different sides of a plane through it.
+bool part_at_vertex(const Triangle& s, const Triangle& t) {
+  const std::array<Eigen::Vector3d, 4> d{s[1] - s[0], s[2] - s[0], t[1] - s[0], t[2] - s[0]};
+  const Eigen::Vector3d axis = (d[0] + d[1]).normalized() - (d[2] + d[3]).normalized();
+  const auto side = [&](std::size_t i) {
+    const double along = axis.dot(d[i]);
+    return std::abs(along) > margin * (d[i].norm() + s[0].norm()) ? (along > 0 ? 1 : -1) : 0;
+  };
+  return side(0) == 1 && side(1) == 1 && side(2) == -1 && side(3) == -1;
+}
+
 bool faces_intersect(const std::vector<Eigen::Vector3d>& x, const Pair& pair) {
   const Triangle s{x[pair.s[0]], x[pair.s[1]], x[pair.s[2]]};
   const Triangle t{x[pair.t[0]], x[pair.t[1]], x[pair.t[2]]};
   switch (pair.common) {
     case 0:
-      return triangles_touch(s, t);
+      return !clearly_apart(s, t) && !clearly_apart(t, s) && triangles_touch(s, t);
     case 1:
-      return segment_touches(s[1], s[2], t) || segment_touches(t[1], t[2], s);
+      return !part_at_vertex(s, t) && (segment_touches(s[1], s[2], t) || segment_touches(t[1], t[2], s));
     case 2:
       return edge_neighbours_overlap(s, t);
     default:
@@ -152,10 +191,18 @@ std::vector<std::array<int, 2>> self_intersections(const TriangleMesh& mesh, con
     return std::array{representative[a], representative[b], representative[c]};
   };
   std::vector<std::array<int, 2>> pairs;
+  std::size_t looks = 0;
   for_each_overlap(boxes, [&](int f, int g) {
+    if (++looks > most_looks) {
+      throw std::runtime_error(
+          "more than " + std::to_string(most_looks) +
+          " pairs of faces lie close to each other: the faces are too long and thin to be checked; "
+          "remesh them to triangles of similar sides");
+    }
     if (!skip[f] && !skip[g] && faces_intersect(mesh.vertices, common_first(welded(f), welded(g)))) {
       pairs.push_back({std::min(f, g), std::max(f, g)});
     }
+    return pairs.size() < most_pairs;
   });
   std::sort(pairs.begin(), pairs.end());
   return pairs;

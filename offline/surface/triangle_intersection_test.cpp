@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <utility>
 
@@ -131,12 +132,49 @@ TEST_CASE("overlapping boxes are found once each, as by comparing all, seed 11")
     }
   }
   Pairs found;
-  for_each_overlap(boxes, [&](int i, int j) { found.push_back({std::min(i, j), std::max(i, j)}); });
+  for_each_overlap(boxes, [&](int i, int j) {
+    found.push_back({std::min(i, j), std::max(i, j)});
+    return true;
+  });
   std::sort(found.begin(), found.end());
   CHECK(found == expected);
   CHECK(expected.size() > 400);
 }
 
 TEST_CASE("no boxes, no pairs") {
-  for_each_overlap({}, [](int, int) { FAIL("visited"); });
+  for_each_overlap({}, [](int, int) {
+    FAIL("visited");
+    return true;
+  });
+}
+
+TEST_CASE("so many pairs are counted and no more, seed 12") {
+  std::mt19937_64 random(12);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  TriangleMesh mesh;
+  for (int i = 0; i < 2000; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const double x = unit(), y = unit();
+      mesh.vertices.emplace_back(x, y, unit());
+    }
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  CHECK(self_intersections(mesh, std::vector<bool>(2000, false)).size() == most_pairs);
+}
+
+TEST_CASE("long faces side by side in one plane do not intersect, however many") {
+  TriangleMesh strips, fan;
+  fan.vertices.emplace_back(0, 0, 0);
+  for (int i = 0; i < 2000; ++i) {
+    const double x = 1e-3 * i, width = 3e-4;
+    strips.vertices.insert(strips.vertices.end(), {{x, -x, 0}, {1 + x, 1 - x, 0}, {1 + x + width, 1 - x - width, 0}});
+    strips.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    const double angle = 0.75e-3 * i;
+    fan.vertices.emplace_back(std::cos(angle), std::sin(angle), 0);
+    if (i > 0) fan.triangles.push_back({0, i, i + 1});
+  }
+  CHECK(self_intersections(strips, std::vector<bool>(2000, false)).empty());
+  CHECK(self_intersections(fan, std::vector<bool>(1999, false)).empty());
+  fan.triangles.push_back({0, 500, 502});
+  CHECK(self_intersections(fan, std::vector<bool>(2000, false)).size() == 2);
 }
