@@ -22,7 +22,7 @@ class MeshFileError : public std::runtime_error {
 /// The bytes of a file. Throws MeshFileError if it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
-/// Replaces the file by these bytes. Throws MeshFileError if it cannot be written.
+/// As write_text_file.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// The extension in lower case with its dot, "" if none.
