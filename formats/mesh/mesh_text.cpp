@@ -45,7 +45,11 @@ std::string read_file(const std::filesystem::path& file) {
   return bytes;
 }
 
-void write_file(const std::filesystem::path& file, std::string_view bytes) { write_text_file(file, bytes); }
+void write_file(const std::filesystem::path& file, std::string_view bytes) try {
+  write_text_file(file, bytes);
+} catch (const std::runtime_error& error) {
+  throw MeshFileError(error.what());
+}
 
 std::string lower_extension(const std::filesystem::path& file) {
   auto extension = file.extension().string();

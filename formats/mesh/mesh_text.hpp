@@ -22,7 +22,7 @@ class MeshFileError : public std::runtime_error {
 /// The bytes of a file. Throws MeshFileError if it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
-/// As write_text_file.
+/// As write_text_file. Throws MeshFileError.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// The extension in lower case with its dot, "" if none.

@@ -16,6 +16,15 @@ herr_t keep_innermost(unsigned depth, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
+/// "file write failed: No space left on device" of what HDF5 says at length.
+std::string shortened(const std::string& text) {
+  const std::string mark = "error message = '";
+  const auto begin = text.find(mark);
+  if (begin == std::string::npos) return text;
+  const auto end = text.find('\'', begin + mark.size());
+  return text.substr(0, text.find_first_of(",:")) + ": " + text.substr(begin + mark.size(), end - begin - mark.size());
+}
+
 bool says(const std::string& reason, std::string_view part) { return reason.find(part) != std::string::npos; }
 
 std::string remedy(const std::filesystem::path& path, const std::string& reason) {
@@ -30,10 +39,17 @@ std::string remedy(const std::filesystem::path& path, const std::string& reason)
 
 }  // namespace
 
+void start_hdf5() {
+  [[maybe_unused]] static const bool started = [] {
+    (void)H5dont_atexit();
+    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  }();
+}
+
 std::string hdf5_fault() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_innermost, &text);
-  return text.empty() ? "HDF5 does not say why" : text;
+  return text.empty() ? "HDF5 does not say why" : shortened(text);
 }
 
 bool is_locked(const std::filesystem::path& path) {

@@ -5,6 +5,10 @@
 
 namespace greenloop {
 
+/// To be called before anything of HDF5: it prints nothing of its own, and leaves what a full disk did not take alone
+/// when the program ends, where its last attempts to write crash.
+void start_hdf5();
+
 /// Why the last call of HDF5 failed, in its own words, from the innermost function out; to be called before another.
 [[nodiscard]] std::string hdf5_fault();
 

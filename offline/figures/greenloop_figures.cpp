@@ -172,7 +172,7 @@ void draw(const std::vector<BodyComparison>& bodies, const std::filesystem::path
 }
 
 int run(const Arguments& arguments) {
-  if (arguments.figures) require_writable_folder(*arguments.figures);
+  if (arguments.figures) greenloop::require_writable_folder(*arguments.figures);
   std::vector<BodyComparison> bodies;
   json all = json::array();
   ProgressBar progress(arguments.json);
@@ -188,7 +188,7 @@ int run(const Arguments& arguments) {
     }
   }
   if (arguments.json) {
-    print_result(json_text(json{{"bodies", all}, {"growth", as_json(growth(bodies))}}) + "\n");
+    greenloop::print_result(greenloop::json_text(json{{"bodies", all}, {"growth", as_json(growth(bodies))}}) + "\n");
   } else {
     print_growth(growth(bodies));
   }

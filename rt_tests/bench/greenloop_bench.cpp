@@ -204,22 +204,23 @@ int run(const Arguments& arguments) {
                creation.limits.max_contacts, creation.limits.cached_factors, creation.arena_bytes, creation.create_ms);
     return 0;
   }
-  print_result(json_text(json{{"model", arguments.model.filename().string()},
-                              {"backsolve_us", 1e6 * back.seconds},
-                              {"backsolve_solver", back.solver},
-                              {"field", list_of(all)},
-                              {"transform_us", kernels.transform.transform_us},
-                              {"dense_column_us", kernels.transform.dense_column_us},
-                              {"transform_over_dense_column", kernels.transform.ratio},
-                              {"extract_ns_per_block", kernels.capacitance.back().extract_ns_per_block},
-                              {"capacitance", list_of(kernels.capacitance)},
-                              {"force_only", list_of(kernels.forces)},
-                              {"create_ms", creation.create_ms},
-                              {"arena_bytes", creation.arena_bytes},
-                              {"streams", streams_of(roofline)},
-                              {"gflops", roofline.gflops},
-                              {"roofline", list_of(roofline.points)}}) +
-               "\n");
+  greenloop::print_result(
+      greenloop::json_text(json{{"model", arguments.model.filename().string()},
+                                {"backsolve_us", 1e6 * back.seconds},
+                                {"backsolve_solver", back.solver},
+                                {"field", list_of(all)},
+                                {"transform_us", kernels.transform.transform_us},
+                                {"dense_column_us", kernels.transform.dense_column_us},
+                                {"transform_over_dense_column", kernels.transform.ratio},
+                                {"extract_ns_per_block", kernels.capacitance.back().extract_ns_per_block},
+                                {"capacitance", list_of(kernels.capacitance)},
+                                {"force_only", list_of(kernels.forces)},
+                                {"create_ms", creation.create_ms},
+                                {"arena_bytes", creation.arena_bytes},
+                                {"streams", streams_of(roofline)},
+                                {"gflops", roofline.gflops},
+                                {"roofline", list_of(roofline.points)}}) +
+      "\n");
   return 0;
 }
 

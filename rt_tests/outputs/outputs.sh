@@ -158,6 +158,7 @@ printf 'no store' >c.h5
 expect 0 "what is no store is replaced" greenloop build cube.toml -o c.gloop --overwrite-store
 same c.gloop reference.gloop "after no store"
 (
+  failures=0
   exec 9<c.h5
   flock 9
   expect 1 "a store in use" greenloop build cube.toml -o c.gloop --force --overwrite-store
