@@ -26,7 +26,7 @@ enum { GREENLOOP_MAX_LEVELS = 12 }; /* of a model */
 #define GREENLOOP_NO_CONSTRAINT 0xffffffffU
 
 #define GREENLOOP_VERSION_MAJOR 0
-#define GREENLOOP_VERSION_MINOR 1
+#define GREENLOOP_VERSION_MINOR 2
 #define GREENLOOP_VERSION_PATCH 0
 
 /* Of the library, which may differ from the header's, and of the model files that it writes and reads. */

@@ -11,6 +11,8 @@
 #include <system_error>
 #include <utility>
 
+#include "formats/output/output_file.hpp"
+
 namespace greenloop {
 namespace {
 
@@ -93,13 +95,10 @@ std::string read_file(const std::filesystem::path& file) {
   return bytes;
 }
 
-void write_file(const std::filesystem::path& file, std::string_view bytes) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  if (!stream) {
-    throw MeshFileError(file.string() + ": cannot be written");
-  }
+void write_file(const std::filesystem::path& file, std::string_view bytes) try {
+  write_text_file(file, bytes);
+} catch (const std::runtime_error& error) {
+  throw MeshFileError(error.what());
 }
 
 std::string lower_extension(const std::filesystem::path& file) {

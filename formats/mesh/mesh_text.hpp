@@ -29,7 +29,7 @@ inline constexpr std::uint64_t largest_mesh_file = std::uint64_t{1} << 31;
 /// folder, a pipe, a device and a file that is longer, and if it cannot be read.
 [[nodiscard]] std::string read_file(const std::filesystem::path& file);
 
-/// Replaces the file by these bytes. Throws MeshFileError if it cannot be written.
+/// As write_text_file. Throws MeshFileError.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// The extension in lower case with its dot, "" if none.

@@ -1,16 +1,22 @@
 #include "formats/store/green_store.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
+#include "formats/output/output_file.hpp"
 #include "formats/store/green_store_contents.hpp"
+#include "formats/store/hdf5_fault.hpp"
 #include "formats/store/hdf5_file.hpp"
 
 namespace greenloop {
 namespace {
 
 constexpr const char* kDone = "/green/done";
+constexpr std::string_view unfinished_ending = ".h5.part";
 
 Hdf5Shape displacement_shape(const GreenStoreContents& contents) {
   const auto components = static_cast<hsize_t>(contents.components);
@@ -30,6 +36,41 @@ void reserve_columns(Hdf5File& file, const GreenStoreContents& contents) {
                   contents.components == 3 ? "column, force component, row, displacement component"
                                            : "column, load component, row, answer component");
   file.write(kDone, {contents.column_node.size()}, std::vector<unsigned char>(contents.column_node.size(), 0));
+}
+
+/// All of it but columns: from here on only dataset values change, so a kill leaves all metadata in the file.
+Hdf5File create_file(const PendingFile& unfinished, const std::filesystem::path& path,
+                     const GreenStoreContents& contents) try {
+  auto hdf5 = Hdf5File::create(unfinished.name());
+  write_contents(hdf5, contents);
+  reserve_columns(hdf5, contents);
+  hdf5.flush();
+  return hdf5;
+} catch (const std::runtime_error& error) {  // people know the file by another name
+  std::string what = error.what();
+  const std::string name = unfinished.name().string();
+  if (const auto at = what.find(name); at != std::string::npos) what.replace(at, name.size(), path.string());
+  throw std::runtime_error(what);
+}
+
+/// What processes left that were killed while they made a store: locked by nobody.
+void remove_abandoned(const std::filesystem::path& store) {
+  std::error_code error;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::absolute(followed(store)).parent_path(), error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(".greenloop-") || !name.ends_with(unfinished_ending) || is_locked(entry.path())) continue;
+    std::filesystem::remove(entry.path(), error);
+  }
+}
+
+void publish(PendingFile& unfinished, const std::filesystem::path& path) {
+  if (std::filesystem::exists(path)) {
+    GreenStore::require_free(path);
+    unfinished.publish();
+  } else if (!unfinished.publish_new()) {
+    throw std::runtime_error(path.string() + ": another process has made it meanwhile; start again to use it");
+  }
 }
 
 }  // namespace
@@ -55,17 +96,18 @@ GreenStore& GreenStore::operator=(GreenStore&&) noexcept = default;
 
 GreenStore GreenStore::create(const std::filesystem::path& path, const GreenStoreContents& contents) {
   require_valid(contents);
-  auto unfinished = path;
-  unfinished += ".new";
-  auto hdf5 = Hdf5File::create(unfinished);
-  write_contents(hdf5, contents);
-  reserve_columns(hdf5, contents);
-  // from here on only dataset values change, so a kill leaves all metadata in the file
-  hdf5.flush();
-  std::filesystem::rename(unfinished, path);
+  remove_abandoned(path);
+  PendingFile unfinished(path, true, unfinished_ending);
+  auto hdf5 = create_file(unfinished, path, contents);
+  publish(unfinished, path);
   hdf5.renamed(path);
   return GreenStore(std::unique_ptr<File>(
       new File{std::move(hdf5), contents, std::vector<unsigned char>(contents.column_node.size(), 0), true}));
+}
+
+void GreenStore::require_free(const std::filesystem::path& path) {
+  if (!is_locked(path)) return;
+  throw std::runtime_error(path.string() + ": another process uses it; wait until it ends, or name another file");
 }
 
 GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {

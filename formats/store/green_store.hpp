@@ -43,8 +43,12 @@ class GreenStore {
   enum class Access { kReadOnly, kReadWrite };
 
   /// Creates (or replaces) the file with all its datasets and no column done; it appears under its name only when
-  /// complete. Throws std::invalid_argument when the contents contradict each other.
+  /// complete. Throws std::invalid_argument when the contents contradict each other, std::runtime_error if another
+  /// process uses the file that stands there, or has made it meanwhile.
   [[nodiscard]] static GreenStore create(const std::filesystem::path& path, const GreenStoreContents& contents);
+
+  /// Throws std::runtime_error if another process uses the file.
+  static void require_free(const std::filesystem::path& path);
 
   /// Opens an existing store and checks shapes, units, indices and finiteness of everything but the columns.
   [[nodiscard]] static GreenStore open(const std::filesystem::path& path, Access access);

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "formats/store/hdf5_fault.hpp"
+
 namespace greenloop {
 namespace {
 
@@ -35,22 +37,19 @@ void Hdf5File::fail(std::string_view object, std::string_view what) const {
 }
 
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
+  start_hdf5();
   const Hdf5Silence silence;
   Hdf5Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
-  if (!handle)
-    throw std::runtime_error(path.string() + ": cannot be created; does its folder exist and is it writable?");
+  if (!handle) throw std::runtime_error(open_fault(path, hdf5_fault()));
   return {std::move(handle), path};
 }
 
 Hdf5File Hdf5File::open(const std::filesystem::path& path, bool writable) {
+  start_hdf5();
   const Hdf5Silence silence;
   if (!std::filesystem::exists(path)) throw std::runtime_error(path.string() + ": there is no such file");
   Hdf5Handle handle(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!handle) {
-    throw std::runtime_error(path.string() +
-                             ": cannot be opened; either it is no HDF5 file, or another process is "
-                             "writing it, or permission is missing");
-  }
+  if (!handle) throw std::runtime_error(open_fault(path, hdf5_fault()));
   return {std::move(handle), path};
 }
 
@@ -208,7 +207,7 @@ Hdf5Shape Hdf5File::shape(const std::string& name) const {
 }
 
 void Hdf5File::flush() {
-  if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0) fail("file", "cannot be flushed; is the disk full?");
+  if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0) fail("file", "cannot be written: " + hdf5_fault());
 }
 
 #define GREENLOOP_INSTANTIATE(Number)                                                                      \

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "formats/output/output_file.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/write/c_array.hpp"

@@ -2,16 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
+#include "formats/output/output_file.hpp"
 #include "formats/write/c_identifier.hpp"
-#include "formats/write/writer.hpp"
 
 namespace greenloop {
 namespace {
 
 constexpr std::size_t bytes_per_line = 24;
+constexpr std::string_view header_begin = "/* A Greenloop model file, to be read in place";
+
+std::string source_begin(std::string_view header_file) {
+  return fmt::format("#include \"{}\"\n\n#include <stdalign.h>\n\n", header_file);
+}
 
 std::string numbers(std::span<const std::byte> file) {
   std::string text;
@@ -31,27 +38,46 @@ CArray c_array(std::span<const std::byte> file, std::string_view name, std::stri
   }
   CArray result;
   result.header = fmt::format(
-      "/* A Greenloop model file, to be read in place. Little-endian processors only. */\n"
+      "{2}. Little-endian processors only. */\n"
       "#ifndef {0}_MODEL_H\n#define {0}_MODEL_H\n\n#include <stddef.h>\n\n"
       "#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n"
       "extern const unsigned char {0}[{1}]; /* 64-byte aligned */\n"
       "extern const size_t {0}_size;\n\n"
       "#ifdef __cplusplus\n}}\n#endif\n\n#endif\n",
-      name, file.size());
+      name, file.size(), header_begin);
   result.source = fmt::format(
-      "#include \"{0}\"\n\n#include <stdalign.h>\n\nconst size_t {1}_size = {2};\n\n"
+      "{0}const size_t {1}_size = {2};\n\n"
       "alignas(64) const unsigned char {1}[{2}] = {{\n{3}}};\n",
-      header_file, name, file.size(), numbers(file));
+      source_begin(header_file), name, file.size(), numbers(file));
   return result;
 }
 
+CArrayFiles c_array_files(const std::filesystem::path& path) {
+  CArrayFiles files{path, path};
+  files.header.replace_extension(".h");
+  files.source.replace_extension(".c");
+  return files;
+}
+
+void require_replaceable(const std::filesystem::path& path) {
+  const auto [header, source] = c_array_files(path);
+  for (const auto& [unasked, begin] :
+       {std::pair(header, std::string(header_begin)), std::pair(source, source_begin(header.filename().string()))}) {
+    if (unasked == path || !std::filesystem::is_regular_file(unasked)) continue;
+    std::string found(begin.size(), '\0');
+    std::ifstream(unasked, std::ios::binary).read(found.data(), static_cast<std::streamsize>(found.size()));
+    if (found == begin) continue;
+    throw std::runtime_error(
+        fmt::format("{}: would be written beside {}, but a file that is no model stands there; name another output",
+                    unasked.string(), path.string()));
+  }
+}
+
 void write_c_array(const std::filesystem::path& path, std::span<const std::byte> file) {
-  std::filesystem::path header = path, source = path;
-  header.replace_extension(".h");
-  source.replace_extension(".c");
+  const auto [header, source] = c_array_files(path);
   const CArray array = c_array(file, identifier_from(path.stem().string()), header.filename().string());
-  write_file(header, std::as_bytes(std::span(array.header)));
-  write_file(source, std::as_bytes(std::span(array.source)));
+  write_text_file(source, array.source);
+  write_text_file(header, array.header);
 }
 
 }  // namespace greenloop

@@ -18,8 +18,17 @@ struct CArray {
 /// per byte. Throws std::invalid_argument if `name` is no identifier. Offline only.
 [[nodiscard]] CArray c_array(std::span<const std::byte> file, std::string_view name, std::string_view header_file);
 
-/// Writes BASE.h and BASE.c beside each other for BASE = `path` without its extension; the array is called after the
-/// file's stem (see identifier_from). Throws std::runtime_error.
+/// BASE.h and BASE.c, for BASE = `path` without its extension.
+struct CArrayFiles {
+  std::filesystem::path header, source;
+};
+[[nodiscard]] CArrayFiles c_array_files(const std::filesystem::path& path);
+
+/// Throws std::runtime_error if the one of both files that `path` does not name is there and was not written by
+/// write_c_array.
+void require_replaceable(const std::filesystem::path& path);
+
+/// Writes both files; the array is called after the file's stem (see identifier_from). Throws std::runtime_error.
 void write_c_array(const std::filesystem::path& path, std::span<const std::byte> file);
 
 }  // namespace greenloop

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "formats/output/output_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/write/describe.hpp"
 

@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include "formats/layout/elastostatic_order.hpp"
@@ -346,25 +343,6 @@ std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint
   seal(model, header);
   require_valid(AlignedBytes(model));
   return model;
-}
-
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes) {
-  std::filesystem::path part = path;
-  part += ".part";
-  std::ofstream file(part, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  const int reason = errno;
-  std::error_code error;
-  if (file) {
-    std::filesystem::rename(part, path, error);
-    if (!error) return;
-  } else {
-    error.assign(reason, std::generic_category());
-  }
-  std::error_code ignored;
-  std::filesystem::remove(part, ignored);
-  throw std::runtime_error(path.string() + ": cannot be written: " + error.message());
 }
 
 }  // namespace greenloop

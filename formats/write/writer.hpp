@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <iterator>
 #include <span>
 #include <string>
@@ -91,9 +90,5 @@ struct CouplingsForm {
 /// The same model cut off after level q: a prefix with its header rewritten. Throws std::invalid_argument if q is not
 /// a level of the file or no constraint level at or below q has columns.
 [[nodiscard]] std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint32_t q);
-
-/// Writes through a temporary file beside `path` and a rename, so that `path` is never half written.
-/// Throws std::runtime_error naming the file and the reason.
-void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 
 }  // namespace greenloop

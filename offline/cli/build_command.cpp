@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/streams.hpp"
 #include "offline/pipeline/build_model_file.hpp"
 
 namespace greenloop::offline {
@@ -20,23 +21,23 @@ struct BuildArguments {
 void print_budget(const nlohmann::json& record) {
   const double work = record["step_work"];
   const double speed = record["units_per_us"], period = record["period_us"];
-  fmt::print("budget: {} units a step, {:.4g} us at {} units per us; the period is {:.4g} us{}\n",
-             record["step_work"].dump(), work / speed, speed, period,
-             work > period * speed ? ": [budget] share would bound it" : "");
+  print_result(fmt::format("budget: {} units a step, {:.4g} us at {} units per us; the period is {:.4g} us{}\n",
+                           record["step_work"].dump(), work / speed, speed, period,
+                           work > period * speed ? ": [budget] share would bound it" : ""));
 }
 
 void print_outcome(const BuildArguments& arguments, const BuildOutcome& outcome) {
   if (arguments.json) {
-    fmt::print("{}\n", outcome.record.dump(2));
+    print_result(json_text(outcome.record) + "\n");
     return;
   }
   const auto& model = arguments.request.model;
   if (outcome.up_to_date) {
-    fmt::print("{} is up to date\n", model.string());
+    print_result(model.string() + " is up to date\n");
     return;
   }
-  fmt::print("{}: {} bytes, {:.3g} times as small as the dense matrix\n", model.string(), outcome.bytes,
-             static_cast<double>(outcome.dense_bytes) / static_cast<double>(outcome.bytes));
+  print_result(fmt::format("{}: {} bytes, {:.3g} times as small as the dense matrix\n", model.string(), outcome.bytes,
+                           static_cast<double>(outcome.dense_bytes) / static_cast<double>(outcome.bytes)));
   print_budget(outcome.record);
 }
 
@@ -60,7 +61,8 @@ void add_build(CLI::App& parent, int& exit_code) {
   command->add_option("-o,--output", request.model, "The model file to write [SCENE.gloop in this folder]");
   command->add_option("--store", request.store,
                       "HDF5 store of the exact Green's functions [as the scene says, else beside the model]");
-  command->add_flag("--overwrite-store", request.overwrite_store, "Replace a store that belongs to another scene");
+  command->add_flag("--overwrite-store", request.overwrite_store,
+                    "Replace a store that is damaged or belongs to another scene");
   command->add_flag("--force", request.force, "Compress and write again even if the model is up to date");
   command->add_flag("--json", arguments->json, "Print the record of the build as JSON, no progress");
   command->callback([arguments, &exit_code] { exit_code = run_build(*arguments); });

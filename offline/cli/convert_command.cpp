@@ -6,14 +6,20 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <iostream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "formats/mesh/model_surface.hpp"
 #include "formats/mesh/surface_io.hpp"
 #include "formats/mesh/volume_io.hpp"
+#include "formats/output/json_text.hpp"
+#include "formats/output/output_file.hpp"
+#include "formats/output/output_paths.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/transport/stream.hpp"
 #include "formats/write/c_array.hpp"
 #include "formats/write/model_file.hpp"
@@ -107,6 +113,21 @@ void convert_model(const ConvertArguments& arguments, const std::string& to) {
   }
 }
 
+/// Before any work.
+void require_outputs(const ConvertArguments& arguments) {
+  CommandFiles files{.inputs = {{"the input", arguments.input}}, .outputs = {{"the output", arguments.output}}};
+  for (const char* part : {".node", ".ele"}) {  // of one volume
+    const auto beside = std::filesystem::path(arguments.input).replace_extension(part);
+    if (std::filesystem::exists(beside)) files.inputs.push_back({"a part of the input", beside});
+  }
+  if (is_c_source(lower_extension(arguments.output))) {
+    const auto [header, source] = c_array_files(arguments.output);
+    files.outputs = {{"the header", header}, {"the source", source}};
+    require_replaceable(arguments.output);
+  }
+  require_writable(files);
+}
+
 void refuse_model_options(const ConvertArguments& arguments) {
   if (arguments.levels) refuse(arguments, "--levels is for models; leave it out");
   if (arguments.ready) refuse(arguments, "--ready and --no-ready are for models; leave them out");
@@ -134,9 +155,27 @@ void convert_volume(const ConvertArguments& arguments, const std::string& to) {
   write_volume(arguments.output, mesh);
 }
 
+/// All files that came of it.
+std::vector<std::filesystem::path> written_files(const ConvertArguments& arguments) {
+  if (!is_c_source(lower_extension(arguments.output))) return {arguments.output};
+  const auto [header, source] = c_array_files(arguments.output);
+  return {header, source};
+}
+
+void say_written(const ConvertArguments& arguments, std::ostream& out) {
+  if (!arguments.json) {
+    fmt::print(out, "wrote {}\n", arguments.output.string());
+    return;
+  }
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const auto& file : written_files(arguments)) files.push_back(file.string());
+  out << json_text(nlohmann::ordered_json{{"input", arguments.input.string()}, {"written", files}}) << '\n';
+}
+
 }  // namespace
 
 int run_convert(const ConvertArguments& arguments, std::ostream& out) {
+  require_outputs(arguments);
   const std::string from = lower_extension(arguments.input), to = lower_extension(arguments.output);
   if (is_model(from) || is_stream(from)) {
     convert_model(arguments, to);
@@ -150,7 +189,7 @@ int run_convert(const ConvertArguments& arguments, std::ostream& out) {
                        "a volume (.msh .mesh .vtk .vtu .node .ele .veg)",
                        from));
   }
-  fmt::print(out, "wrote {}\n", arguments.output.string());
+  say_written(arguments, out);
   return 0;
 }
 
@@ -174,7 +213,12 @@ void add_convert(CLI::App& parent, int& exit_code) {
       ->add_flag_callback(
           "--no-ready", [arguments] { arguments->ready = false; }, "Of a model: leave that out")
       ->excludes(ready);
-  command->callback([arguments, &exit_code] { exit_code = run_convert(*arguments, std::cout); });
+  command->add_flag("--json", arguments->json, "Print what was written as JSON");
+  command->callback([arguments, &exit_code] {
+    std::ostringstream out;
+    exit_code = run_convert(*arguments, out);
+    print_result(out.str());
+  });
 }
 
 }  // namespace greenloop::offline

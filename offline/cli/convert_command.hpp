@@ -11,12 +11,13 @@ class App;
 
 namespace greenloop::offline {
 
-/// `greenloop convert INPUT -o OUTPUT [--levels N] [--ready | --no-ready]`
+/// `greenloop convert INPUT -o OUTPUT [--levels N] [--ready | --no-ready] [--json]`
 struct ConvertArguments {
   std::filesystem::path input, output;
   std::optional<std::uint32_t> levels;  ///< of a model: keep the N coarsest mesh levels
   std::optional<bool> ready =
       std::nullopt;  ///< of a model: with or without what a loop would make at its start; none: as is
+  bool json = false;
 };
 
 /// Converts by the files' extensions: a model (.gloop) to its transport form (.gloopz) and back, either to C source (.h

@@ -5,12 +5,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstring>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/stored_blocks.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
@@ -229,7 +231,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                percent(level["worst_column_error"]), percent(level["worst_patch_force_error"]));
   }
   print_patterns(found["patterns"], out);
-  fmt::print(out, "\n  provenance: {}\n", found["provenance"].dump(2));
+  fmt::print(out, "\n  provenance: {}\n", json_text(found["provenance"]));
 }
 
 }  // namespace
@@ -237,7 +239,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
 int run_inspect(const InspectArguments& arguments, std::ostream& out) {
   const Json found = inspection_of(open_model_file(arguments.file));
   if (arguments.json) {
-    out << found.dump(2) << '\n';
+    out << json_text(found) << '\n';
   } else {
     print_table(arguments.file, found, out);
   }
@@ -252,7 +254,11 @@ void add_inspect(CLI::App& parent, int& exit_code) {
   const auto arguments = std::make_shared<InspectArguments>();
   command->add_option("model", arguments->file, "Model file (.gloop)")->required();
   command->add_flag("--json", arguments->json, "Print JSON, with every section");
-  command->callback([arguments, &exit_code] { exit_code = run_inspect(*arguments, std::cout); });
+  command->callback([arguments, &exit_code] {
+    std::ostringstream out;
+    exit_code = run_inspect(*arguments, out);
+    print_result(out.str());
+  });
 }
 
 }  // namespace greenloop::offline

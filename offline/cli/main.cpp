@@ -1,12 +1,11 @@
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
+#include <system_error>
 
+#include "formats/output/program.hpp"
 #include "offline/cli/build_command.hpp"
 #include "offline/cli/convert_command.hpp"
 #include "offline/cli/inspect_command.hpp"
@@ -18,9 +17,10 @@ namespace {
 /// As git does: `greenloop loop ...` runs the program greenloop-loop that stands beside this one. Returns only if there
 /// is none.
 void run_sibling(char** arguments) {
-  const auto self = std::filesystem::read_symlink("/proc/self/exe");
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   const auto sibling = self.parent_path() / (std::string("greenloop-") + arguments[1]);
-  if (std::filesystem::exists(sibling)) {
+  if (std::filesystem::exists(sibling, error)) {
     execv(sibling.c_str(), arguments + 1);
   }
 }
@@ -41,13 +41,5 @@ int main(int argc, char** argv) {
   greenloop::offline::add_verify(app, exit_code);
   greenloop::offline::add_convert(app, exit_code);
   greenloop::offline::add_report(app, exit_code);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "greenloop: {}\n", error.what());
-    return 1;
-  }
-  return exit_code;
+  return greenloop::run_program(app, argc, argv, [&] { return exit_code; });
 }

@@ -14,6 +14,7 @@
 
 #include "formats/mesh/surface_io.hpp"
 #include "formats/mesh/volume_io.hpp"
+#include "formats/output/output_file.hpp"
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/write/model_file.hpp"

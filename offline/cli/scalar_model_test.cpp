@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "formats/output/output_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/testing/temporary_folder.hpp"
 #include "formats/write/model_file.hpp"

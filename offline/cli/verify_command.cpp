@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/compress/measure/certificate.hpp"
@@ -83,7 +85,7 @@ Json verdict_of(const std::filesystem::path& file, bool certificate) {
 
 int run_verify(const VerifyArguments& arguments, std::ostream& out) {
   const Json verdict = verdict_of(arguments.file, arguments.certificate);
-  out << (arguments.json ? verdict.dump(2) : verdict["message"].get<std::string>()) << '\n';
+  out << (arguments.json ? json_text(verdict) : verdict["message"].get<std::string>()) << '\n';
   return verdict["ok"].get<bool>() ? 0 : 1;
 }
 
@@ -96,7 +98,11 @@ void add_verify(CLI::App& parent, int& exit_code) {
       "Also prove that the compliance is positive definite: a Cholesky factorisation in double precision, "
       "72 bytes times the square of the domain nodes");
   command->add_flag("--json", arguments->json, "Print the verdict as JSON");
-  command->callback([arguments, &exit_code] { exit_code = run_verify(*arguments, std::cout); });
+  command->callback([arguments, &exit_code] {
+    std::ostringstream out;
+    exit_code = run_verify(*arguments, out);
+    print_result(out.str());
+  });
 }
 
 }  // namespace greenloop::offline

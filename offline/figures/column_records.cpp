@@ -3,19 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <iterator>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
+#include "formats/output/output_file.hpp"
 #include "offline/report/csv_table.hpp"
 
 namespace greenloop::offline {
 namespace {
 
+constexpr std::string_view first_names = "body,row,exact energy";
+
 // as a process leaves it that is killed while it writes
 void drop_unfinished_line(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const std::size_t known = std::min(text.size(), first_names.size());
+  if (text.compare(0, known, first_names, 0, known) != 0) {
+    throw std::runtime_error(file.string() + ": is there, but holds no records; name another file");
+  }
   const std::size_t last = text.rfind('\n');
   std::filesystem::resize_file(file, last == std::string::npos ? 0 : last + 1);
 }
@@ -27,17 +36,22 @@ std::string worst_name(double threshold) { return fmt::format("worst {}", thresh
 }  // namespace
 
 ColumnRecords::ColumnRecords(const std::filesystem::path& file, std::string body, const std::vector<double>& thresholds)
-    : body_(std::move(body)) {
+    : file_(file), body_(std::move(body)) {
+  if (is_special(file)) throw std::runtime_error(file.string() + ": records must be a file; name one");
   if (std::filesystem::exists(file)) drop_unfinished_line(file);
   const bool resumed = std::filesystem::exists(file) && std::filesystem::file_size(file) > 0;
   if (resumed) load(file, thresholds);
   stream_.open(file, std::ios::app);
   if (!resumed) {
-    stream_ << "body,row,exact energy";
+    stream_ << first_names;
     for (const double t : thresholds) stream_ << fmt::format(",{},{},{}", kept_name(t), error_name(t), worst_name(t));
     stream_ << std::endl;
   }
-  if (!stream_) throw std::runtime_error(file.string() + ": cannot be written");
+  require_written();
+}
+
+void ColumnRecords::require_written() const {
+  if (!stream_) throw std::runtime_error(write_fault(file_, errno));
 }
 
 void ColumnRecords::load(const std::filesystem::path& file, const std::vector<double>& thresholds) {
@@ -66,6 +80,7 @@ void ColumnRecords::add(std::size_t row, CompressedColumn column) {
     stream_ << fmt::format(",{},{},{}", trial.kept, trial.error_energy, trial.worst);
   }
   stream_ << std::endl;
+  require_written();
   columns_[row] = std::move(column);
 }
 

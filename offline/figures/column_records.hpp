@@ -25,8 +25,10 @@ class ColumnRecords {
   void add(std::size_t row, CompressedColumn column);
 
  private:
+  void require_written() const;
   void load(const std::filesystem::path& file, const std::vector<double>& thresholds);
 
+  std::filesystem::path file_;
   std::string body_;
   std::map<std::size_t, CompressedColumn> columns_;
   std::ofstream stream_;

@@ -11,6 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/output_paths.hpp"
+#include "formats/output/program.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/store/green_store.hpp"
 #include "offline/compress/measure/exact_sample.hpp"
 #include "offline/figures/column_form.hpp"
@@ -122,17 +126,17 @@ void print_json(const Arguments& arguments, const StreamedBody& body) {
                       {"rms_standard_error", point.rms * rms_error},
                       {"max_error", point.worst_column}});
   }
-  fmt::print("{}\n", nlohmann::json{{"body", arguments.scene.stem().string()},
-                                    {"free_nodes", body.rows()},
-                                    {"columns", body.sampled()},
-                                    {"wavelet", arguments.wavelet},
-                                    {"points", points}}
-                         .dump(2));
+  print_result(json_text(nlohmann::json{{"body", arguments.scene.stem().string()},
+                                        {"free_nodes", body.rows()},
+                                        {"columns", body.sampled()},
+                                        {"wavelet", arguments.wavelet},
+                                        {"points", points}}) +
+               "\n");
 }
 
 void print_table(const Arguments& arguments, const StreamedBody& body) {
-  fmt::print("{}: {} free nodes, {} columns measured, one-sided, {}; +- one standard error\n",
-             arguments.scene.stem().string(), body.rows(), body.sampled(), arguments.wavelet);
+  print_result(fmt::format("{}: {} free nodes, {} columns measured, one-sided, {}; +- one standard error\n",
+                           arguments.scene.stem().string(), body.rows(), body.sampled(), arguments.wavelet));
   fmt::print("  {:>8} {:>18} {:>22} {:>8}\n", "epsilon", "times fewer blocks", "RMS", "MAX");
   for (const auto& [point, ratio_error, rms_error] : body.rates()) {
     fmt::print("  {:>8} {:>18} {:>22} {:>8}\n", point.threshold,
@@ -144,6 +148,8 @@ void print_table(const Arguments& arguments, const StreamedBody& body) {
 
 int run(const Arguments& arguments) {
   (void)wavelet_of(arguments.wavelet);  // before the body is made
+  require_writable({.inputs = {{"the scene", arguments.scene}, {"its mesh", read_scene(arguments.scene).mesh.path}},
+                    .outputs = {{"the records", arguments.records}}});
   ProgressBar progress(arguments.json);
   StreamedBody body(arguments, progress);
   body.measure();
@@ -178,11 +184,5 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return run(arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "greenloop-columns: {}\n", error.what());
-    return 1;
-  }
+  return greenloop::run_program(app, argc, argv, [&] { return run(arguments); });
 }

@@ -10,6 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/output_paths.hpp"
+#include "formats/output/program.hpp"
+#include "formats/output/streams.hpp"
 #include "offline/figures/comparison.hpp"
 #include "offline/figures/comparison_figures.hpp"
 #include "offline/pipeline/progress_bar.hpp"
@@ -168,6 +172,7 @@ void draw(const std::vector<BodyComparison>& bodies, const std::filesystem::path
 }
 
 int run(const Arguments& arguments) {
+  if (arguments.figures) greenloop::require_writable_folder(*arguments.figures);
   std::vector<BodyComparison> bodies;
   json all = json::array();
   ProgressBar progress(arguments.json);
@@ -183,7 +188,7 @@ int run(const Arguments& arguments) {
     }
   }
   if (arguments.json) {
-    fmt::print("{}\n", json{{"bodies", all}, {"growth", as_json(growth(bodies))}}.dump(2));
+    greenloop::print_result(greenloop::json_text(json{{"bodies", all}, {"growth", as_json(growth(bodies))}}) + "\n");
   } else {
     print_growth(growth(bodies));
   }
@@ -220,11 +225,5 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(3, 100000))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return run(arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "greenloop-figures: {}\n", error.what());
-    return 1;
-  }
+  return greenloop::run_program(app, argc, argv, [&] { return run(arguments); });
 }

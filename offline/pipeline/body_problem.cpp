@@ -12,6 +12,7 @@
 
 #include "formats/layout.hpp"
 #include "formats/mesh/volume_io.hpp"
+#include "formats/output/json_text.hpp"
 #include "offline/pipeline/stage_records.hpp"
 #include "offline/scene/fingerprint.hpp"
 
@@ -99,7 +100,7 @@ GreenStoreContents describe_problem(const Scene& scene, BodyGeometry body, const
   Volume volume = std::move(*body.volume);
   GreenStoreContents contents = describe_columns(std::move(body));
   add_finite_elements(scene.material, std::move(volume), contents);
-  contents.provenance = record.dump();
+  contents.provenance = json_text(record, -1);
   contents.fingerprint = fingerprint;
   return contents;
 }

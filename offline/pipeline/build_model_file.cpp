@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "formats/layout.hpp"
+#include "formats/output/json_text.hpp"
+#include "formats/output/output_file.hpp"
 #include "formats/store/green_store.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
@@ -20,6 +23,7 @@
 #include "offline/compress/wavelet_choice.hpp"
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/pipeline/body_problem.hpp"
+#include "offline/pipeline/build_files.hpp"
 #include "offline/pipeline/least_work.hpp"
 #include "offline/pipeline/stage_records.hpp"
 #include "offline/pipeline/store_room.hpp"
@@ -27,7 +31,9 @@
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/sources/fem/green_functions.hpp"
+#include "offline/sources/reciprocity.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/greenloop.h"
 
 namespace greenloop::offline {
 namespace {
@@ -40,7 +46,7 @@ std::string request_fingerprint(const Scene& scene, const std::string& mesh) {
 
 /// The record of the last build if its model is still what `request` asks for.
 json up_to_date_record(const BuildRequest& request, const std::string& wanted) {
-  if (request.force || !std::filesystem::exists(request.model) ||
+  if (request.force || is_passed_on(request) || !std::filesystem::exists(request.model) ||
       !std::filesystem::exists(build_record_path(request.model))) {
     return {};
   }
@@ -68,25 +74,42 @@ void require_possible_work(const Scene& scene, const std::filesystem::path& file
                LeastOf::any_wavelet);
 }
 
+/// The store on disk if it is that of the scene's columns; none if it may be replaced.
+std::optional<GreenStore> open_store(const BuildRequest& request, const std::string& columns) {
+  auto store = GreenStore::open(request.store, GreenStore::Access::kReadWrite);
+  if (store.contents().fingerprint == columns) {
+    if (request.overwrite_store) require_sound(store);
+    return store;
+  }
+  const bool empty = store.missing_columns().size() == static_cast<std::size_t>(store.column_count());
+  if (!request.overwrite_store && !empty) {
+    throw std::runtime_error(
+        fmt::format("{}: holds the Green's functions of another scene, mesh or version; name another file with "
+                    "--store, or pass --overwrite-store to replace it",
+                    request.store.string()));
+  }
+  return std::nullopt;
+}
+
+std::optional<GreenStore> usable_store(const BuildRequest& request, const std::string& columns) {
+  if (!std::filesystem::exists(request.store)) return std::nullopt;
+  if (!request.overwrite_store) return open_store(request, columns);
+  GreenStore::require_free(request.store);
+  try {
+    return open_store(request, columns);
+  } catch (const std::runtime_error&) {
+    return std::nullopt;  // damaged, or no store at all
+  }
+}
+
 /// The store of the scene's columns: the one on disk if it is that, else a new one with nothing solved.
 GreenStore open_or_create_store(const BuildRequest& request, const Scene& scene, const std::string& columns,
                                 ProgressBar& progress) {
-  if (std::filesystem::exists(request.store)) {
-    auto store = GreenStore::open(request.store, GreenStore::Access::kReadWrite);
-    const auto missing = store.missing_columns().size();
-    if (store.contents().fingerprint == columns) {
-      const GreenStoreContents& body = store.contents();
-      require_possible_work(scene, request.scene, body.surface, body.flags, body.area);
-      require_store_room(request.store, static_cast<std::size_t>(store.row_count()), missing);
-      return store;
-    }
-    const bool empty = missing == static_cast<std::size_t>(store.column_count());
-    if (!request.overwrite_store && !empty) {
-      throw std::runtime_error(
-          fmt::format("{}: holds the Green's functions of another scene, mesh or version; name another file with "
-                      "--store, or pass --overwrite-store to replace it",
-                      request.store.string()));
-    }
+  if (auto store = usable_store(request, columns)) {
+    const GreenStoreContents& body = store->contents();
+    require_possible_work(scene, request.scene, body.surface, body.flags, body.area);
+    require_store_room(request.store, static_cast<std::size_t>(store->row_count()), store->missing_columns().size());
+    return std::move(*store);
   }
   auto body = make_body_geometry(scene, progress);
   require_possible_work(scene, request.scene, body.surface, body.flags, body.area);
@@ -178,6 +201,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
     return {.up_to_date = true, .record = std::move(record)};
   }
 
+  require_build_files(request, scene);
   auto store = open_or_create_store(request, scene, column_fingerprint(scene, mesh), progress);
   const SolveReport solved = solve_missing_columns(store, progress);
   json record = json::parse(store.contents().provenance);
@@ -185,18 +209,20 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   record["solve"] = solve_record(solved, store);
 
   json provenance = record;
-  provenance["tool"] = pipeline_version;
+  provenance["tool"] =
+      fmt::format("greenloop {}.{}.{}", GREENLOOP_VERSION_MAJOR, GREENLOOP_VERSION_MINOR, GREENLOOP_VERSION_PATCH);
   provenance["request"] = wanted;
   provenance["scene_text"] = canonical_text(scene);
   provenance["solve"].erase("factor_seconds");  // the model's bytes do not depend on the clock
   provenance["solve"].erase("solve_seconds");
   provenance["solve"].erase("columns_solved");
-  auto built = compress(scene, store, solved.largest_asymmetry, provenance.dump(), progress);
+  provenance["solve"].erase("factor_entries");  // known to who factorised only
+  auto built = compress(scene, store, solved.largest_asymmetry, json_text(provenance, -1), progress);
   provenance["frontier"] = frontier_record(built.report);
   provenance["wavelets"] = wavelets_record(built.report);
   provenance["frontier_contacts"] = built.model.info.max_contacts;
   provenance["patches"] = built.report.patches;
-  built.model.provenance = provenance.dump();
+  built.model.provenance = json_text(provenance, -1);
   if (!scene.budget.asked_work()) built.model.info.step_work = built.report.trials.back().step_work;
   if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
   const auto plain = encode(built.model);
@@ -213,8 +239,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   for (const auto& stage : progress.stages()) {
     record["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   }
-  const std::string text = record.dump(2) + "\n";
-  write_file(build_record_path(request.model), std::as_bytes(std::span(text)));
+  if (!is_passed_on(request)) write_text_file(build_record_path(request.model), json_text(record) + "\n");
   return {.up_to_date = false, .bytes = bytes.size(), .dense_bytes = built.report.dense_bytes, .record = record};
 }
 

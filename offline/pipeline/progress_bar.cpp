@@ -4,7 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
+
+#include "formats/output/streams.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -51,7 +52,8 @@ void ProgressBar::end(std::string_view note) {
   stages_.push_back({stage_, seconds});
   running_ = false;
   if (!quiet_) {
-    fmt::print(stderr, "{}{:<12} {:>6.1f} s  {}\n", terminal_ ? "\r\033[K" : "", stage_, seconds, note);
+    say_raw(terminal_ ? "\r\033[K" : "");
+    say(fmt::format("{:<12} {:>6.1f} s  {}\n", stage_, seconds, note));
   }
 }
 
@@ -63,9 +65,9 @@ void ProgressBar::draw(double fraction, std::string_view detail) {
   const int filled = static_cast<int>(fraction * bar_width);
   const double covered = fraction - std::max(first_fraction_, 0.0);
   const double remaining = covered > 0 ? seconds_between(started_, drawn_) * (1 - fraction) / covered : -1;
-  fmt::print(stderr, "\r\033[K{:<12} [{:#<{}}{: <{}}] {:3.0f} %{} {}", stage_, "", filled, "", bar_width - filled,
-             100 * fraction, remaining >= 0 ? fmt::format(", {} left", duration_text(remaining)) : "", detail);
-  std::fflush(stderr);
+  say_raw("\r\033[K");
+  say(fmt::format("{:<12} [{:#<{}}{: <{}}] {:3.0f} %{} {}", stage_, "", filled, "", bar_width - filled, 100 * fraction,
+                  remaining >= 0 ? fmt::format(", {} left", duration_text(remaining)) : "", detail));
 }
 
 }  // namespace greenloop::offline

@@ -1,5 +1,4 @@
 #include "offline/report/build_record.hpp"
-
 #include <algorithm>
 #include <array>
 #include <fstream>
@@ -8,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "formats/output/json_text.hpp"
 #include "offline/report/axis.hpp"
 
 namespace greenloop::offline {
@@ -40,7 +40,7 @@ std::string scalar_text(const json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_number_unsigned()) return readable_count(value.get<unsigned long long>());
   if (value.is_number()) return readable(value.get<double>());
-  if (!value.is_array()) return value.dump();
+  if (!value.is_array()) return json_text(value, -1);
   std::string list;
   for (const json& element : value) list += (list.empty() ? "" : ", ") + scalar_text(element);
   return list.empty() ? "none" : list;

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <stdexcept>
 
+#include "formats/output/output_file.hpp"
 #include "formats/write/describe.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
@@ -191,18 +191,13 @@ Report make_report(const ModelView& model, const ReportInputs& inputs) {
   return report;
 }
 
-void write_text_file(const std::filesystem::path& path, const std::string& content) {
-  const std::filesystem::path temporary = path.string() + ".part";
-  std::ofstream file(temporary, std::ios::binary);
-  file << content;
-  file.close();
-  if (!file) throw std::runtime_error(path.string() + ": cannot be written; does the folder exist, is there space?");
-  std::filesystem::rename(temporary, path);
+std::filesystem::path figure_path(const std::filesystem::path& folder, const Figure& figure) {
+  return folder / (figure.name + ".svg");
 }
 
 void write_figures(const std::filesystem::path& folder, const std::vector<Figure>& figures) {
   std::filesystem::create_directories(folder);
-  for (const Figure& figure : figures) write_text_file(folder / (figure.name + ".svg"), standalone_svg(figure.svg));
+  for (const Figure& figure : figures) write_text_file(figure_path(folder, figure), standalone_svg(figure.svg));
 }
 
 }  // namespace greenloop::offline

@@ -31,8 +31,8 @@ struct Report {
 /// the inputs, plus rendering; a few seconds. The same inputs give the same bytes.
 [[nodiscard]] Report make_report(const ModelView& model, const ReportInputs& inputs);
 
-/// Writes `content` through a temporary file beside `path`. Throws std::runtime_error if that fails.
-void write_text_file(const std::filesystem::path& path, const std::string& content);
+/// Where write_figures puts one.
+[[nodiscard]] std::filesystem::path figure_path(const std::filesystem::path& folder, const Figure& figure);
 
 /// Writes every figure as a file of its own into `folder`, which is made if need be.
 void write_figures(const std::filesystem::path& folder, const std::vector<Figure>& figures);

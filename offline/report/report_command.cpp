@@ -7,7 +7,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/output_file.hpp"
+#include "formats/output/output_paths.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/report/axis.hpp"
 #include "offline/report/report.hpp"
@@ -32,26 +37,47 @@ void print_json(const std::string& output, const Report& report) {
   for (const MissingInput& input : report.missing) {
     root["missing"].push_back({{"what", input.what}, {"command", input.command}});
   }
-  fmt::print("{}\n", root.dump(2));
+  print_result(json_text(root) + "\n");
 }
 
 void print_text(const std::string& output, const Report& report) {
-  fmt::print("{}: {} figures, {}\n", output, report.figures.size(),
-             readable_bytes(static_cast<double>(report.html.size())));
-  for (const MissingInput& input : report.missing) fmt::print("  not in it: {}\n", input.what);
+  print_result(fmt::format("{}: {} figures, {}\n", output, report.figures.size(),
+                           readable_bytes(static_cast<double>(report.html.size()))));
+  for (const MissingInput& input : report.missing) print_result("  not in it: " + input.what + "\n");
+}
+
+CommandFiles files_of(const Options& options, const std::string& output) {
+  CommandFiles files{.inputs = {{"the model", options.model}}, .outputs = {{"the report", output}}};
+  for (const auto& [what, path] : {std::pair("the trace", options.trace), std::pair("the snapshot", options.snapshot),
+                                   std::pair("the record of the build", options.build)}) {
+    if (!path.empty()) files.inputs.push_back({what, path});
+  }
+  return files;
+}
+
+void write_report(const Options& options, CommandFiles files, const Report& report) {
+  for (const Figure& figure : report.figures) {
+    if (!options.figures.empty()) files.outputs.push_back({"a figure", figure_path(options.figures, figure)});
+  }
+  if (!options.figures.empty()) std::filesystem::create_directories(options.figures);
+  require_writable(files);
+  write_text_file(files.outputs.front().path, report.html);
+  if (!options.figures.empty()) write_figures(options.figures, report.figures);
 }
 
 void run(const Options& options) {
-  const ModelFile file = open_model_file(options.model);
   const std::string output = options.output.empty()
                                  ? std::filesystem::path(options.model).replace_extension(".html").string()
                                  : options.output;
+  const CommandFiles files = files_of(options, output);
+  require_writable(files);
+  if (!options.figures.empty()) require_writable_folder(options.figures);
+  const ModelFile file = open_model_file(options.model);
   const Report report = make_report(file.view, {.model = options.model,
                                                 .trace = given(options.trace),
                                                 .snapshot = given(options.snapshot),
                                                 .build = given(options.build)});
-  write_text_file(output, report.html);
-  if (!options.figures.empty()) write_figures(options.figures, report.figures);
+  write_report(options, files, report);
   options.json ? print_json(output, report) : print_text(output, report);
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "formats/output/printable.hpp"
 #include "offline/report/theme.hpp"
 
 namespace greenloop::offline {
@@ -54,7 +55,7 @@ const char* anchor_name(Anchor anchor) {
 std::string escape_markup(std::string_view text) {
   std::string safe;
   safe.reserve(text.size());
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     switch (c) {
       case '&':
         safe += "&amp;";

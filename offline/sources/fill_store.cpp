@@ -11,7 +11,8 @@
 namespace greenloop::offline {
 namespace {
 
-/// Consecutive missing columns.
+/// Consecutive missing columns, between multiples of the longest: a resumed run asks for the same ranges as one that
+/// was never interrupted, and gets the same bits.
 struct ColumnRange {
   int first, count;
 };
@@ -20,7 +21,8 @@ std::vector<ColumnRange> ranges_of(const std::vector<int>& missing, std::size_t 
   std::vector<ColumnRange> ranges;
   for (const int column : missing) {
     const bool extends = !ranges.empty() && static_cast<std::size_t>(ranges.back().count) < longest &&
-                         column == ranges.back().first + ranges.back().count;
+                         column == ranges.back().first + ranges.back().count &&
+                         static_cast<std::size_t>(column) % longest != 0;
     if (extends) {
       ++ranges.back().count;
     } else {

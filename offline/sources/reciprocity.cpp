@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <vector>
 
 namespace greenloop::offline {
@@ -72,6 +73,15 @@ double largest_asymmetry_of(const GreenStore& store) {
 }
 
 }  // namespace
+
+void require_sound(const GreenStore& store) {
+  for (int column = 0; column < store.column_count(); ++column) {
+    if (store.is_done(column)) (void)store.read_columns(column, 1);
+  }
+  if (store.missing_columns().empty() && !(largest_asymmetry(store) <= most_asymmetry)) {
+    throw std::runtime_error(store.path().string() + ": /green/displacement: reciprocity is violated");
+  }
+}
 
 double largest_asymmetry(const GreenStore& store) {
   return store.contents().components == 1 ? largest_asymmetry_of<1>(store) : largest_asymmetry_of<3>(store);

@@ -8,6 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/program.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
@@ -201,22 +204,23 @@ int run(const Arguments& arguments) {
                creation.limits.max_contacts, creation.limits.cached_factors, creation.arena_bytes, creation.create_ms);
     return 0;
   }
-  fmt::print("{}\n", json{{"model", arguments.model.filename().string()},
-                          {"backsolve_us", 1e6 * back.seconds},
-                          {"backsolve_solver", back.solver},
-                          {"field", list_of(all)},
-                          {"transform_us", kernels.transform.transform_us},
-                          {"dense_column_us", kernels.transform.dense_column_us},
-                          {"transform_over_dense_column", kernels.transform.ratio},
-                          {"extract_ns_per_block", kernels.capacitance.back().extract_ns_per_block},
-                          {"capacitance", list_of(kernels.capacitance)},
-                          {"force_only", list_of(kernels.forces)},
-                          {"create_ms", creation.create_ms},
-                          {"arena_bytes", creation.arena_bytes},
-                          {"streams", streams_of(roofline)},
-                          {"gflops", roofline.gflops},
-                          {"roofline", list_of(roofline.points)}}
-                         .dump(2));
+  greenloop::print_result(
+      greenloop::json_text(json{{"model", arguments.model.filename().string()},
+                                {"backsolve_us", 1e6 * back.seconds},
+                                {"backsolve_solver", back.solver},
+                                {"field", list_of(all)},
+                                {"transform_us", kernels.transform.transform_us},
+                                {"dense_column_us", kernels.transform.dense_column_us},
+                                {"transform_over_dense_column", kernels.transform.ratio},
+                                {"extract_ns_per_block", kernels.capacitance.back().extract_ns_per_block},
+                                {"capacitance", list_of(kernels.capacitance)},
+                                {"force_only", list_of(kernels.forces)},
+                                {"create_ms", creation.create_ms},
+                                {"arena_bytes", creation.arena_bytes},
+                                {"streams", streams_of(roofline)},
+                                {"gflops", roofline.gflops},
+                                {"roofline", list_of(roofline.points)}}) +
+      "\n");
   return 0;
 }
 
@@ -243,11 +247,5 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");
-  CLI11_PARSE(app, argc, argv);
-  try {
-    return run(arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "greenloop-bench: {}\n", error.what());
-    return 1;
-  }
+  return greenloop::run_program(app, argc, argv, [&] { return run(arguments); });
 }

@@ -3,14 +3,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
-#include <fstream>
 #include <list>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/output_file.hpp"
+#include "formats/output/output_paths.hpp"
+#include "formats/output/program.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/pipeline/progress_bar.hpp"
@@ -42,22 +45,20 @@ void declare(CLI::App& app, Arguments& arguments) {
 bool is_header(const std::filesystem::path& path) { return path.extension() == ".hpp"; }
 
 // before the minute that it takes
-void require_output(const std::filesystem::path& output) {
+void require_output(const Arguments& arguments) {
+  const std::filesystem::path output = arguments.output;
   if (output.empty()) return;
   if (!is_header(output) && output.extension() != ".json") {
     throw std::runtime_error(output.string() + ": prices are written as .json or .hpp");
   }
-  if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path())) {
-    throw std::runtime_error(output.string() + ": cannot be written, there is no such folder");
-  }
+  greenloop::CommandFiles files{.inputs = {}, .outputs = {{"the prices", output}}};
+  for (const std::string& model : arguments.models) files.inputs.push_back({"a model", model});
+  greenloop::require_writable(files);
 }
 
 void write(const std::string& output, const greenloop::Prices& prices) {
-  std::ofstream file(output);
-  file << (is_header(output) ? greenloop::prices_as_header(prices, greenloop::calibrated_unit)
-                             : greenloop::prices_as_json(prices, greenloop::calibrated_unit));
-  file.close();
-  if (!file) throw std::runtime_error(output + ": cannot be written");
+  greenloop::write_text_file(output, is_header(output) ? greenloop::prices_as_header(prices, greenloop::calibrated_unit)
+                                                       : greenloop::prices_as_json(prices, greenloop::calibrated_unit));
 }
 
 // `bytes` keeps what the models stand in
@@ -74,7 +75,7 @@ std::vector<greenloop::NamedModel> open_models(const std::vector<std::string>& n
 }
 
 greenloop::Calibration run(Arguments& arguments) {
-  require_output(arguments.output);
+  require_output(arguments);
   std::list<greenloop::AlignedBytes> bytes;
   const std::vector<greenloop::NamedModel> models = open_models(arguments.models, bytes);
   greenloop::offline::ProgressBar bar(arguments.json);
@@ -98,17 +99,13 @@ int main(int argc, char** argv) {
       "greenloop-calibrate");
   Arguments arguments;
   declare(app, arguments);
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return greenloop::run_program(app, argc, argv, [&] {
     const greenloop::Calibration calibration = run(arguments);
     if (arguments.json) {
-      fmt::print("{}\n", greenloop::as_json(calibration).dump(2));
+      greenloop::print_result(greenloop::json_text(greenloop::as_json(calibration)) + "\n");
     } else {
       greenloop::print(calibration);
     }
     return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "greenloop-calibrate: {}\n", error.what());
-    return 1;
-  }
+  });
 }

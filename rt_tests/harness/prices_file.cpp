@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "formats/output/json_text.hpp"
 #include "rt_tests/harness/price_table.hpp"
 
 namespace greenloop {
@@ -23,7 +24,7 @@ std::uint32_t* price_of(Prices& prices, const std::string& name) {
 std::uint32_t in_units(const nlohmann::json& value, const std::string& where) {
   const double price = value.is_number() ? std::round(256 * value.get<double>()) : -1;
   if (!(price >= 0 && price <= std::numeric_limits<std::uint32_t>::max())) {
-    throw std::runtime_error(where + ": " + value.dump() + " is no price: give work units from 0 to 16777215");
+    throw std::runtime_error(where + ": " + greenloop::json_text(value, -1) + " is no price: give work units from 0 to 16777215");
   }
   return static_cast<std::uint32_t>(price);
 }
@@ -48,7 +49,7 @@ Prices read_prices(const std::string& path) {
 std::string prices_as_json(const Prices& prices, const std::string& unit) {
   nlohmann::ordered_json json = {{"unit", unit}};
   for (const PriceRow& row : price_rows) json[row.name] = prices.*row.member / 256.0;
-  return json.dump(2) + "\n";
+  return json_text(json) + "\n";
 }
 
 std::string prices_as_header(const Prices& prices, const std::string& unit) {

@@ -3,12 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <exception>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/program.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
 #include "rt_tests/replay/replay.hpp"
 
@@ -37,24 +39,21 @@ nlohmann::json json(const greenloop::Replay& replay) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs the steps that a greenloop::Recorder kept again and compares what comes of them, bit for bit.");
+  CLI::App app("Runs the steps that a greenloop::Recorder kept again and compares what comes of them, bit for bit.",
+               "greenloop-replay");
   std::string record, model;
   bool as_json = false;
   app.add_option("RECORD", record, "file with the bytes of Recorder::record")->required()->check(CLI::ExistingFile);
   app.add_option("MODEL", model, "model file (.gloop) of the recorded body")->required()->check(CLI::ExistingFile);
   app.add_flag("--json", as_json, "machine-readable result");
-  CLI11_PARSE(app, argc, argv);
-  try {
+  return greenloop::run_program(app, argc, argv, [&] {
     const std::vector<char> bytes = read_bytes(record);
     const auto replay = greenloop::replay(std::as_bytes(std::span(bytes)), greenloop::load_file(model).span());
     if (as_json) {
-      fmt::print("{}\n", json(replay).dump(2));
+      greenloop::print_result(greenloop::json_text(json(replay)) + "\n");
     } else {
       print(replay);
     }
     return replay.differs ? 1 : 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "greenloop-replay: {}: {}\n", record, error.what());
-    return 2;
-  }
+  });
 }

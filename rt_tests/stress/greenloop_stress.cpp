@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -12,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/program.hpp"
+#include "formats/output/streams.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/pipeline/progress_bar.hpp"
@@ -46,6 +48,17 @@ std::map<std::string, ScriptKind> script_kinds() {
   return kinds;
 }
 
+/// An option of names that stand for values.
+template <class Target, class Value>
+void add_choice(CLI::App& app, const std::string& option, Target& target, const std::map<std::string, Value>& choices,
+                const std::string& help) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) names.push_back(name);
+  app.add_option_function<std::string>(
+         option, [&target, choices](const std::string& name) { target = choices.at(name); }, help)
+      ->check(CLI::IsMember(names));
+}
+
 void declare(CLI::App& app, Arguments& arguments) {
   greenloop::StressOptions& options = arguments.options;
   app.add_option("MODEL", arguments.model, "model file (.gloop)")->required()->check(CLI::ExistingFile);
@@ -53,8 +66,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of the scripts")->capture_default_str();
-  app.add_option("--script", options.script, "this script alone; else all, each on a body of its own")
-      ->transform(CLI::CheckedTransformer(script_kinds()));
+  add_choice(app, "--script", options.script, script_kinds(), "this script alone; else all, each on a body of its own");
   app.add_option("--contacts", options.contacts, "most contacts of a step; else what the model asks for")
       ->check(CLI::Range(1, 4096));
   app.add_option("--factors", options.factors, "cached factors")->check(CLI::Range(1, 1024))->capture_default_str();
@@ -81,8 +93,7 @@ void declare(CLI::App& app, Arguments& arguments) {
                                                        {"system-call", InjectedFault::system_call},
                                                        {"page-fault", InjectedFault::page_fault},
                                                        {"overrun", InjectedFault::overrun}};
-  app.add_option("--inject", options.fault, "a fault in every hundredth step, to see the verdict fail")
-      ->transform(CLI::CheckedTransformer(faults, CLI::ignore_case));
+  add_choice(app, "--inject", options.fault, faults, "a fault in every hundredth step, to see the verdict fail");
 }
 
 // of the same steps in another process
@@ -151,36 +162,35 @@ StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
   return report;
 }
 
+int run(const Arguments& arguments) {
+  const greenloop::AlignedBytes bytes = greenloop::load_file(arguments.model);
+  const auto opened = greenloop::Model::open(bytes.span());
+  if (!opened) {
+    throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
+  }
+  greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
+  if (arguments.list_steps) {
+    const auto options = options_for(opened.model, arguments);
+    greenloop::write_steps(greenloop::run_plainly<ElastostaticDriver>(opened.model, options), std::cout);
+    return 0;
+  }
+  StressReport report = stress(opened.model, arguments);
+  report.open_ms = greenloop::time_of(15, [&] { (void)greenloop::Model::open(bytes.span()); }) / 1e3;
+  if (arguments.json) {
+    greenloop::print_result(greenloop::json_text(report.json()) + "\n");
+  } else {
+    report.print();
+  }
+  return report.held() ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Random and adversarial contacts on a model; every step is checked against its declared work.");
+  CLI::App app("Random and adversarial contacts on a model; every step is checked against its declared work.",
+               "greenloop-stress");
   Arguments arguments;
   arguments.options.contacts = 0;
   declare(app, arguments);
-  CLI11_PARSE(app, argc, argv);
-  try {
-    const greenloop::AlignedBytes bytes = greenloop::load_file(arguments.model);
-    const auto opened = greenloop::Model::open(bytes.span());
-    if (!opened) {
-      throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
-    }
-    greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
-    if (arguments.list_steps) {
-      const auto options = options_for(opened.model, arguments);
-      greenloop::write_steps(greenloop::run_plainly<ElastostaticDriver>(opened.model, options), std::cout);
-      return 0;
-    }
-    StressReport report = stress(opened.model, arguments);
-    report.open_ms = greenloop::time_of(15, [&] { (void)greenloop::Model::open(bytes.span()); }) / 1e3;
-    if (arguments.json) {
-      fmt::print("{}\n", report.json().dump(2));
-    } else {
-      report.print();
-    }
-    return report.held() ? 0 : 1;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "greenloop-stress: {}\n", error.what());
-    return 2;
-  }
+  return greenloop::run_program(app, argc, argv, [&] { return run(arguments); });
 }

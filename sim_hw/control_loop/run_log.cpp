@@ -3,43 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <utility>
 
+#include "formats/output/output_file.hpp"
 #include "sim_hw/control_loop/status_name.hpp"
 
 namespace greenloop {
 namespace {
-
-/// A text file that is complete or an error.
-class TextFile {
- public:
-  explicit TextFile(const std::filesystem::path& path) : path_(path), file_(std::fopen(path.c_str(), "w")) {
-    if (file_ == nullptr) fail();
-  }
-  TextFile(const TextFile&) = delete;
-  TextFile& operator=(const TextFile&) = delete;
-  ~TextFile() {
-    if (file_ != nullptr) (void)std::fclose(file_);
-  }
-  void write(const std::string& text) {
-    if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail();
-  }
-  void close() {
-    std::FILE* const file = std::exchange(file_, nullptr);
-    if (std::fclose(file) != 0) fail();
-  }
-
- private:
-  [[noreturn]] void fail() const {
-    throw std::runtime_error(path_.string() + ": cannot be written; check the folder and the space left");
-  }
-  std::filesystem::path path_;
-  std::FILE* file_;
-};
 
 /// "x0,y0,z0,x1,..." with `prefix` before each.
 std::string vector_names(const char* prefix, std::size_t count) {
@@ -75,7 +46,7 @@ void RunLog::add(const ControlLoop& loop, std::int64_t cycle, double cpu_us) noe
 
 void RunLog::write_trace(const std::filesystem::path& file, std::size_t probes, double period,
                          const Budget& budget) const {
-  TextFile out(file);
+  OutputFile out(file);
   out.write(fmt::format("time,{}{}force,contacts,level,field_level,work,budget,status\n", vector_names("", probes),
                         vector_names("force_", probes)));
   for (const CycleRecord& r : records_) {
@@ -89,7 +60,7 @@ void RunLog::write_trace(const std::filesystem::path& file, std::size_t probes, 
 }
 
 void RunLog::write_snapshot(const std::filesystem::path& file) const {
-  TextFile out(file);
+  OutputFile out(file);
   out.write("node,x,y,z\n");
   for (std::size_t i = 0; i < largest_field_.size(); i += 4) {
     out.write(fmt::format("{},{},{},{}\n", i / 4, largest_field_[i], largest_field_[i + 1], largest_field_[i + 2]));

@@ -5,10 +5,11 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdio>
 #include <exception>
 #include <stdexcept>
+#include <string>
 
+#include "formats/output/streams.hpp"
 #include "sim_hw/transport/channel.hpp"
 #include "sim_hw/transport/lock_step.hpp"
 
@@ -42,7 +43,7 @@ void run_device(HapticDevice& device) {
       status = write(summary, &counted, sizeof(counted)) == static_cast<ssize_t>(sizeof(counted)) ? 0 : 1;
     }
   } catch (const std::exception& error) {
-    (void)std::fprintf(stderr, "greenloop-loop: %s\n", error.what());
+    say(std::string("greenloop-loop: ") + error.what() + "\n");
   }
   _exit(status);
 }

@@ -1,14 +1,17 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <exception>
-#include <iostream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
+#include "formats/output/json_text.hpp"
+#include "formats/output/output_paths.hpp"
+#include "formats/output/program.hpp"
+#include "formats/output/streams.hpp"
+#include "sim_hw/session/interruption.hpp"
 #include "sim_hw/session/session.hpp"
 #include "sim_hw/session/verdict.hpp"
 
@@ -94,7 +97,16 @@ void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs
   app.add_flag("--json", outputs.json, "Prints the verdict as JSON");
 }
 
+void require_outputs(const greenloop::SessionOptions& options, const Outputs& outputs) {
+  greenloop::CommandFiles files{.inputs = {{"the model", options.model}}, .outputs = {}};
+  if (!outputs.trace.empty()) files.outputs.push_back({"the trace", outputs.trace});
+  if (!outputs.snapshot.empty()) files.outputs.push_back({"the snapshot", outputs.snapshot});
+  greenloop::require_writable(files);
+}
+
 int run(const greenloop::SessionOptions& options, const Outputs& outputs) {
+  require_outputs(options, outputs);
+  greenloop::await_interruption();
   const greenloop::SessionResult result = greenloop::run_session(options);
   const greenloop::Verdict verdict = greenloop::judge(result, outputs.judge_time);
   if (!outputs.trace.empty()) {
@@ -103,29 +115,24 @@ int run(const greenloop::SessionOptions& options, const Outputs& outputs) {
   }
   if (!outputs.snapshot.empty()) result.log.write_snapshot(outputs.snapshot);
   if (outputs.json) {
-    std::cout << greenloop::to_json(options, result, verdict).dump(2) << '\n';
+    greenloop::print_result(greenloop::json_text(greenloop::to_json(options, result, verdict)) + "\n");
   } else {
-    std::cout << greenloop::to_text(options, result, verdict);
+    greenloop::print_result(greenloop::to_text(options, result, verdict));
   }
+  if (result.interruption != 0) return 128 + result.interruption;
   return verdict.passed() ? 0 : 1;
 }
 
 }  // namespace
 
 /// Exit status 0: every cycle held its budget, and its share of the period where that is judged. 1: it did not, or the
-/// run could not start. 2: wrong usage.
+/// run could not start. 2: wrong usage. 128 + n: signal n ended the run, with the trace and the verdict of its cycles
+/// until then.
 int main(int argc, char** argv) {
-  CLI::App app{"Drives a control loop on a Greenloop model with a simulated haptic device, in virtual time."};
+  CLI::App app{"Drives a control loop on a Greenloop model with a simulated haptic device, in virtual time.",
+               "greenloop-loop"};
   greenloop::SessionOptions options;
   Outputs outputs;
   declare(app, options, outputs);
-  try {
-    app.parse(argc, argv);
-    return run(options, outputs);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  } catch (const std::exception& error) {
-    std::cerr << "greenloop-loop: " << error.what() << '\n';
-    return 1;
-  }
+  return greenloop::run_program(app, argc, argv, [&] { return run(options, outputs); });
 }

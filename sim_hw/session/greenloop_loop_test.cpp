@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/output/output_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "sim_hw/session/testing/program_run.hpp"
 

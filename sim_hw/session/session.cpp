@@ -10,6 +10,7 @@
 #include "sim_hw/control_loop/loop_thread.hpp"
 #include "sim_hw/session/device_process.hpp"
 #include "sim_hw/session/hosted_loop_body.hpp"
+#include "sim_hw/session/interruption.hpp"
 #include "sim_hw/session/loaded_model.hpp"
 #include "sim_hw/transport/channel.hpp"
 #include "sim_hw/transport/lock_step.hpp"
@@ -98,7 +99,7 @@ void run_in_memory(HapticDevice& device, LoopThread& loop, SessionResult& result
   channel.on_state([&](const DeviceState& state) { end.receive(state); });
   channel.on_command([&](const LoopCommand& command) { device_end.receive(command); });
   device_end.start();
-  while (!device.finished()) {
+  while (!device.finished() && interruption() == 0) {
     if (!channel.receive(DeviceEnd::patience_ms)) device_end.silence();
   }
 }
@@ -110,8 +111,9 @@ void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& re
   channel.on_state([&](const DeviceState& state) { end.receive(state); });
   device.start();
   while (!device.ended()) {
-    while (channel.receive(20)) {
+    while (interruption() == 0 && channel.receive(20)) {
     }
+    if (interruption() != 0) return;
   }
   result.device = device.summary();
 }
@@ -154,6 +156,7 @@ SessionResult run_session(const SessionOptions& options) {
     result.device = device.summary();
   }
   result.allocations = thread.allocations();
+  result.interruption = interruption();
   return result;
 }
 

@@ -45,6 +45,7 @@ struct SessionResult {
   DeviceSummary device;
   std::int64_t loop_digest = 0;  ///< of the last command sent
   std::uint64_t allocations = 0;
+  int interruption = 0;  ///< the signal that ended the run early, 0: none
   RunLog log{0, 0};
 };
 

@@ -98,6 +98,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
       {"processes", result.processes},
       {"retransmits", result.device.retransmits},
   };
+  if (result.interruption != 0) json["interrupted_by"] = result.interruption;
   if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
   return json;
 }
@@ -121,7 +122,9 @@ std::string to_text(const SessionOptions& options, const SessionResult& result, 
   text += fmt::format("  transport  {}, {} process{}{}, {} retransmissions\n", result.transport, result.processes,
                       result.processes == 1 ? "" : "es", reason, result.device.retransmits);
   if (verdict.first_miss >= 0) text += fmt::format("  first miss in cycle {}\n", verdict.first_miss);
-  if (result.device.stopped) {
+  if (result.interruption != 0) {
+    text += fmt::format("  interrupted by signal {}\n", result.interruption);
+  } else if (result.device.stopped) {
     text += fmt::format("  stopped    {} late commands in a row\n", CommandArrival::most_in_a_row);
   } else if (!verdict.complete) {
     text += "  incomplete: device and loop do not agree on what was sent\n";

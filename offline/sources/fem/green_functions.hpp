@@ -18,8 +18,8 @@ struct SolveReport {
 
 /// Solves every column the store lacks, U = B K^-1 B^T (theory.md, section 1, in force form), from the volume, the
 /// material, the interpolation and the fixed vertices in the store, and writes them block by block, so that a killed
-/// run is resumed by opening the store and calling this again. The columns' bits depend neither on the block nor
-/// on where a run was interrupted beyond round-off of 1e-13.
+/// run is resumed by opening the store and calling this again: the columns' bits do not depend on where it was
+/// interrupted.
 /// Work: one sparse factorisation, then 4 factor_entries per right-hand side. Memory: the factor and one block.
 /// Throws std::runtime_error when the body is not supported, the columns depend on each other, the result is more
 /// asymmetric than 1e-8, or the store has no volume.
