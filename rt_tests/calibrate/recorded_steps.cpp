@@ -9,9 +9,9 @@ namespace {
 
 using Host = Hosted<Elastostatic>;
 
-constexpr std::size_t kinds = contact_script_names.size() - 1;
+constexpr std::size_t kinds = contact_script_names.size() - 2;
 
-// all kinds but the one whose steps are refused
+// all kinds but the one whose steps are refused and, last, the hunt for dear ones
 constexpr ScriptKind kind_of(std::size_t k) {
   return static_cast<ScriptKind>(k < static_cast<std::size_t>(ScriptKind::garbage) ? k : k + 1);
 }

@@ -4,12 +4,14 @@
 #include <cfloat>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 namespace {
 
+constexpr std::uint32_t cycles_of_dear_set = 4;
 constexpr std::size_t patch_sets = 4;  // disjoint sets that a patch has room for
 
 const float* position(const ModelView& view, std::uint32_t node) { return node_record(view, node).position; }
@@ -31,8 +33,9 @@ std::mt19937_64 generator(ScriptKind kind, std::uint64_t seed) {
 
 }  // namespace
 
-ContactScript::ContactScript(const ModelView& view, const ScriptBounds& bounds, ScriptKind kind, std::uint64_t seed)
-    : view_(&view), bounds_(bounds), script_(kind), random_(generator(kind, seed)) {
+ContactScript::ContactScript(const ModelView& view, const ScriptBounds& bounds, ScriptKind kind, std::uint64_t seed,
+                             std::vector<DearSet> dear)
+    : view_(&view), bounds_(bounds), script_(kind), dear_(std::move(dear)), random_(generator(kind, seed)) {
   list_touchable();
   if (touchable_.empty()) {
     throw std::runtime_error(
@@ -106,6 +109,10 @@ void ContactScript::begin_burst() {
     draw_sets();
   } else if (kind_ == ScriptKind::every_node) {
     scatter(most_);
+  } else if (kind_ == ScriptKind::hunt && !dear_.empty()) {
+    // every other time the finest level's
+    dear_set_ = below(2) == 0 ? dear_.size() - 1 : below(dear_.size());
+    remaining_ = bounds_.sets + cycles_of_dear_set;
   }
 }
 
@@ -179,6 +186,9 @@ void ContactScript::place_contacts() {
     case ScriptKind::release:
       step_.contacts.clear();
       break;
+    case ScriptKind::hunt:
+      touch_dear_set();
+      break;
     case ScriptKind::garbage:
     case ScriptKind::mixed:  // is never the kind of a burst
       scatter(1 + below(most_));
@@ -222,6 +232,27 @@ void ContactScript::scatter(std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(shuffled_[i], shuffled_[i + below(shuffled_.size() - i)]);
     step_.contacts.push_back({shuffled_[i], {1e-4F * uniform(), 1e-4F * uniform(), 1e-4F * uniform()}});
+  }
+}
+
+// after strangers, so that no factor is at hand
+void ContactScript::touch_dear_set() {
+  step_.with_field = true;
+  if (dear_.empty()) {
+    scatter(most_);
+    return;
+  }
+  const std::vector<std::uint32_t>& dear = dear_[dear_set_].nodes;
+  if (age_ < bounds_.sets) {
+    do {
+      scatter(1);
+    } while (dear.size() < touchable_.size() &&
+             std::find(dear.begin(), dear.end(), step_.contacts[0].node) != dear.end());
+    return;
+  }
+  step_.contacts.clear();
+  for (const std::uint32_t node : dear) {
+    step_.contacts.push_back({node, {1e-4F * uniform(), 1e-4F * uniform(), 1e-4F * uniform()}});
   }
 }
 
@@ -270,8 +301,14 @@ void ContactScript::draw_budget() {
     step_.budget = age_ % 2 == 0 ? least : ~std::uint64_t{0};
     return;
   }
-  if (unlimited_) {
+  if (unlimited_ || (kind_ == ScriptKind::hunt && (dear_.empty() || age_ < bounds_.sets))) {
     step_.budget = ~std::uint64_t{0};
+    return;
+  }
+  if (kind_ == ScriptKind::hunt) {
+    // the budget of the level's answer or of one at a finer level, and such as do not quite hold one
+    const std::uint64_t works[] = {least, dear_[dear_set_].work, dear_.back().work, ~std::uint64_t{0}};
+    step_.budget = std::max(least, works[below(std::size(works))] - below(2) * below(least));
     return;
   }
   switch (below(8)) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/view.hpp"
+#include "rt_tests/harness/dear_sets.hpp"
 #include "rt_tests/harness/script_bounds.hpp"
 #include "runtime/constraint.hpp"
 
@@ -26,11 +27,12 @@ enum class ScriptKind : std::uint8_t {
   extremes,      ///< displacements from zero over denormal to far too large
   release,       ///< nothing is touched
   garbage,       ///< NaN, infinite, out of range, not touchable, twice, too many
-  mixed          ///< bursts of all the others in random order
+  mixed,         ///< bursts of all of those in random order
+  hunt           ///< the dearest sets that a hunt finds, at budgets that hold them and such that do not quite
 };
-inline constexpr std::array<const char*, 13> contact_script_names = {
+inline constexpr std::array<const char*, 14> contact_script_names = {
     "single",       "press",       "slide",    "every-node", "neighbours", "coincident", "random",
-    "defeat-cache", "flap-levels", "extremes", "release",    "garbage",    "mixed"};
+    "defeat-cache", "flap-levels", "extremes", "release",    "garbage",    "mixed",      "hunt"};
 
 constexpr const char* name(ScriptKind kind) { return contact_script_names[static_cast<std::size_t>(kind)]; }
 
@@ -46,8 +48,10 @@ struct ScriptedStep {
 /// unlimited in the others. The same kind and seed give the same script.
 class ContactScript {
  public:
-  /// `view` must outlive it. Throws std::runtime_error if no node is touchable.
-  ContactScript(const ModelView& view, const ScriptBounds& bounds, ScriptKind kind, std::uint64_t seed);
+  /// `view` must outlive it. dear: what `hunt` goes over, needed by no other. Throws std::runtime_error if no node is
+  /// touchable.
+  ContactScript(const ModelView& view, const ScriptBounds& bounds, ScriptKind kind, std::uint64_t seed,
+                std::vector<DearSet> dear = {});
 
   /// The next cycle; valid until the one after. Not for an armed section: it allocates.
   const ScriptedStep& next();
@@ -64,6 +68,7 @@ class ContactScript {
   void touch(std::size_t first, std::size_t count, float depth);
   void touch_pairs(std::size_t count);
   void scatter(std::size_t count);
+  void touch_dear_set();
   void displace_extremely();
   void spoil();
   void draw_budget();
@@ -78,6 +83,7 @@ class ContactScript {
   std::uint32_t not_touchable_ = layout::none;  ///< a node that is not, if there is one
   std::vector<Pair> short_edges_;               ///< of touchable nodes, shortest first
   std::size_t most_ = 0;                        ///< contacts at once
+  std::vector<DearSet> dear_;
   std::mt19937_64 random_;
 
   // of a burst
@@ -86,7 +92,8 @@ class ContactScript {
   std::uint32_t age_ = 0;
   bool unlimited_ = false;
   float direction_[3] = {};
-  std::size_t size_ = 0;                       ///< contacts
+  std::size_t size_ = 0;  ///< contacts
+  std::size_t dear_set_ = 0;
   std::size_t shift_ = 0;                      ///< nodes between two sets in turn
   std::vector<std::uint32_t> patch_;           ///< touchable nodes around its centre, nearest first
   std::vector<std::vector<Constraint>> sets_;  ///< those that take turns

@@ -86,7 +86,7 @@ std::vector<ReportedStep> run_plainly(const Model& model, const StressOptions& o
   Hosted<typename D::Solver> host(model, D::limits(options.contacts, options.factors, options.prices));
   std::vector<ReportedStep> steps;
   visit_scripts(options, [&](ScriptKind kind, std::uint64_t cycles) {
-    ContactScript script(model.view(), D::bounds(host.limits(), host.requirement()), kind, options.seed);
+    ContactScript script = script_of<D>(model, host, kind, options.seed);
     host.renew();
     for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
       const ScriptedStep& scripted = script.next();

@@ -37,7 +37,7 @@ template <Driver D>
 class StressRun {
  public:
   StressRun(const Model& model, const StressOptions& options)
-      : view_(&model.view()),
+      : model_(&model),
         options_(options),
         host_(model, D::limits(options.contacts, options.factors, options.prices)),
         bounds_(D::bounds(host_.limits(), host_.requirement())) {
@@ -61,7 +61,7 @@ class StressRun {
  private:
   using StepReport = typename D::Solver::StepReport;
 
-  ContactScript script(ScriptKind kind) const { return {*view_, bounds_, kind, options_.seed}; }
+  ContactScript script(ScriptKind kind) const { return script_of<D>(*model_, host_, kind, options_.seed); }
 
   StepReport step(const ScriptedStep& scripted) {
     return host_.step(scripted.contacts, scripted.budget, scripted.with_field);
@@ -196,7 +196,7 @@ class StressRun {
     script_digest_.add(field_of(scripted));
   }
 
-  const ModelView* view_;
+  const Model* model_;
   StressOptions options_;
   Hosted<typename D::Solver> host_;
   ScriptBounds bounds_;

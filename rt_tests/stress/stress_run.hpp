@@ -3,10 +3,13 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "rt_tests/harness/contact_script.hpp"
+#include "rt_tests/harness/dear_sets.hpp"
 #include "rt_tests/harness/driver.hpp"
+#include "runtime/hosted/hosted.hpp"
 #include "runtime/model.hpp"
 #include "runtime/prices.hpp"
 #include "sim_hw/guard/time_histogram.hpp"
@@ -88,6 +91,17 @@ void visit_scripts(const StressOptions& options, Visit visit) {
       visit(options.script.value_or(static_cast<ScriptKind>(k)), share);
     }
   }
+}
+
+/// The script of a kind for a body.
+template <Driver D>
+[[nodiscard]] ContactScript script_of(const Model& model, const Hosted<typename D::Solver>& host, ScriptKind kind,
+                                      std::uint64_t seed) {
+  std::vector<DearSet> dear;
+  if (kind == ScriptKind::hunt) {
+    dear = dear_sets<D>(model, host.limits(), seed);
+  }
+  return {model.view(), D::bounds(host.limits(), host.requirement()), kind, seed, std::move(dear)};
 }
 
 /// Runs a ContactScript of every kind on bodies of `model`, every step with the guards of sim_hw/guard armed, and

@@ -20,6 +20,26 @@ const ScriptResult& result_of(const StressResult& result, ScriptKind kind) {
   return *std::find_if(result.scripts.begin(), result.scripts.end(), [kind](auto& s) { return s.kind == kind; });
 }
 
+double declared_over_worst(const StressResult& result) {
+  return static_cast<double>(result.declared_work) / static_cast<double>(result.counts.worst_work);
+}
+
+// which neighbours are lifted into a node is not known where work is declared (bound_columns)
+double bar_of(layout::Wavelet wavelet) { return layout::is_lifted(wavelet) ? 1.45 : 1.2; }
+
+// as a processor without much cache may have them: what is done once a coefficient is dear, what a block takes is not
+Prices dear_coefficients() {
+  Prices prices;
+  prices.slot = 1500 * 256;
+  prices.coefficient = 1000 * 256;
+  prices.pair_visit = 100 * 256;
+  prices.pair_visit_by_blocks = 130 * 256;
+  prices.scaled_block = 10 * 256;
+  prices.meeting_by_blocks = 16 * 256;
+  prices.functional_visit = 20 * 256;
+  return prices;
+}
+
 TEST_CASE("no script makes a body spend more than declared, answer garbage, allocate, lock or enter the kernel") {
   const SyntheticOptions models[] = {{.levels = 1},
                                      {.levels = 3, .epsilon = 0, .quantum = 0},
@@ -28,7 +48,9 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
                                      {.levels = 5, .touchable_above = 0.5},
                                      {.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly},
                                      {.levels = 4, .wavelet = layout::Wavelet::butterfly},
-                                     {.levels = 4, .wavelet = layout::Wavelet::equilibrated}};
+                                     {.levels = 4, .wavelet = layout::Wavelet::equilibrated},
+                                     {.levels = 5, .wavelet = layout::Wavelet::equilibrated, .touchable_above = 0.5},
+                                     {.levels = 5, .coarsest_constraint_level = 1, .wavelet = layout::Wavelet::linear}};
   constexpr std::pair<std::uint32_t, std::uint32_t> limits[] = {{1, 1}, {16, 3}, {33, 8}};
   std::uint64_t seed = 0;
   for (const auto& synthetic : models) {
@@ -38,24 +60,39 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
       CAPTURE(contacts);
       CAPTURE(seed);
       const StressResult result =
-          stress(synthetic, {.cycles = 1300, .seed = seed, .contacts = contacts, .factors = factors});
+          stress(synthetic, {.cycles = 1400, .seed = seed, .contacts = contacts, .factors = factors});
       CHECK(result.violations.work_overruns == 0);
       CHECK(result.violations.wrong_answers == 0);
       CHECK(result.violations.allocations == 0);
       CHECK(result.violations.locks == 0);
       CHECK(result.violations.system_calls == 0);
       CHECK(result.violations.minor_faults == 0);
-      CHECK(result.counts.worst_work > result.declared_work / 8);
+      CHECK(declared_over_worst(result) <= bar_of(synthetic.wavelet));
       CHECK(result.times.total() == result.cycles);
       CHECK(result.held());
     }
   }
 }
 
+TEST_CASE("what is declared is near what the dearest sets take, at other prices too") {
+  for (const layout::Wavelet wavelet : layout::wavelets) {
+    const TestModel model({.levels = 4, .wavelet = wavelet});
+    for (const std::uint32_t contacts : {4U, 16U, 64U}) {
+      CAPTURE(static_cast<std::uint32_t>(wavelet));
+      CAPTURE(contacts);
+      const StressResult result = run_stress<ElastostaticDriver>(
+          model.model(),
+          {.cycles = 400, .script = ScriptKind::hunt, .contacts = contacts, .prices = dear_coefficients()});
+      CHECK(result.held());
+      CHECK(declared_over_worst(result) <= bar_of(wavelet));
+    }
+  }
+}
+
 TEST_CASE("every script does what its name says") {
-  const StressResult result = stress({.levels = 4}, {.cycles = 13003, .seed = 5, .contacts = 16, .factors = 3});
+  const StressResult result = stress({.levels = 4}, {.cycles = 14003, .seed = 5, .contacts = 16, .factors = 3});
   REQUIRE(result.scripts.size() == contact_script_names.size());
-  CHECK(result.cycles == 13003);
+  CHECK(result.cycles == 14003);
   std::set<std::uint64_t> digests;
   for (const ScriptResult& script : result.scripts) {
     CAPTURE(name(script.kind));
@@ -77,6 +114,7 @@ TEST_CASE("every script does what its name says") {
   CHECK(result_of(result, ScriptKind::press).force_step_max == 0);
   CHECK(result_of(result, ScriptKind::single).counts.worst_work <
         result_of(result, ScriptKind::every_node).counts.worst_work);
+  CHECK(result_of(result, ScriptKind::hunt).counts.worst_work == result.counts.worst_work);
   for (const Status status : {Status::held_not_finite, Status::held_out_of_range, Status::held_not_touchable,
                               Status::held_duplicate, Status::held_over_budget}) {
     CHECK(result.counts.of(status) > 0);
@@ -84,7 +122,7 @@ TEST_CASE("every script does what its name says") {
 }
 
 TEST_CASE("the same seed gives the same digest, another seed another") {
-  const StressOptions options{.cycles = 1300, .seed = 3, .contacts = 8, .factors = 2};
+  const StressOptions options{.cycles = 1400, .seed = 3, .contacts = 8, .factors = 2};
   StressOptions other = options;
   other.seed = 4;
   const std::uint64_t digest = stress({.levels = 3}, options).digest;
@@ -93,7 +131,7 @@ TEST_CASE("the same seed gives the same digest, another seed another") {
 }
 
 TEST_CASE("a script alone does what it did among the others") {
-  StressOptions options{.cycles = 2600, .seed = 9, .contacts = 8, .factors = 2};
+  StressOptions options{.cycles = 2800, .seed = 9, .contacts = 8, .factors = 2};
   const TestModel model({.levels = 3});
   const StressResult all = run_stress<ElastostaticDriver>(model.model(), options);
   options.cycles = 200;

@@ -43,6 +43,26 @@ void fill_degrees(const ModelView& view, std::uint32_t c, Degrees& degrees) {
   }
 }
 
+// some places among a few thousand
+struct Places {
+  static constexpr std::uint32_t most = 4096;
+  std::uint64_t bits[most / 64] = {};
+
+  void add(std::uint32_t place) {
+    if (place < most) {
+      bits[place / 64] |= std::uint64_t{1} << place % 64;
+    }
+  }
+  // those in first .. end-1, and all that are beyond
+  [[nodiscard]] std::uint64_t count(std::uint32_t first, std::uint32_t end) const {
+    std::uint64_t sum = 0;
+    for (std::uint32_t place = first; place < end; ++place) {
+      sum += place < most ? bits[place / 64] >> place % 64 & 1 : 1;
+    }
+    return sum;
+  }
+};
+
 // what one column reaches
 struct Reach {
   std::uint32_t coefficients[layout::max_levels] = {};
@@ -58,9 +78,7 @@ struct OddNodes {
   std::uint32_t twice = 0;  // lifted into two, neighbours of both
 };
 
-// forces on the odd nodes of a support, whose coefficients are known unless others are lifted into the same nodes
-OddNodes add_odd_nodes(const ModelView& view, std::uint32_t level, const PointSupport& support, const Degrees* degrees,
-                       Reach& reach) {
+OddNodes count_odd_nodes(const ModelView& view, std::uint32_t level, const PointSupport& support) {
   const LevelView& at = view.level[level];
   OddNodes odd;
   for (std::uint32_t k = 0; k < support.count(); ++k) {
@@ -72,36 +90,45 @@ OddNodes add_odd_nodes(const ModelView& view, std::uint32_t level, const PointSu
     ++odd.count;
     odd.alone += lift[0] == 0 && lift[1] == 0 ? 1 : 0;
     odd.twice += lift[0] != 0 && lift[1] != 0 ? 1 : 0;
-    reach.blocks += degrees != nullptr ? degrees->of(level, at.domain_begin + i) : 0;
   }
   return odd;
 }
 
+// the coefficients of the nodes of M(level) in a support
+void add_coefficients(const ModelView& view, std::uint32_t level, const PointSupport& support, const Degrees& degrees,
+                      Places& reached, Reach& reach) {
+  for (std::uint32_t k = 0; k < support.count(); ++k) {
+    if (support.node(k) >= view.level[level].node_begin) {
+      const std::uint32_t place = domain_place(view, level, support.node(k));
+      ++reach.coefficients[level];
+      reach.blocks += degrees.of(level, place);
+      reached.add(place);
+    }
+  }
+}
+
 [[gnu::noinline]] Reach reach_of(const ModelView& view, std::uint32_t column, const LiftingCounts* lifting,
-                                 const Degrees& degrees) {
+                                 const Degrees& degrees, Places& reached) {
   PointSupport supports[2] = {PointSupport(most_support(view)), PointSupport(most_support(view))};
   PointSupport* support = supports;
   PointSupport* coarse = supports + 1;
   Reach reach;
   support->add(domain_node(view, column_place(column)));
   for (std::uint32_t level = column_level(column); level > 0; --level) {
-    const bool lifted = lifting[level].most_neighbours > 0;
-    const OddNodes odd = add_odd_nodes(view, level, *support, lifted ? nullptr : &degrees, reach);
+    const OddNodes odd = count_odd_nodes(view, level, *support);
     static_cast<void>(coarsen(view, level, *support, *coarse));
     reach.forced[level] = odd.count;
     reach.even[level] = coarse->count();
-    reach.coefficients[level] = odd.count;
-    if (lifted) {
+    if (lifting[level].most_neighbours == 0) {
+      add_coefficients(view, level, *support, degrees, reached, reach);
+    } else {
       const std::uint32_t neighbours = coarse->count() * lifting[level].most_neighbours - odd.twice + odd.alone;
       reach.coefficients[level] = std::min(view.level[level].counts->domain_count, neighbours);
       reach.blocks += reach.coefficients[level] * degrees.largest(view, level);
     }
     std::swap(support, coarse);
   }
-  reach.coefficients[0] = support->count();
-  for (std::uint32_t k = 0; k < support->count(); ++k) {
-    reach.blocks += degrees.of(0, domain_place(view, support->node(k)));
-  }
+  add_coefficients(view, 0, *support, degrees, reached, reach);
   return reach;
 }
 
@@ -113,6 +140,7 @@ struct AllReach {
   ColumnBounds bounds;
   ValueCounts<0> coefficients[layout::max_levels];
   ValueCounts<> blocks;
+  Places reached;
 
   void add(const Reach& reach) {
     std::uint64_t sum = 0;
@@ -132,24 +160,21 @@ struct AllReach {
   void sum_up(std::uint32_t set_columns) {
     for (std::uint32_t q = 0; q < view.levels; ++q) {
       bounds.coefficients[q] = coefficients[q].largest(set_columns);
+      const LevelView& level = view.level[q];
+      bounds.reached[q] = lifting[q].most_neighbours == 0 ? reached.count(level.domain_begin, domain_up_to(view, q))
+                                                          : level.counts->domain_count;
     }
     bounds.blocks = blocks.largest(set_columns);
   }
 };
 
 // the places, from `first` on, of the columns of level c that touchable nodes are represented by
-struct Places {
-  static constexpr std::uint32_t most = 8192;
-  std::uint64_t bits[most / 64] = {};
-};
-
 void mark_places(const ModelView& view, std::uint32_t c, std::uint32_t first, Places& places) {
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const LevelView& level = view.level[q];
     for (std::uint32_t i = 0; i < level.counts->node_count; ++i) {
       if ((level.nodes[i].flags & layout::node_touchable) != 0) {
-        const std::uint32_t place = domain_place(view, view.representatives[c][q][i]) - first;
-        places.bits[place < Places::most ? place / 64 : 0] |= std::uint64_t{place < Places::most} << place % 64;
+        places.add(domain_place(view, view.representatives[c][q][i]) - first);
       }
     }
   }
@@ -171,8 +196,8 @@ void visit_columns(const ModelView& view, std::uint32_t c, Visit visit) {
 // apart, so that the degrees have a frame of their own
 [[gnu::noinline]] ColumnBounds bound_with(const ModelView& view, std::uint32_t c, std::uint32_t set_columns,
                                           const LiftingCounts* lifting, const Degrees& degrees) {
-  AllReach all{view, lifting, prediction_of(view).length, {}, {}, {}};
-  visit_columns(view, c, [&](std::uint32_t column) { all.add(reach_of(view, column, lifting, degrees)); });
+  AllReach all{view, lifting, prediction_of(view).length, {}, {}, {}, {}};
+  visit_columns(view, c, [&](std::uint32_t column) { all.add(reach_of(view, column, lifting, degrees, all.reached)); });
   all.sum_up(set_columns);
   return all.bounds;
 }

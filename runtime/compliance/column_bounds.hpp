@@ -10,7 +10,8 @@ namespace greenloop {
 
 /// What the columns of a constraint level cost at most, of those that touchable nodes are represented by.
 struct ColumnBounds {
-  std::uint32_t columns = 0;  ///< that there are
+  std::uint32_t columns = 0;                       ///< that there are
+  std::uint64_t reached[layout::max_levels] = {};  ///< coefficients of each level that all of them reach together
   // of one
   std::uint64_t all_coefficients = 0;             ///< that it reaches
   std::uint64_t visits = 0;                       ///< of touching those
@@ -29,7 +30,8 @@ constexpr std::uint64_t neighbour_visits(const LiftingCounts& lifting, std::uint
 
 /// Of sets of at most `set_columns` columns of level c; blocks are those with levels 0..c. lifting: of every level.
 /// bound_reach must have bounded the level. Exact but for the blocks of coefficients after the first 1,024, for which
-/// the largest count of their level stands, and for lifted wavelets, whose neighbours are not listed here. Start-up;
+/// the largest count of their level stands, for those after the first 4,096, which count as reached, and for lifted
+/// wavelets, whose neighbours are not listed here. Start-up;
 /// linear in the level's nodes times levels, and in the blocks.
 [[nodiscard]] ColumnBounds bound_columns(const ModelView& view, std::uint32_t c, std::uint32_t set_columns,
                                          const LiftingCounts* lifting) noexcept;

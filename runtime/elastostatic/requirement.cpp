@@ -37,12 +37,25 @@ std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
 
 std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
 
+// most contacts of a step that is answered
+std::uint32_t answered_contacts(const ModelView& view, const Elastostatic::Limits& limits) {
+  std::uint32_t touchable = 0;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
+    touchable += static_cast<std::uint32_t>(
+        std::count_if(level.nodes, level.nodes + level.counts->node_count,
+                      [](const layout::NodeRecord& node) { return (node.flags & layout::node_touchable) != 0; }));
+  }
+  return std::min(touchable, limits.max_contacts);
+}
+
 // of columns of two levels in one set
 ColumnBounds larger_bounds(const ColumnBounds& a, const ColumnBounds& b) {
   ColumnBounds both = a;
   both.columns += b.columns;
   both.visits = larger(a.visits, b.visits);
   for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
+    both.reached[q] += b.reached[q];
     both.coefficients[q] += b.coefficients[q];
     both.forced[q] = std::max(a.forced[q], b.forced[q]);
     both.even[q] = std::max(a.even[q], b.even[q]);
@@ -128,17 +141,17 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   MostCounts most_of[layout::max_levels];
   SetCounts mixed_of[layout::max_levels];
   ColumnBounds finest;
+  const std::uint32_t contacts = answered_contacts(view, limits);
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const ReachBound reach = bound_reach(view, c, sizes.lifting);
     if (!reach.bounded) {
       return;
     }
     sizes.functional = larger(sizes.functional, functional_of(view, reach));
-    const ColumnBounds bounds = bound_columns(view, c, limits.max_contacts, sizes.lifting);
+    const ColumnBounds bounds = bound_columns(view, c, contacts, sizes.lifting);
     finest = c + 1 == view.levels ? bounds : finest;
-    most_of[c] = most_counts(view, c, limits.max_contacts, bounds, sizes.lifting);
-    mixed_of[c] =
-        most_counts(view, view.levels - 1, limits.max_contacts, larger_bounds(finest, bounds), sizes.lifting).set;
+    most_of[c] = most_counts(view, c, contacts, bounds, sizes.lifting);
+    mixed_of[c] = most_counts(view, view.levels - 1, contacts, larger_bounds(finest, bounds), sizes.lifting).set;
   }
   add_blocks(view, base.columns(), most_of);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;

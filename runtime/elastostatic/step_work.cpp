@@ -98,8 +98,7 @@ MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max
   counts.column = {counts.columns * bounds.all_coefficients, bounds.blocks, counts.columns * bounds.visits};
   counts.visits = counts.columns;
   for (std::uint32_t q = 0; q <= c; ++q) {
-    const std::uint64_t in_level = view.level[q].counts->domain_count;
-    most.touched[q] = smaller(in_level, bounds.coefficients[q]);
+    most.touched[q] = smaller(bounds.reached[q], bounds.coefficients[q]);
     counts.coefficients += most.touched[q];
     // a coefficient of level 0 is predicted by none, and without lifting a force is on every other one
     const std::uint64_t forced = q > 0 ? smaller(most.touched[q], counts.columns * bounds.forced[q]) : 0;
