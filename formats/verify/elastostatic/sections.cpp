@@ -69,6 +69,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
          check.require_at_least("lambda_min", 0, info.lambda_min, 0) && verify_box(check, info) &&
          check.require_above("rate", 0, info.rate, 0) &&
          check.require_at_least("max_contacts", 0, info.max_contacts, 1) &&
+         check.require_at_most("max_contacts", 0, info.max_contacts, layout::most_contacts) &&
          check.require_at_most("coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          check.require_equal("finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
          verify_quanta(check, info) &&
