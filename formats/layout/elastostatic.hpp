@@ -109,6 +109,12 @@ constexpr std::uint16_t first_minor(const Info& info) {
 // Forces and fields are of one compliance, that of all couplings: u = W^-1 (W U W^T) T^-T f for forces f on constraint
 // level c.
 
+/// Contacts that a model may ask for: no more than this, and for each pair of one of them (of as many as the domain
+/// has) and a domain node the file has a quarter of a byte. What a body of `max_contacts` takes is so bounded by the
+/// length of its file; up to 128 contacts are never refused.
+inline constexpr std::uint32_t most_contacts = 4096;
+inline constexpr std::uint64_t contact_pairs_per_byte = 4;
+
 /// The model cut off after this level: the compliance between the averages of level q, which are the forces and the
 /// displacements of constraint level q. Errors against the exact one, all relative.
 struct Level {

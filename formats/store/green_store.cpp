@@ -1,6 +1,8 @@
 #include "formats/store/green_store.hpp"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -11,12 +13,33 @@
 #include "formats/store/green_store_contents.hpp"
 #include "formats/store/hdf5_fault.hpp"
 #include "formats/store/hdf5_file.hpp"
+#include "formats/verify/crc32c.hpp"
 
 namespace greenloop {
 namespace {
 
 constexpr const char* kDone = "/green/done";
 constexpr std::string_view unfinished_ending = ".h5.part";
+constexpr const char* kChecksum = "/green/checksum";
+constexpr const char* kNotBelieved = "the store is damaged; build it again (greenloop build --overwrite-store)";
+
+constexpr std::array kDatasets{"/surface/position",
+                               "/surface/parents",
+                               "/surface/base_triangles",
+                               "/surface/vertex_end",
+                               "/surface/area",
+                               "/surface/flags",
+                               "/green/row_node",
+                               "/green/column_node",
+                               "/green/displacement",
+                               "/green/checksum",
+                               "/green/done",
+                               "/volume/position",
+                               "/volume/tetrahedra",
+                               "/volume/fixed",
+                               "/volume/interpolation/row_start",
+                               "/volume/interpolation/column",
+                               "/volume/interpolation/weight"};
 
 Hdf5Shape displacement_shape(const GreenStoreContents& contents) {
   const auto components = static_cast<hsize_t>(contents.components);
@@ -35,6 +58,7 @@ void reserve_columns(Hdf5File& file, const GreenStoreContents& contents) {
   file.write_text(kDisplacement, "axes",
                   contents.components == 3 ? "column, force component, row, displacement component"
                                            : "column, load component, row, answer component");
+  file.write(kChecksum, {contents.column_node.size()}, std::vector<std::uint32_t>(contents.column_node.size(), 0));
   file.write(kDone, {contents.column_node.size()}, std::vector<unsigned char>(contents.column_node.size(), 0));
 }
 
@@ -79,7 +103,40 @@ struct GreenStore::File {
   Hdf5File hdf5;
   GreenStoreContents contents;
   std::vector<unsigned char> done;
+  std::vector<std::uint32_t> checksum;  // of each column; empty of a store made elsewhere
   bool writable;
+  std::vector<unsigned char> checked{};  // columns that were read and found right
+
+  [[nodiscard]] std::size_t column_size() const {
+    const std::size_t components = contents.components;
+    return components * components * contents.row_node.size();
+  }
+
+  // The N loads of a column node lie one after the other, in the file as in the matrix.
+  [[nodiscard]] std::uint32_t checksum_of(const double* column) const {
+    return crc32c(std::as_bytes(std::span(column, column_size())));
+  }
+
+  void require_right(int column, const double* values) const {
+    if (!checksum.empty() && checksum_of(values) != checksum[column]) {
+      hdf5.fail(kDisplacement,
+                "column " + std::to_string(column) + " differs from its checksum; " + std::string(kNotBelieved));
+    }
+    const bool zero = std::all_of(values, values + column_size(), [](double value) { return value == 0; });
+    if (zero) hdf5.fail(kDisplacement, "column " + std::to_string(column) + " is all zero; " + kNotBelieved);
+  }
+
+  void check_columns(int first, int count) {
+    std::vector<double> column(column_size());
+    const auto width = static_cast<hsize_t>(contents.components), rows = hsize_t{contents.row_node.size()};
+    checked.resize(done.size());
+    for (int c = first; c < first + count; ++c) {
+      if (checked[c] != 0) continue;
+      hdf5.read_part(kDisplacement, {static_cast<hsize_t>(c), 0, 0, 0}, {1, width, rows, width}, column.data());
+      require_right(c, column.data());
+      checked[c] = 1;
+    }
+  }
 
   void require_columns(int first, int count) const {
     if (first < 0 || count <= 0 || first > static_cast<int>(done.size()) - count) {
@@ -101,8 +158,9 @@ GreenStore GreenStore::create(const std::filesystem::path& path, const GreenStor
   auto hdf5 = create_file(unfinished, path, contents);
   publish(unfinished, path);
   hdf5.renamed(path);
-  return GreenStore(std::unique_ptr<File>(
-      new File{std::move(hdf5), contents, std::vector<unsigned char>(contents.column_node.size(), 0), true}));
+  const std::size_t columns = contents.column_node.size();
+  return GreenStore(std::unique_ptr<File>(new File{std::move(hdf5), contents, std::vector<unsigned char>(columns, 0),
+                                                   std::vector<std::uint32_t>(columns, 0), true}));
 }
 
 void GreenStore::require_free(const std::filesystem::path& path) {
@@ -113,6 +171,7 @@ void GreenStore::require_free(const std::filesystem::path& path) {
 GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
   const bool writable = access == Access::kReadWrite;
   auto hdf5 = Hdf5File::open(path, writable);
+  hdf5.require_apart({kDatasets.begin(), kDatasets.end()});
   auto contents = read_contents(hdf5);
   require_unit(hdf5, kDisplacement, contents.unit);
   if (hdf5.shape(kDisplacement) != displacement_shape(contents)) {
@@ -120,11 +179,25 @@ GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
               "its shape must be " + text(displacement_shape(contents)) +
                   " (column, load, row, answer; loads and answers of 3 components, or of 1 in a scalar problem)");
   }
+  hdf5.require_exact(kDisplacement);
+  require_checksum(hdf5, contents);
+  const Hdf5Shape columns{contents.column_node.size()};
+  const bool has_checksum = hdf5.has(kChecksum);
+  for (const char* dataset : {kDone, kChecksum}) {
+    if ((dataset != kChecksum || has_checksum) && hdf5.shape(dataset) != columns) {
+      hdf5.fail(dataset, "needs one entry per column");
+    }
+  }
   Hdf5Shape shape;
   auto done = hdf5.read<unsigned char>(kDone, shape);
-  if (shape != Hdf5Shape{contents.column_node.size()}) hdf5.fail(kDone, "needs one entry per column");
-  return GreenStore(std::unique_ptr<File>(new File{std::move(hdf5), std::move(contents), std::move(done), writable}));
+  if (std::any_of(done.begin(), done.end(), [](auto flag) { return flag > 1; }))
+    hdf5.fail(kDone, "holds not only 0, 1");
+  auto checksum = has_checksum ? hdf5.read<std::uint32_t>(kChecksum, shape) : std::vector<std::uint32_t>();
+  return GreenStore(std::unique_ptr<File>(
+      new File{std::move(hdf5), std::move(contents), std::move(done), std::move(checksum), writable}));
 }
+
+void GreenStore::close() { file_->hdf5.close(); }
 
 const std::filesystem::path& GreenStore::path() const { return file_->hdf5.path(); }
 const GreenStoreContents& GreenStore::contents() const { return file_->contents; }
@@ -170,12 +243,19 @@ void GreenStore::write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd
   const auto rows = static_cast<hsize_t>(row_count()), width = static_cast<hsize_t>(components);
   const bool contiguous = displacement.outerStride() == displacement.rows();
   const Eigen::MatrixXd copy = contiguous ? Eigen::MatrixXd() : Eigen::MatrixXd(displacement);
-  hdf5.write_part(kDisplacement, {start, 0, 0, 0}, {length, width, rows, width},
-                  contiguous ? displacement.data() : copy.data());
+  const double* const values = contiguous ? displacement.data() : copy.data();
+  hdf5.write_part(kDisplacement, {start, 0, 0, 0}, {length, width, rows, width}, values);
+  if (!file_->checksum.empty()) {
+    for (int c = 0; c < count; ++c) {
+      file_->checksum[first + c] = file_->checksum_of(values + static_cast<std::size_t>(c) * file_->column_size());
+    }
+    hdf5.write_part(kChecksum, {start}, {length}, file_->checksum.data() + first);
+  }
   hdf5.flush();
-  std::fill_n(file_->done.begin() + first, count, static_cast<unsigned char>(1));
-  hdf5.write_part(kDone, {start}, {length}, file_->done.data() + first);
+  const std::vector<unsigned char> marks(static_cast<std::size_t>(count), 1);
+  hdf5.write_part(kDone, {start}, {length}, marks.data());
   hdf5.flush();
+  std::copy(marks.begin(), marks.end(), file_->done.begin() + first);
 }
 
 Eigen::MatrixXd GreenStore::read_columns(int first, int count) const {
@@ -192,6 +272,8 @@ Eigen::MatrixXd GreenStore::read_block(int first_row, int rows, int first_column
     hdf5.fail(kDisplacement,
               "rows from " + std::to_string(first_row) + " are outside 0 .. " + std::to_string(row_count() - 1));
   }
+  const bool whole = rows == row_count();
+  if (!whole) file_->check_columns(first_column, columns);
   const int components = contents().components;
   const auto width = static_cast<hsize_t>(components);
   Eigen::MatrixXd block(components * rows, components * columns);
@@ -200,6 +282,9 @@ Eigen::MatrixXd GreenStore::read_block(int first_row, int rows, int first_column
   if (!block.allFinite()) {
     hdf5.fail(kDisplacement, "columns from " + std::to_string(first_column) +
                                  " hold values that are not finite; solve or measure them again");
+  }
+  for (int c = 0; whole && c < columns; ++c) {
+    file_->require_right(first_column + c, block.data() + static_cast<std::size_t>(c) * file_->column_size());
   }
   return block;
 }

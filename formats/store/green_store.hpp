@@ -50,7 +50,9 @@ class GreenStore {
   /// Throws std::runtime_error if another process uses the file.
   static void require_free(const std::filesystem::path& path);
 
-  /// Opens an existing store and checks shapes, units, indices and finiteness of everything but the columns.
+  /// Opens an existing store and checks types, shapes, units, indices and finiteness of everything but the columns,
+  /// shapes against the length of the file before anything is allocated. Refuses links, external, virtual, chunked and
+  /// filtered datasets, and datasets that share bytes. Memory and work: linear in the file without its columns.
   [[nodiscard]] static GreenStore open(const std::filesystem::path& path, Access access);
 
   ~GreenStore();
@@ -73,10 +75,15 @@ class GreenStore {
   /// Refuses values that are not finite.
   void write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement);
 
-  /// Columns first .. first + count - 1 as N R x N count, laid out as in write_columns; all must be done.
+  /// Closes the file, throwing if something was lost; the store is not to be used afterwards. Columns are safe without.
+  void close();
+
+  /// Columns first .. first + count - 1 as N R x N count, laid out as in write_columns; all must be done, equal their
+  /// checksums if the store has such, and not be all zero.
   [[nodiscard]] Eigen::MatrixXd read_columns(int first, int count) const;
 
-  /// The same, of the row nodes first_row .. first_row + row_count - 1 only.
+  /// The same, of the row nodes first_row .. first_row + row_count - 1 only. A column is read as a whole, once, to be
+  /// checked.
   [[nodiscard]] Eigen::MatrixXd read_block(int first_row, int row_count, int first_column, int column_count) const;
 
  private:

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "formats/layout.hpp"
+#include "formats/verify/crc32c.hpp"
 
 namespace greenloop {
 namespace {
@@ -163,35 +166,48 @@ void write_list(Hdf5File& file, const std::string& dataset, const std::vector<Nu
   file.write(dataset, {values.size()}, values);
 }
 
-template <typename Number>
-std::vector<Number> read_list(const Hdf5File& file, const std::string& dataset) {
-  Hdf5Shape shape;
-  auto values = file.read<Number>(dataset, shape);
-  if (shape.size() != 1) file.fail(dataset, "must have one axis");
-  return values;
+// A shape before its numbers: `any` stands for a length that nothing else says.
+constexpr hsize_t any = ~hsize_t{0};
+
+Hdf5Shape require_shape(const Hdf5File& file, const std::string& dataset, const Hdf5Shape& expected) {
+  const Hdf5Shape found = file.shape(dataset);
+  if (found.size() != expected.size()) {
+    file.fail(dataset, expected.size() == 1 ? "must have one axis"
+                                            : "must have the shape [count, " + std::to_string(expected[1]) + "]");
+  }
+  for (std::size_t axis = 0; axis < found.size(); ++axis) {
+    if (expected[axis] == any || found[axis] == expected[axis]) continue;
+    file.fail(dataset, axis == 0 ? "has " + std::to_string(found[0]) + " entries, it needs " +
+                                       std::to_string(expected[0]) + " entries"
+                                 : "must have the shape [count, " + std::to_string(expected[1]) + "]");
+  }
+  return found;
 }
 
 template <typename Number>
-std::vector<Number> read_table(const Hdf5File& file, const std::string& dataset, hsize_t width) {
-  Hdf5Shape shape;
-  auto values = file.read<Number>(dataset, shape);
-  if (shape.size() != 2 || shape[1] != width) {
-    file.fail(dataset, "must have the shape [count, " + std::to_string(width) + "]");
-  }
-  return values;
+std::vector<Number> read_list(const Hdf5File& file, const std::string& dataset, hsize_t count) {
+  Hdf5Shape shape = require_shape(file, dataset, {count});
+  return file.read<Number>(dataset, shape);
+}
+
+template <typename Number>
+std::vector<Number> read_table(const Hdf5File& file, const std::string& dataset, hsize_t count, hsize_t width) {
+  Hdf5Shape shape = require_shape(file, dataset, {count, width});
+  return file.read<Number>(dataset, shape);
 }
 
 std::vector<Eigen::Vector3d> read_points(const Hdf5File& file, const std::string& dataset) {
   require_unit(file, dataset, "m");
-  const auto values = read_table<double>(file, dataset, 3);
+  const auto values = read_table<double>(file, dataset, any, 3);
   std::vector<Eigen::Vector3d> points;
+  points.reserve(values.size() / 3);
   for (std::size_t k = 0; k < values.size(); k += 3) points.emplace_back(values[k], values[k + 1], values[k + 2]);
   return points;
 }
 
 template <std::size_t Width>
-std::vector<std::array<int, Width>> read_rows(const Hdf5File& file, const std::string& dataset) {
-  const auto values = read_table<int>(file, dataset, Width);
+std::vector<std::array<int, Width>> read_rows(const Hdf5File& file, const std::string& dataset, hsize_t count) {
+  const auto values = read_table<int>(file, dataset, count, Width);
   std::vector<std::array<int, Width>> rows(values.size() / Width);
   for (std::size_t k = 0; k < values.size(); ++k) rows[k / Width][k % Width] = values[k];
   return rows;
@@ -212,16 +228,13 @@ void write_interpolation(Hdf5File& file, Interpolation matrix) {
 
 Interpolation read_interpolation(const Hdf5File& file, std::size_t rows, std::size_t columns) {
   const std::string group = "/volume/interpolation";
-  const auto start = read_list<int>(file, group + "/row_start");
-  const auto column = read_list<int>(file, group + "/column");
-  const auto weight = read_list<double>(file, group + "/weight");
-  if (start.size() != rows + 1 || start.front() != 0 || !std::is_sorted(start.begin(), start.end())) {
-    file.fail(group + "/row_start", "must rise from 0 and have " + std::to_string(rows + 1) + " entries");
+  const auto start = read_list<int>(file, group + "/row_start", rows + 1);
+  if (start.front() != 0 || !std::is_sorted(start.begin(), start.end())) {
+    file.fail(group + "/row_start", "must rise from 0");
   }
-  for (const auto& [name, size] : {std::pair("/column", column.size()), std::pair("/weight", weight.size())}) {
-    if (size == static_cast<std::size_t>(start.back())) continue;
-    file.fail(group + name, "needs " + std::to_string(start.back()) + " entries, as many as row_start ends with");
-  }
+  const auto entries_in_all = static_cast<hsize_t>(start.back());
+  const auto column = read_list<int>(file, group + "/column", entries_in_all);
+  const auto weight = read_list<double>(file, group + "/weight", entries_in_all);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t r = 0; r < rows; ++r) {
     for (int k = start[r]; k < start[r + 1]; ++k) {
@@ -239,9 +252,9 @@ Interpolation read_interpolation(const Hdf5File& file, std::size_t rows, std::si
 SemiRegularMesh read_surface(const Hdf5File& file) {
   SemiRegularMesh surface;
   surface.positions = read_points(file, "/surface/position");
-  surface.parents = read_rows<2>(file, "/surface/parents");
-  surface.base_triangles = read_rows<3>(file, "/surface/base_triangles");
-  for (const int end : read_list<int>(file, "/surface/vertex_end")) {
+  surface.parents = read_rows<2>(file, "/surface/parents", surface.positions.size());
+  surface.base_triangles = read_rows<3>(file, "/surface/base_triangles", any);
+  for (const int end : read_list<int>(file, "/surface/vertex_end", any)) {
     if (end < 0) file.fail("/surface/vertex_end", "must not be negative");
     surface.vertex_end.push_back(static_cast<std::size_t>(end));
   }
@@ -269,6 +282,7 @@ void write_contents(Hdf5File& file, const GreenStoreContents& contents) {
   if (contents.components == 3) write_material(file, contents);
   file.write_text("/", "provenance", contents.provenance);
   file.write_text("/", "fingerprint", contents.fingerprint);
+  file.write_number("/", kContentsChecksum, checksum(contents));
   for (const char* group : {"/surface", "/green", "/volume"}) file.make_group(group);
 
   write_points(file, "/surface/position", contents.surface.positions);
@@ -292,9 +306,14 @@ void write_contents(Hdf5File& file, const GreenStoreContents& contents) {
 GreenStoreContents read_contents(const Hdf5File& file) {
   if (file.read_text("/", "format") != "greenloop store") file.fail("/", "the attribute 'format' names another format");
   const double version = file.read_number("/", "format_version");
+  if (version == 1) {
+    file.fail("/",
+              "format_version 1 has no checksums: columns that were lost on their way to the disk cannot be told "
+              "from solved ones; build the store again (greenloop build --overwrite-store)");
+  }
   if (version != kGreenStoreVersion) {
     file.fail("/", "format_version " + std::to_string(version) + " is not " + std::to_string(kGreenStoreVersion) +
-                       "; rebuild the store with this version of Greenloop");
+                       "; build the store again with this version of Greenloop");
   }
   GreenStoreContents contents;
   contents.components = stored_components(file);
@@ -306,18 +325,18 @@ GreenStoreContents read_contents(const Hdf5File& file) {
   contents.provenance = file.read_text("/", "provenance");
   contents.fingerprint = file.read_text("/", "fingerprint");
   contents.surface = read_surface(file);
+  const hsize_t surface_count = contents.surface.positions.size();
   require_unit(file, "/surface/area", "m^2");
-  contents.area = read_list<double>(file, "/surface/area");
-  const auto flags = read_list<unsigned char>(file, "/surface/flags");
+  contents.area = read_list<double>(file, "/surface/area", surface_count);
+  const auto flags = read_list<unsigned char>(file, "/surface/flags", surface_count);
   contents.flags.assign(flags.begin(), flags.end());
-  contents.row_node = read_list<int>(file, "/green/row_node");
-  contents.column_node = read_list<int>(file, "/green/column_node");
+  contents.row_node = read_list<int>(file, "/green/row_node", any);
+  contents.column_node = read_list<int>(file, "/green/column_node", any);
   if (file.has("/volume/position")) {
     contents.volume.vertices = read_points(file, "/volume/position");
-    contents.volume.tetrahedra = read_rows<4>(file, "/volume/tetrahedra");
-    contents.volume_fixed = read_list<unsigned char>(file, "/volume/fixed");
-    contents.interpolation =
-        read_interpolation(file, contents.surface.positions.size(), contents.volume.vertices.size());
+    contents.volume.tetrahedra = read_rows<4>(file, "/volume/tetrahedra", any);
+    contents.volume_fixed = read_list<unsigned char>(file, "/volume/fixed", contents.volume.vertices.size());
+    contents.interpolation = read_interpolation(file, surface_count, contents.volume.vertices.size());
   }
   try {
     require_valid(contents);
@@ -325,6 +344,43 @@ GreenStoreContents read_contents(const Hdf5File& file) {
     throw std::runtime_error(file.path().string() + ": " + error.what());
   }
   return contents;
+}
+
+void require_checksum(const Hdf5File& file, const GreenStoreContents& contents) {
+  if (file.has_attribute("/", kContentsChecksum) && file.read_number("/", kContentsChecksum) != checksum(contents)) {
+    file.fail("/", "the mesh, material or nodes differ from their checksum; the store is damaged or was changed");
+  }
+}
+
+std::uint32_t checksum(const GreenStoreContents& contents) {
+  std::uint32_t crc = 0;
+  const auto add = [&crc](const auto& values) {
+    using Number = typename std::decay_t<decltype(values)>::value_type;
+    static_assert(std::is_arithmetic_v<Number>);  // no padding
+    crc = crc32c(std::as_bytes(std::span(values)), crc);
+  };
+  add(flat(contents.surface.positions));
+  add(flat(contents.surface.parents));
+  add(flat(contents.surface.base_triangles));
+  add(std::vector<std::uint64_t>(contents.surface.vertex_end.begin(), contents.surface.vertex_end.end()));
+  add(contents.area);
+  add(contents.flags);
+  add(contents.row_node);
+  add(contents.column_node);
+  add(flat(contents.volume.vertices));
+  add(flat(contents.volume.tetrahedra));
+  add(contents.volume_fixed);
+  if (!contents.volume.vertices.empty()) {
+    Interpolation matrix = contents.interpolation;
+    matrix.makeCompressed();
+    const auto rows = static_cast<std::size_t>(matrix.rows()), entries = static_cast<std::size_t>(matrix.nonZeros());
+    add(std::span(matrix.outerIndexPtr(), rows + 1));
+    add(std::span(matrix.innerIndexPtr(), entries));
+    add(std::span(matrix.valuePtr(), entries));
+  }
+  add(std::vector<double>{contents.young, contents.poisson});
+  for (const std::string* text : {&contents.unit, &contents.provenance, &contents.fingerprint}) add(*text);
+  return crc;
 }
 
 }  // namespace greenloop

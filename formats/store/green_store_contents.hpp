@@ -1,22 +1,32 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "formats/store/green_store.hpp"
 #include "formats/store/hdf5_file.hpp"
 
 namespace greenloop {
 
-inline constexpr int kGreenStoreVersion = 1;
+inline constexpr int kGreenStoreVersion = 2;
 inline constexpr const char* kDisplacement = "/green/displacement";
+inline constexpr const char* kContentsChecksum = "contents_checksum";
 
 /// Throws std::invalid_argument naming the first field that contradicts another or is out of range.
 void require_valid(const GreenStoreContents& contents);
 
-/// Writes everything but /green/displacement and /green/done; see docs/store.md.
+/// Writes everything but /green/displacement, /green/checksum and /green/done; see docs/store.md.
 void write_contents(Hdf5File& file, const GreenStoreContents& contents);
 
 /// The reverse, with shapes, units, finiteness and cross-references checked. How many components there are is said by
 /// the shape of /green/displacement.
 [[nodiscard]] GreenStoreContents read_contents(const Hdf5File& file);
+
+/// CRC32C of all that write_contents writes, numbers as little-endian bytes in the order of docs/store.md.
+[[nodiscard]] std::uint32_t checksum(const GreenStoreContents& contents);
+
+/// Throws if the file states another checksum of these contents.
+void require_checksum(const Hdf5File& file, const GreenStoreContents& contents);
 
 /// Throws unless the dataset's attribute `unit` is `unit`.
 void require_unit(const Hdf5File& file, const std::string& dataset, const std::string& unit);

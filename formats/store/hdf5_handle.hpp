@@ -2,7 +2,7 @@
 
 #include <hdf5.h>
 
-#include <string>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -14,7 +14,7 @@ class Hdf5Handle {
   using Close = herr_t (*)(hid_t);
 
   Hdf5Handle() = default;
-  Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Hdf5Handle(hid_t id, Close release) : id_(id), close_(release) {}
   ~Hdf5Handle() {
     if (id_ >= 0) close_(id_);
   }
@@ -27,28 +27,15 @@ class Hdf5Handle {
   Hdf5Handle(const Hdf5Handle&) = delete;
   Hdf5Handle& operator=(const Hdf5Handle&) = delete;
 
+  /// Closes now; false if HDF5 says that something was lost.
+  [[nodiscard]] bool close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
+
   [[nodiscard]] hid_t get() const { return id_; }
   explicit operator bool() const { return id_ >= 0; }
 
  private:
   hid_t id_ = -1;
   Close close_ = nullptr;
-};
-
-/// Keeps HDF5 from printing its error stack while in scope.
-class Hdf5Silence {
- public:
-  Hdf5Silence() {
-    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  }
-  ~Hdf5Silence() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
-  Hdf5Silence(const Hdf5Silence&) = delete;
-  Hdf5Silence& operator=(const Hdf5Silence&) = delete;
-
- private:
-  H5E_auto2_t function_ = nullptr;
-  void* data_ = nullptr;
 };
 
 using Hdf5Shape = std::vector<hsize_t>;
@@ -68,6 +55,10 @@ template <>
 inline hid_t hdf5_memory_type<unsigned char>() {
   return H5T_NATIVE_UCHAR;
 }
+template <>
+inline hid_t hdf5_memory_type<std::uint32_t>() {
+  return H5T_NATIVE_UINT32;
+}
 
 /// The little-endian HDF5 type of a C++ number in the file.
 template <typename Number>
@@ -83,6 +74,10 @@ inline hid_t hdf5_file_type<int>() {
 template <>
 inline hid_t hdf5_file_type<unsigned char>() {
   return H5T_STD_U8LE;
+}
+template <>
+inline hid_t hdf5_file_type<std::uint32_t>() {
+  return H5T_STD_U32LE;
 }
 
 }  // namespace greenloop

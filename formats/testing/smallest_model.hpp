@@ -12,4 +12,9 @@ namespace greenloop {
 /// The same of a scalar problem: a unit load on a node of the domain causes 1/16 there. For tests only.
 [[nodiscard]] ModelData smallest_scalar_model();
 
+/// A valid model of `levels` levels of `nodes` nodes each (at least 6), all of which may be touched, without couplings:
+/// of the most nodes that a file of its length can have, each predicted from arbitrary nodes before it. For tests only.
+[[nodiscard]] ModelData crowded_model(std::uint32_t nodes, std::uint32_t levels,
+                                      layout::Wavelet wavelet = layout::Wavelet::lifted_butterfly);
+
 }  // namespace greenloop

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 #include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "formats/transport/coupling_blocks.hpp"
@@ -80,9 +82,26 @@ std::uint32_t content_crc(std::span<const SectionBytes> sections) {
   return crc;
 }
 
+namespace {
+
+// A model has every section once, and those that are known are of a level: their models are made for each, and some
+// look at all nodes.
+void require_distinct(const std::vector<SectionBytes>& sections) {
+  std::set<std::tuple<std::uint32_t, std::uint16_t, std::uint16_t>> seen;
+  for (const SectionBytes& section : sections) {
+    const SectionEntry& entry = section.entry;
+    if (!layout::is_section_kind(entry.kind)) continue;
+    if (entry.a >= layout::max_levels || entry.b >= layout::max_levels) throw DamagedPacket("a section of no level");
+    if (!seen.emplace(entry.kind, entry.a, entry.b).second) throw DamagedPacket("a section that stands twice");
+  }
+}
+
+}  // namespace
+
 void PacketModel::code(BitCoder& coder, std::uint32_t q, FileExtent extent, std::vector<SectionBytes>& sections,
                        const ModelView* model) {
   code_table(coder, extent, sections);
+  require_distinct(sections);
   std::vector<SectionBytes*> order;
   order.reserve(sections.size());
   for (SectionBytes& section : sections) order.push_back(&section);

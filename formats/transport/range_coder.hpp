@@ -34,7 +34,7 @@ class BitCoder {
 };
 
 /// No more decisions than this a byte: what is crafted to be read for ever is refused.
-inline constexpr std::uint64_t most_decisions_per_byte = 512;
+inline constexpr std::uint64_t most_decisions_per_byte = 128;
 
 /// Writes decisions into bytes.
 class RangeEncoder final : public BitCoder {

@@ -80,14 +80,17 @@ WordModel::WordModel(std::uint32_t fields) : differences_(fields * length_contex
 
 std::uint32_t WordModel::code(BitCoder& coder, std::uint32_t field, std::uint32_t word, std::uint32_t predicted) {
   const std::int64_t from = order_of(predicted);
-  return bits_of_order(static_cast<std::uint32_t>(from + code_difference(coder, field, order_of(word) - from)));
+  // a decoder's difference may be any number
+  const auto difference = static_cast<std::uint64_t>(code_difference(coder, field, order_of(word) - from));
+  return bits_of_order(static_cast<std::uint32_t>(static_cast<std::uint64_t>(from) + difference));
 }
 
 std::uint32_t WordModel::code_steps(BitCoder& coder, std::uint32_t field, std::uint32_t step, std::uint32_t word,
                                     std::uint32_t predicted) {
   const std::int64_t from = to_fixed(predicted, step + step_of_exponent);
   const std::int64_t difference = code_difference(coder, field, to_fixed(word, step + step_of_exponent) - from);
-  if (std::abs(difference) > most_steps) throw DamagedPacket("a number of more digits than there are");
+  if (difference < -most_steps || difference > most_steps)
+    throw DamagedPacket("a number of more digits than there are");
   return from_fixed(from + difference, step + step_of_exponent);
 }
 

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "formats/testing/model_mutant.hpp"
+#include "formats/testing/reseal_stream.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/transport/packet.hpp"
@@ -257,27 +258,6 @@ TEST_CASE("transport: cut at every length, a small stream gives nothing") {
     UnpackedModel unpacked;
     CHECK(unpack(std::span(stream).first(length), unpacked).rule == StreamRule::truncated);
     CHECK(unpacked.model.empty());
-  }
-}
-
-// Recomputes the checksums of headers and coded bytes, so that a reader believes them.
-void reseal_stream(Bytes& stream) {
-  const auto seal = [&](std::size_t at, std::size_t place) {
-    const std::uint32_t crc = crc32c(std::span(stream).subspan(at, place));
-    std::memcpy(stream.data() + at + place, &crc, sizeof(crc));
-  };
-  if (stream.size() < sizeof(StreamHeader)) return;
-  seal(0, offsetof(StreamHeader, header_crc));
-  for (std::size_t at = sizeof(StreamHeader); stream.size() - at >= sizeof(PacketHeader);) {
-    PacketHeader packet;
-    std::memcpy(&packet, stream.data() + at, sizeof(packet));
-    const std::size_t left = stream.size() - at - sizeof(packet);
-    if (packet.coded_bytes > left) return seal(at, offsetof(PacketHeader, header_crc));
-    const auto coded = std::span(stream).subspan(at + sizeof(packet), packet.coded_bytes);
-    packet.coded_crc = crc32c(coded);
-    std::memcpy(stream.data() + at, &packet, sizeof(packet));
-    seal(at, offsetof(PacketHeader, header_crc));
-    at += sizeof(packet) + coded.size();
   }
 }
 

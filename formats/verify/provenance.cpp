@@ -1,5 +1,7 @@
 #include "formats/verify/provenance.hpp"
 
+#include "formats/verify/nesting.hpp"
+
 namespace greenloop {
 namespace {
 
@@ -30,6 +32,11 @@ bool verify_provenance(SectionTable& table, FileView& view, VerifyResult& result
     const std::size_t length = utf8_length(text.subspan(i));
     if (!check.require(length > 0, VerifyRule::out_of_range, "text", i, std::to_integer<int>(text[i]), 0)) return false;
     i += length;
+  }
+  const std::size_t deeper = first_nested_deeper(text, most_nesting);
+  if (!check.require(deeper == text.size(), VerifyRule::out_of_range, "nesting", deeper, most_nesting + 1.0,
+                     most_nesting)) {
+    return false;
   }
   view.provenance = {section.as<char>(), text.size()};
   return true;

@@ -14,6 +14,7 @@
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/compress/measure/certificate.hpp"
+#include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -56,6 +57,19 @@ void check_claim(const std::filesystem::path& file, const ModelView& view, Json&
                              check.unknowns, lambda_min));
 }
 
+// what a body of the contacts that the file asks for takes; nothing of problems that have none
+Json body_of(std::span<const std::byte> file) {
+  const auto opened = Model::open(file);
+  if (!opened || opened.model.problem() != layout::Problem::elastostatic) return nullptr;
+  const auto limits = Elastostatic::intended(opened.model).limits;
+  const auto need = Elastostatic::required(opened.model, limits);
+  return {{"contacts", limits.max_contacts},
+          {"cached_factors", limits.cached_factors},
+          {"bytes", need.bytes},
+          {"least_work", need.least_work},
+          {"worst_work", need.worst_work[opened.model.level_count() - 1]}};
+}
+
 Json verdict_of(const std::filesystem::path& file, bool certificate) {
   AlignedBytes bytes;
   try {
@@ -77,6 +91,7 @@ Json verdict_of(const std::filesystem::path& file, bool certificate) {
                   {"value", result.value},
                   {"limit", result.limit},
                   {"message", file.string() + ": " + describe(result)}};
+  if (result.ok()) verdict["body"] = body_of(bytes.span());
   if (result.ok() && certificate) check_claim(file, view, verdict);
   return verdict;
 }
@@ -86,6 +101,12 @@ Json verdict_of(const std::filesystem::path& file, bool certificate) {
 int run_verify(const VerifyArguments& arguments, std::ostream& out) {
   const Json verdict = verdict_of(arguments.file, arguments.certificate);
   out << (arguments.json ? json_text(verdict) : verdict["message"].get<std::string>()) << '\n';
+  if (!arguments.json && verdict.contains("body") && verdict["body"].is_object()) {
+    const Json& body = verdict["body"];
+    out << fmt::format("a body of {} contacts and {} factors takes {:.1f} MB and at most {} units a step\n",
+                       body["contacts"].get<std::uint64_t>(), body["cached_factors"].get<std::uint64_t>(),
+                       body["bytes"].get<double>() / 1e6, body["worst_work"].get<std::uint64_t>());
+  }
   return verdict["ok"].get<bool>() ? 0 : 1;
 }
 

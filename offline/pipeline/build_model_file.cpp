@@ -17,6 +17,7 @@
 #include "formats/store/green_store.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
+#include "formats/write/nested_json.hpp"
 #include "formats/write/writer.hpp"
 #include "offline/compress/encode/ready_model.hpp"
 #include "offline/compress/model_builder.hpp"
@@ -56,7 +57,9 @@ json up_to_date_record(const BuildRequest& request, const std::string& wanted) {
     if (provenance.value("request", "") != wanted) {
       return {};
     }
-    return json::parse(read_text(build_record_path(request.model)));
+    const std::string record = read_text(build_record_path(request.model));
+    require_shallow(record, build_record_path(request.model).string());
+    return json::parse(record);
   } catch (const std::exception&) {
     return {};  // a damaged leftover is simply built again
   }
@@ -204,6 +207,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   require_build_files(request, scene);
   auto store = open_or_create_store(request, scene, column_fingerprint(scene, mesh), progress);
   const SolveReport solved = solve_missing_columns(store, progress);
+  require_shallow(store.contents().provenance, request.store.string() + ": provenance");
   json record = json::parse(store.contents().provenance);
   record["scene"] = request.scene.filename().string();
   record["solve"] = solve_record(solved, store);
@@ -232,6 +236,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
 
   record["compression"] = compression_record(built.report, built.model.info.max_contacts);
   record["compression"]["wavelet"] = wavelet_name(built.model.info.wavelet);
+  record["request"] = wanted;
   record["bytes"] = bytes.size();
   record["step_work"] = built.model.info.step_work;
   record["units_per_us"] = scene.budget.speed();

@@ -43,9 +43,12 @@ void trim_zeros(std::string& text) {
 std::vector<double> linear_ticks(double min, double max, int most) {
   if (!(min < max) || !std::isfinite(max - min)) return {};
   const double step = nice_step(max - min, std::max(most, 1));
+  const double first = std::ceil(min / step - 1e-9), last = std::floor(max / step + 1e-9);
+  // beyond, the ends are too near to each other, or to zero, for numbers between them
+  constexpr double largest_multiple = 1e12;
+  if (!(std::abs(first) < largest_multiple && std::abs(last) < largest_multiple)) return {};
   std::vector<double> ticks;
-  const double last = std::floor(max / step + 1e-9);
-  for (double k = std::ceil(min / step - 1e-9); k <= last; ++k) ticks.push_back(k * step);
+  for (int k = 0; k <= std::max(most, 1) && first + k <= last; ++k) ticks.push_back((first + k) * step);
   return ticks;
 }
 

@@ -6,7 +6,7 @@
 namespace greenloop::offline {
 
 /// Multiples of 1, 2 or 5 times a power of ten within [min, max], at most `most` + 1 of them (`most` >= 1).
-/// Empty unless min < max and both are finite.
+/// Empty unless min < max and both are finite, and where these have no such numbers between them.
 [[nodiscard]] std::vector<double> linear_ticks(double min, double max, int most);
 
 /// Decades within [min, max] (0 < min < max); below two whole decades also 2 and 5 times a power of ten.

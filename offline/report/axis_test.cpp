@@ -59,6 +59,17 @@ TEST_CASE("numbers read well") {
   CHECK(readable_bytes(1254321) == "1.25\u202fMB");
 }
 
+TEST_CASE("ranges between whose ends there are no numbers have no ticks, and none has more than asked for") {
+  CHECK(linear_ticks(1e16, 1e16 + 2, 5).empty());
+  CHECK(linear_ticks(-1e-320, 1e-320, 5).size() <= 6);
+  CHECK(linear_ticks(-1.7e308, 1.7e308, 5).empty());
+  for (const double size : {1e-300, 1e-12, 1.0, 1e12, 1e300}) {
+    CHECK(linear_ticks(-size, size, 5).size() >= 3);
+    CHECK(linear_ticks(-size, size, 5).size() <= 6);
+  }
+  CHECK(logarithmic_ticks(1e-300, 1e300).size() < 1000);
+}
+
 TEST_CASE("the SI prefix brings the largest value into 1..1000") {
   CHECK(si_prefix(0.0021).symbol == "m");
   CHECK(si_prefix(999).symbol == "");

@@ -1,13 +1,18 @@
 #include "offline/report/build_record.hpp"
+
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "formats/output/json_text.hpp"
+#include "formats/write/nested_json.hpp"
 #include "offline/report/axis.hpp"
 
 namespace greenloop::offline {
@@ -79,6 +84,11 @@ std::vector<FactGroup> fact_groups(const json& object, const std::string& title)
   return groups;
 }
 
+/// Larger numbers, and smaller ones than its inverse, have no meaning in a record.
+constexpr double most_number = 1e18;
+
+constexpr std::size_t most_bytes = std::size_t{1} << 26;
+
 /// Reads parts of the record and names the key that is wrong.
 class Reader {
  public:
@@ -103,6 +113,12 @@ class Reader {
   [[nodiscard]] std::optional<double> number(const json& in, const std::string& key) const {
     const json* value = part(in, key, json::value_t::number_float, "a number");
     return value != nullptr ? std::optional(value->get<double>()) : std::nullopt;
+  }
+  /// None if it cannot be a count.
+  [[nodiscard]] std::optional<unsigned long long> count(const json& in, const std::string& key) const {
+    const auto value = number(in, key);
+    return value && *value >= 0 && *value <= most_number ? std::optional(static_cast<unsigned long long>(*value))
+                                                         : std::nullopt;
   }
   [[nodiscard]] std::string text(const json& in, const std::string& key) const {
     const json* value = part(in, key, json::value_t::string, "a text");
@@ -131,7 +147,10 @@ void read_stages(const Reader& reader, const json& root, BuildRecord& record) {
 std::optional<double> positive(const Reader& reader, const json& point, const std::string& key) {
   constexpr double no_answer = 1e9;
   const auto value = reader.number(point, key);
-  return value && *value > 0 && (key != "worst_patch_force_error" || *value < no_answer) ? value : std::nullopt;
+  return value && *value >= 1 / most_number && *value <= most_number &&
+                 (key != "worst_patch_force_error" || *value < no_answer)
+             ? value
+             : std::nullopt;
 }
 
 std::vector<LevelFrontierPoint> level_points(const Reader& reader, const json& point) {
@@ -204,10 +223,9 @@ void read_compression(const Reader& reader, const json& root, BuildRecord& recor
   const json* compression = reader.object(root, "compression");
   if (compression == nullptr) return;
   record.threshold = reader.number(*compression, "threshold");
-  const auto patches = reader.number(*compression, "patches");
-  if (patches && *patches >= 0) record.patches = static_cast<unsigned long long>(*patches);
-  const auto contacts = reader.number(*compression, "frontier_contacts");
-  if (contacts && *contacts >= 1) record.contacts = static_cast<unsigned long long>(*contacts);
+  record.patches = reader.count(*compression, "patches");
+  const auto contacts = reader.count(*compression, "frontier_contacts");
+  if (contacts && *contacts >= 1) record.contacts = contacts;
   if (const json* frontier = reader.array(*compression, "frontier")) {
     for (const json& point : *frontier) {
       reader.check_object(point, "frontier");
@@ -225,14 +243,20 @@ BuildRecord load_build_record(const std::filesystem::path& path) {
   if (!stream) throw std::runtime_error(path.string() + ": cannot be read; does it exist?");
   json root;
   try {
-    root = json::parse(stream);
-  } catch (const json::parse_error& error) {
+    std::string text;
+    for (char letter = 0; text.size() <= most_bytes && stream.get(letter);) text.push_back(letter);
+    if (text.size() > most_bytes) throw std::runtime_error(path.string() + ": is longer than any record, 64 MB");
+    require_shallow(text, path.string());
+    root = json::parse(text);
+  } catch (const json::exception& error) {
     throw std::runtime_error(path.string() + ": no JSON: " + error.what());
   }
   if (!root.is_object()) throw std::runtime_error(path.string() + ": is " + root.type_name() + ", expected an object");
   const Reader reader(path.string());
   BuildRecord record;
   record.scene = reader.text(root, "scene");
+  record.request = reader.text(root, "request");
+  record.model_bytes = reader.count(root, "bytes");
   read_stages(reader, root, record);
   for (const char* part : {"surface", "remesh", "volume", "solve"}) {
     if (const json* object = reader.object(root, part)) merge_facts(record.groups, fact_groups({{part, *object}}, ""));
@@ -241,23 +265,33 @@ BuildRecord load_build_record(const std::filesystem::path& path) {
   return record;
 }
 
+std::string text_in_json(const std::string& text, const std::string& key) {
+  if (!is_shallow(text)) return {};
+  const json root = json::parse(text, nullptr, false);
+  const auto at = root.is_object() ? root.find(key) : root.end();
+  return root.is_object() && at != root.end() && at->is_string() ? at->get<std::string>() : std::string();
+}
+
 std::vector<FactGroup> facts_of_json(const std::string& text, const std::string& title) {
+  if (!is_shallow(text)) return {};
   const json root = json::parse(text, nullptr, false);
   return root.is_object() ? fact_groups(root, title) : std::vector<FactGroup>{};
 }
 
 void merge_facts(std::vector<FactGroup>& groups, const std::vector<FactGroup>& more) {
+  std::map<std::string, std::size_t> place;
+  for (std::size_t k = 0; k < groups.size(); ++k) place.emplace(groups[k].title, k);
   for (const FactGroup& group : more) {
-    const auto at =
-        std::find_if(groups.begin(), groups.end(), [&](const FactGroup& g) { return g.title == group.title; });
-    if (at == groups.end()) {
+    const auto [at, is_new] = place.emplace(group.title, groups.size());
+    if (is_new) {
       groups.push_back(group);
       continue;
     }
+    std::vector<Fact>& facts = groups[at->second].facts;
+    std::set<std::string> known;
+    for (const Fact& fact : facts) known.insert(fact.name);
     for (const Fact& fact : group.facts) {
-      const bool known =
-          std::any_of(at->facts.begin(), at->facts.end(), [&](const Fact& f) { return f.name == fact.name; });
-      if (!known) at->facts.push_back(fact);
+      if (known.insert(fact.name).second) facts.push_back(fact);
     }
   }
 }

@@ -50,6 +50,8 @@ struct FrontierPoint {
 /// What `greenloop build` recorded about itself. Every part may be missing.
 struct BuildRecord {
   std::string scene;
+  std::string request;                              ///< of the model; empty in records of earlier versions
+  std::optional<unsigned long long> model_bytes{};  ///< of the whole model file
   std::vector<StageTime> stages;
   std::vector<FactGroup> groups;    ///< of every other object, "remesh", "solve", ..., and of wavelets compared
   std::optional<double> threshold;  ///< the chosen one
@@ -66,6 +68,9 @@ struct BuildRecord {
 /// The facts of a JSON text: its scalars under `title`, then one group per object in it, with the object's key as
 /// title. Empty if the text is no JSON object.
 [[nodiscard]] std::vector<FactGroup> facts_of_json(const std::string& text, const std::string& title);
+
+/// What a JSON object says in text under `key`; empty if it is none or does not.
+[[nodiscard]] std::string text_in_json(const std::string& text, const std::string& key);
 
 /// Adds to `groups` what `more` has under titles or names that are not there yet.
 void merge_facts(std::vector<FactGroup>& groups, const std::vector<FactGroup>& more);

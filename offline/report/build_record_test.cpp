@@ -107,6 +107,24 @@ TEST_CASE("a wrong build record is refused with file and key") {
   CHECK(mentions(refusal(R"({"compression": {"frontier": [1]}})"), "an element of 'frontier' is number"));
   CHECK(mentions(refusal(R"({"compression": {"frontier": [{"threshold": 1, "levels": [1]}]}})"),
                  "an element of 'levels' is number"));
+  CHECK(mentions(refusal(R"({"scene": )" + std::string(20'000, '[') + std::string(20'000, ']') + "}"),
+                 "opens more than 64 levels of brackets"));
+  CHECK(mentions(refusal(std::string(20'000, '[')), "opens more than 64 levels of brackets"));
+}
+
+TEST_CASE("counts and figures beyond any that are written are left out; no number is beyond its type") {
+  const TemporaryFolder folder("build_record_test");
+  const auto record = load_build_record(folder.write("b.json", R"({"bytes": 1e300, "compression": {"patches": 1e30,
+      "frontier_contacts": -1, "wavelets": [{"wavelet": "linear", "nodes": 1e300, "bytes": 1e300, "kept_blocks": 1e-300}],
+      "frontier": [{"threshold": 1, "bytes": 1e300, "step_work": 1e-300}]}})"));
+  CHECK_FALSE(record.model_bytes);
+  CHECK_FALSE(record.patches);
+  CHECK_FALSE(record.contacts);
+  REQUIRE(record.frontier.size() == 1);
+  CHECK_FALSE(record.frontier[0].bytes);
+  CHECK_FALSE(record.frontier[0].step_work);
+  CHECK(
+      mentions(message_of([&] { (void)load_build_record(folder.write("b.json", R"({"bytes": 1e999})")); }), "no JSON"));
 }
 
 TEST_CASE("provenance becomes groups of facts; what is no object becomes none") {
@@ -120,6 +138,7 @@ TEST_CASE("provenance becomes groups of facts; what is no object becomes none") 
   CHECK(groups[1].facts[2].value == "none");
   CHECK(groups[1].facts[3].value == "10\u202f096");
   CHECK(facts_of_json("plain text", "").empty());
+  CHECK(facts_of_json(R"({"deep": )" + std::string(20'000, '[') + std::string(20'000, ']') + "}", "").empty());
   merge_facts(groups, {{"mesh", {{"file", "other.off"}, {"genus", "0"}}}, {"solve", {{"columns", "3"}}}});
   REQUIRE(groups.size() == 3);
   REQUIRE(groups[1].facts.size() == 5);

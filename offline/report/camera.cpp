@@ -50,6 +50,7 @@ Visibility visibility(const VisibleSurface& surface, const std::vector<Vector3d>
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vector3d motion = i < displacement.size() ? displacement[i] : Vector3d::Zero();
     const bool visible =
+        pixels[i].allFinite() &&
         pixels[i].z() >= buffer.depth(static_cast<int>(pixels[i].x()), static_cast<int>(pixels[i].y())) - tolerance;
     const double depth_motion = motion.dot(frame.towards);
     all_motion += motion.squaredNorm();

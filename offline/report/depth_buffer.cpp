@@ -6,11 +6,24 @@
 
 namespace greenloop::offline {
 
+namespace {
+
+/// Samples of a triangle that are not counted: of a fine mesh there are many to a sample.
+constexpr std::int64_t small_triangle = 16;
+
+/// A whole number within 0 .. limit, whatever the place is.
+int pixel(float place, int limit) {
+  return place > 0 ? place < static_cast<float>(limit) ? static_cast<int>(place) : limit : 0;
+}
+
+}  // namespace
+
 DepthBuffer::DepthBuffer(int width, int height)
     : width_(width),
       height_(height),
       depth_(static_cast<std::size_t>(width) * height, std::numeric_limits<float>::lowest()),
-      triangle_(depth_.size(), nothing) {}
+      triangle_(depth_.size(), nothing),
+      room_(std::int64_t{most_layers} * width * height) {}
 
 void DepthBuffer::draw(const std::vector<Eigen::Vector3f>& vertices, const std::vector<std::array<int, 3>>& triangles) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -22,10 +35,13 @@ void DepthBuffer::draw(const std::vector<Eigen::Vector3f>& vertices, const std::
 void DepthBuffer::draw_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                                 int index) {
   const Eigen::Vector3f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
-  const int x0 = std::max(static_cast<int>(std::floor(low.x())), 0);
-  const int x1 = std::min(static_cast<int>(std::ceil(high.x())), width_);
-  const int y0 = std::max(static_cast<int>(std::floor(low.y())), 0);
-  const int y1 = std::min(static_cast<int>(std::ceil(high.y())), height_);
+  const int x0 = pixel(std::floor(low.x()), width_), x1 = pixel(std::ceil(high.x()), width_);
+  const int y0 = pixel(std::floor(low.y()), height_), y1 = pixel(std::ceil(high.y()), height_);
+  const std::int64_t pixels = std::int64_t{std::max(x1 - x0, 0)} * std::max(y1 - y0, 0);
+  if (pixels > small_triangle) {
+    if (pixels > room_) return;
+    room_ -= pixels;
+  }
   // the weights are linear over the picture
   const float first_x = static_cast<float>(x0) + 0.5F, first_y = static_cast<float>(y0) + 0.5F;
   const Eigen::Vector3f first = barycentric(a, b, c, first_x, first_y);

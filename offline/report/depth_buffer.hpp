@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 namespace greenloop::offline {
@@ -12,10 +13,14 @@ class DepthBuffer {
  public:
   static constexpr int nothing = -1;
 
+  /// So often a picture may be covered; triangles that come after are left out.
+  static constexpr int most_layers = 64;
+
   DepthBuffer(int width, int height);
 
   /// Draws triangles over what is there; both sides are seen. Of two surfaces at one sample the nearer stays.
-  /// Work: the triangles' area in samples.
+  /// Work: the triangles' area in samples, at most most_layers times the picture's and some
+  /// for each triangle.
   void draw(const std::vector<Eigen::Vector3f>& vertices, const std::vector<std::array<int, 3>>& triangles);
 
   [[nodiscard]] int width() const { return width_; }
@@ -32,6 +37,7 @@ class DepthBuffer {
   int height_;
   std::vector<float> depth_;
   std::vector<int> triangle_;
+  std::int64_t room_;  // samples that may still be looked at
 };
 
 /// Barycentric weights of (x, y) in the projected triangle; not finite for a triangle seen edge-on.

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <vector>
+
 namespace greenloop::offline {
 namespace {
 
@@ -11,6 +14,20 @@ std::vector<Eigen::Vector3f> small_before_large(float z) {
 }
 
 }  // namespace
+
+TEST_CASE("no place is beyond the picture, and what covers it again and again ends") {
+  constexpr float huge = 1e30F;
+  DepthBuffer buffer(8, 4);
+  buffer.draw({{-huge, -huge, 0}, {huge, -huge, 0}, {0, huge, 0}, {0, 0, NAN}, {NAN, INFINITY, -INFINITY}},
+              {{0, 3, 4}, {4, 4, 4}, {0, 1, 2}});
+  const std::vector<Eigen::Vector3f> corners{{-200, -200, 0}, {400, -200, 0}, {0, 400, 0},
+                                             {-200, -200, 9}, {400, -200, 9}, {0, 400, 9}};
+  std::vector<std::array<int, 3>> often(2 * DepthBuffer::most_layers, {0, 1, 2});
+  often.push_back({3, 4, 5});
+  DepthBuffer covered(64, 64);
+  covered.draw(corners, often);
+  CHECK(covered.triangle(0, 0) == 0);  // the nearer one came too late
+}
 
 TEST_CASE("the nearer triangle hides the farther one, whatever the order") {
   for (const bool near_first : {false, true}) {

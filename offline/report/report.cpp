@@ -41,15 +41,39 @@ void require_run(const ModelView& model, const ReportInputs& inputs) {
   }
 }
 
+// A record names the request that its model carries; those of earlier versions, only the length of the file.
+void require_same_build(const BuildRecord& build, const ModelView& model, const ReportInputs& inputs) {
+  const std::string request = text_in_json({model.provenance.data(), model.provenance.size()}, "request");
+  const bool whole = model.levels == model.info->levels && model.ready.read == nullptr;
+  const bool same = build.request.empty() || request.empty()
+                        ? !whole || !build.model_bytes || *build.model_bytes == model.header->file_bytes
+                        : build.request == request;
+  if (same) return;
+  throw std::runtime_error(
+      fmt::format("{}: is the record of another model than {}", inputs.build->string(), inputs.model.string()));
+}
+
+void require_levels(const std::vector<TraceCycle>& trace, const ModelView& model, const std::filesystem::path& path) {
+  for (const TraceCycle& cycle : trace) {
+    if (std::max(cycle.level, cycle.field_level) < model.levels) continue;
+    throw std::runtime_error(fmt::format("{}: level {} in a model of {}; is it the trace of another model?",
+                                         path.string(), std::max(cycle.level, cycle.field_level), model.levels));
+  }
+}
+
 Material read_material(const ModelView& model, const ReportInputs& inputs) {
   require_run(model, inputs);
   Material material{model, model_surface(model), {}, {}, {}, {}};
   if (inputs.trace) {
     material.trace = load_trace(*inputs.trace);
+    require_levels(*material.trace, model, *inputs.trace);
     material.summary = summarise(*material.trace);
   }
   if (inputs.snapshot) material.snapshot = load_snapshot(*inputs.snapshot, model.node_count);
-  if (inputs.build) material.build = load_build_record(*inputs.build);
+  if (inputs.build) {
+    material.build = load_build_record(*inputs.build);
+    require_same_build(*material.build, model, inputs);
+  }
   return material;
 }
 

@@ -84,6 +84,25 @@ struct Sample {
 
 }  // namespace
 
+TEST_CASE("records and traces of other models are refused") {
+  const Sample sample;
+  const auto refusal = [&](const std::filesystem::path& trace, const std::filesystem::path& build) {
+    ReportInputs inputs{.model = sample.model, .trace = {}, .snapshot = {}, .build = {}};
+    if (!trace.empty()) inputs.trace = trace;
+    if (!build.empty()) inputs.build = build;
+    return message_of([&] { (void)make_report(sample.file.view, inputs); });
+  };
+  const auto other = sample.folder.write("other.build.json", R"({"bytes": 64})");
+  CHECK(has(refusal({}, other), "is the record of another model"));
+  const auto bytes = std::filesystem::file_size(sample.model);
+  CHECK(refusal({}, sample.folder.write("own.build.json", fmt::format(R"({{"bytes": {}}})", bytes))).empty());
+  const auto finer = sample.folder.write(
+      "finer.csv",
+      "time,x0,y0,z0,force_x0,force_y0,force_z0,force,contacts,level,field_level,work,budget,status\n"
+      "0,0,0,0,0,0,1,1,1,2,3,10,10,ok\n");
+  CHECK(has(refusal(finer, {}), "level 3 in a model of 3"));
+}
+
 TEST_CASE("the command writes the complete report and every figure, the same as the library") {
   const Sample sample;
   int exit_code = 1;

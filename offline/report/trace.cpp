@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "formats/layout.hpp"
 #include "offline/report/csv_table.hpp"
 
 namespace greenloop::offline {
@@ -33,8 +34,9 @@ void append_probe(const CsvTable& table, int probe, std::vector<TraceCycle>& tra
 std::vector<TraceCycle> load_trace(const std::filesystem::path& path) {
   const CsvTable table = CsvTable::load(path);
   const auto time = table.numbers("time"), force = table.numbers("force");
-  const auto contacts = table.counts("contacts"), level = table.counts("level");
-  const auto field_level = table.counts("field_level"), work = table.counts("work"), budget = table.counts("budget");
+  const auto contacts = table.counts("contacts"), level = table.counts("level", layout::max_levels - 1);
+  const auto field_level = table.counts("field_level", layout::max_levels - 1), work = table.counts("work"),
+             budget = table.counts("budget");
   const auto status = table.texts("status");
   std::vector<TraceCycle> trace(table.rows());
   for (std::size_t i = 0; i < trace.size(); ++i) {

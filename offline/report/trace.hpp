@@ -34,8 +34,8 @@ struct TraceCycle {
 
 /// Reads a trace by column name: time; x0, y0, z0, force_x0, force_y0, force_z0 of the first probe and so on for x1 ..;
 /// force, contacts, level, field_level, work, budget, status; others are left alone. Throws std::runtime_error with
-/// file, line, column and value if a column is missing, a cell does not parse, there is no cycle, or time does not
-/// increase.
+/// file, line, column and value if a column is missing, a cell does not parse, there is no cycle, time does not
+/// increase, or a level is none that a model can have.
 [[nodiscard]] std::vector<TraceCycle> load_trace(const std::filesystem::path& path);
 
 /// What a trace comes to.

@@ -65,6 +65,25 @@ TEST_CASE("bad traces are refused with file, line, column and value") {
                  "time must increase"));
 }
 
+TEST_CASE(
+    "numbers that no run writes are refused: levels that no model has, sizes whose squares overflow, endless files") {
+  const TemporaryFolder folder("trace_test");
+  const auto refusal = [&](const std::string& row) {
+    return message_of([&] { (void)load_trace(folder.write("t.csv", header + row)); });
+  };
+  const std::string probe = "1,1,1,1,1,1";
+  CHECK(refusal("0," + probe + ",1,1,11,11,5,9,ok\n").empty());
+  for (const std::string level : {"12", "3000000", "18446744073709551615"}) {
+    CHECK(mentions(refusal("0," + probe + ",1,1," + level + ",0,5,9,ok\n"),
+                   "column 'level': '" + level + "' is not a whole number of at most 11"));
+    CHECK(mentions(refusal("0," + probe + ",1,1,0," + level + ",5,9,ok\n"), "column 'field_level': '" + level));
+  }
+  CHECK(mentions(refusal("0," + probe + ",1,1,0,0,18446744073709551616,9,ok\n"), "column 'work'"));
+  CHECK(mentions(refusal("10000000000000000," + probe + ",1,1,0,0,5,9,ok\n"), "a finite number of at most 1e+12"));
+  CHECK(mentions(refusal("0,1,1,1,1e155,1,1,1,1,0,0,5,9,ok\n"), "column 'force_x0': '1e155'"));
+  CHECK(mentions(message_of([] { (void)load_trace("/dev/zero"); }), "is longer than 256 MB"));
+}
+
 TEST_CASE("a summary counts misses, held cycles, levels and the strongest cycle") {
   const std::vector<TraceCycle> trace{
       {.time = 0, .contacts = 0, .work = 0, .budget = 100, .status = "ok"},
@@ -96,6 +115,7 @@ TEST_CASE("a snapshot fills the nodes it lists and refuses what is not of this m
   CHECK(mentions(refusal("4,0,0,0\n"), "4 in a model of 4 nodes"));
   CHECK(mentions(refusal("1,0,0,0\n1,0,0,0\n"), "1 stands there twice"));
   CHECK(mentions(refusal("1,0,inf,0\n"), "'inf' is not a finite number"));
+  CHECK(mentions(refusal("0,1e155,0,0\n"), "'1e155' is not a finite number of at most 1e+12"));
 }
 
 }  // namespace greenloop::offline

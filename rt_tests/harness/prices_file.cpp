@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "formats/output/json_text.hpp"
+#include "formats/write/nested_json.hpp"
 #include "rt_tests/harness/price_table.hpp"
 
 namespace greenloop {
@@ -20,6 +21,8 @@ std::uint32_t* price_of(Prices& prices, const std::string& name) {
                                 [&](const PriceRow& candidate) { return name == candidate.name; });
   return row == std::end(price_rows) ? nullptr : &(prices.*row->member);
 }
+
+constexpr std::size_t most_bytes = std::size_t{1} << 16;
 
 std::uint32_t in_units(const nlohmann::json& value, const std::string& where) {
   const double price = value.is_number() ? std::round(256 * value.get<double>()) : -1;
@@ -33,7 +36,12 @@ std::uint32_t in_units(const nlohmann::json& value, const std::string& where) {
 
 Prices read_prices(const std::string& path) {
   std::ifstream file(path);
-  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  std::string text(most_bytes, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() == most_bytes) throw std::runtime_error(path + ": is longer than any file of prices, 64 kB");
+  require_shallow(text, path);
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object()) throw std::runtime_error(path + ": is no JSON object of prices by name");
   Prices prices;
   for (const auto& [name, value] : json.items()) {

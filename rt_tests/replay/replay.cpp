@@ -60,7 +60,7 @@ class RecordView {
     RecordedStep step;
     std::memcpy(&step, slot(number), sizeof step);
     require(step.number == number && step.contacts <= 1U << 20 && step.forces <= 1U << 22 &&
-                step.displaced_nodes <= std::uint64_t{1} << 30,
+                step.displaced_nodes <= std::uint64_t{1} << 24,
             "the record is damaged: a step is not what it should be");
     return step;
   }

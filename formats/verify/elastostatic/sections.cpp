@@ -70,6 +70,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
          check.require_above("rate", 0, info.rate, 0) && check.require_at_least("share", 0, info.share, 0) &&
          check.require_at_most("share", 0, info.share, 1) &&
          check.require_at_least("max_contacts", 0, info.max_contacts, 1) &&
+         check.require_at_most("max_contacts", 0, info.max_contacts, layout::most_contacts) &&
          check.require_at_most("coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          check.require_equal("finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
          verify_quanta(check, info) &&

@@ -160,6 +160,42 @@ TEST_CASE("verify accepts: a share of the period, for which alone a file is of m
   CHECK(with.view().info->share == 0.4F);
 }
 
+TEST_CASE("verify refuses: more contacts than there may be, or than a file of its length may ask a body for") {
+  check_info(VerifyRule::out_of_range, "max_contacts", 0,
+             [](Info& info) { info.max_contacts = layout::most_contacts + 1; });
+  const std::uint32_t nodes = 2000;
+  ModelMutant mutant(encode(crowded_model(nodes, 1)));
+  REQUIRE(mutant.verdict().ok());
+  const auto most = static_cast<std::uint32_t>(layout::contact_pairs_per_byte * mutant.bytes().size() / nodes);
+  CHECK(most > 128);
+  CHECK(most < nodes);
+  mutant.records<Info>(SectionKind::info)->max_contacts = most;
+  CHECK(mutant.verdict().ok());
+  mutant.records<Info>(SectionKind::info)->max_contacts = most + 1;
+  check_refused(mutant, VerifyRule::out_of_range, SectionKind::info, 0, 0, "max_contacts", 0);
+}
+
+TEST_CASE("verify refuses: provenance that is nested more deeply than readers of JSON may follow") {
+  const auto nested = [](std::size_t depth) {
+    return R"({"[": "[{\"[", "a": )" + std::string(depth - 1, '[') + std::string(depth - 1, ']') + "}";
+  };
+  for (const std::size_t depth : {64, 65, 20000}) {
+    CAPTURE(depth);
+    ModelMutant mutant = valid();
+    const std::string text = nested(depth);
+    mutant.rebuild([&](std::vector<SectionCopy>& sections) {
+      const auto bytes = std::as_bytes(std::span(text));
+      sections[1].bytes.assign(bytes.begin(), bytes.end());
+    });
+    if (depth == 64) {
+      CHECK(mutant.verdict().ok());
+    } else {
+      check_refused(mutant, VerifyRule::out_of_range, SectionKind::provenance, 0, 0, "nesting",
+                    text.find(": [") + 2 + 63);
+    }
+  }
+}
+
 TEST_CASE("verify refuses: constraint levels outside the file's levels") {
   check_info(VerifyRule::out_of_range, "coarsest_constraint_level", 0,
              [](Info& info) { info.coarsest_constraint_level = 2; });
