@@ -16,7 +16,7 @@ void raise(std::uint32_t& bound, std::uint32_t value) { bound = std::max(bound, 
 
 // bounds of the blocks that coefficients have with those of levels 0..c
 struct Degrees {
-  static constexpr std::uint32_t exact = 1024;
+  static constexpr std::uint32_t exact = 640;
   static constexpr std::uint32_t sums = 9;
   std::uint32_t first[exact] = {};
   std::uint64_t most[layout::max_levels] = {};           // of a level that is not all among the first
