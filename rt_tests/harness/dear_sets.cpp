@@ -98,6 +98,7 @@ class Hunt {
     for (std::size_t i = 0; i < candidates_.size(); ++i) cost.emplace_back(work_of({candidates_[i].column}), i);
     std::sort(cost.rbegin(), cost.rend());
     std::vector<Candidate> ordered;
+    ordered.reserve(candidates_.size());
     for (const auto& [work, i] : cost) ordered.push_back(candidates_[i]);
     candidates_ = std::move(ordered);
   }

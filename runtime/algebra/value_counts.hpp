@@ -21,7 +21,7 @@ class ValueCounts {
   /// Bound of the sum of the `count` largest, no more than a 32nd above it; of all, if there are fewer.
   [[nodiscard]] std::uint64_t largest(std::uint64_t count) const noexcept {
     std::uint64_t sum = 0;
-    for (std::uint32_t range = ranges; count > 0 && range-- > 0;) {
+    for (std::uint64_t range = ranges; count > 0 && range-- > 0;) {
       const std::uint64_t here = count_[range] < count ? count_[range] : count;
       sum += here * largest_of(range);
       count -= here;
@@ -30,8 +30,8 @@ class ValueCounts {
   }
 
  private:
-  static constexpr std::uint32_t parts = 32;                      // of an octave
-  static constexpr std::uint32_t ranges = (octaves + 2) * parts;  // the last one has all larger ones too
+  static constexpr std::uint64_t parts = 32;                      // of an octave
+  static constexpr std::uint64_t ranges = (octaves + 2) * parts;  // the last one has all larger ones too
 
   static constexpr std::uint64_t range_of(std::uint64_t value) noexcept {
     const auto octave = static_cast<std::uint64_t>(std::bit_width(value / (2 * parts)));

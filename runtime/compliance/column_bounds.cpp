@@ -14,32 +14,40 @@ namespace {
 
 void raise(std::uint32_t& bound, std::uint32_t value) { bound = std::max(bound, value); }
 
-// bounds of the blocks that a coefficient has with those of levels 0..c
+// bounds of the blocks that coefficients have with those of levels 0..c
 struct Degrees {
-  static constexpr std::uint32_t exact = 1024;
+  static constexpr std::uint32_t exact = 640;
+  static constexpr std::uint32_t sums = 9;
   std::uint32_t first[exact] = {};
-  std::uint64_t most[layout::max_levels] = {};  // of a level that is not all among the first
+  std::uint64_t most[layout::max_levels] = {};           // of a level that is not all among the first
+  std::uint64_t largest[layout::max_levels][sums] = {};  // [.][k] of the 2^k largest of a lifted level together
 
   [[nodiscard]] std::uint64_t of(std::uint32_t level, std::uint32_t place) const {
     return place < exact ? first[place] : most[level];
   }
-  // the largest of a level
-  [[nodiscard]] std::uint64_t largest(const ModelView& view, std::uint32_t level) const {
-    const std::uint32_t end = domain_up_to(view, level);
-    return end > exact ? most[level] : *std::max_element(first + view.level[level].domain_begin, first + end);
+  // of some coefficients of a lifted level, who knows which: on average no more than fewer of the largest have
+  [[nodiscard]] std::uint64_t of_some(std::uint32_t level, std::uint32_t count) const {
+    const auto octave = static_cast<std::uint32_t>(std::bit_width(count | 1)) - 1;
+    const std::uint32_t k = std::min(octave, sums - 1);
+    return (largest[level][k] * count >> k) + 1;
   }
 };
 
-[[gnu::noinline]] std::uint64_t most_blocks(const ModelView& view, std::uint32_t q, std::uint32_t c) {
+[[gnu::noinline]] void count_level(const ModelView& view, std::uint32_t q, std::uint32_t c, Degrees& degrees) {
   ValueCounts<> blocks;
   count_blocks(view, q, c, {}, blocks);
-  return blocks.most();
+  degrees.most[q] = blocks.most();
+  for (std::uint32_t k = 0; k < Degrees::sums; ++k) {
+    degrees.largest[q][k] = blocks.largest(std::uint64_t{1} << k);
+  }
 }
 
-void fill_degrees(const ModelView& view, std::uint32_t c, Degrees& degrees) {
+void fill_degrees(const ModelView& view, std::uint32_t c, const LiftingCounts* lifting, Degrees& degrees) {
   for (std::uint32_t q = 0; q <= c; ++q) {
     add_degrees(view, q, std::min(view.domain_count, Degrees::exact), degrees.first);
-    degrees.most[q] = domain_up_to(view, q) > Degrees::exact ? most_blocks(view, q, c) : 0;
+    if (domain_up_to(view, q) > Degrees::exact || lifting[q].most_neighbours > 0) {
+      count_level(view, q, c, degrees);
+    }
   }
 }
 
@@ -124,7 +132,7 @@ void add_coefficients(const ModelView& view, std::uint32_t level, const PointSup
     } else {
       const std::uint32_t neighbours = coarse->count() * lifting[level].most_neighbours - odd.twice + odd.alone;
       reach.coefficients[level] = std::min(view.level[level].counts->domain_count, neighbours);
-      reach.blocks += reach.coefficients[level] * degrees.largest(view, level);
+      reach.blocks += degrees.of_some(level, reach.coefficients[level]);
     }
     std::swap(support, coarse);
   }
@@ -207,7 +215,7 @@ void visit_columns(const ModelView& view, std::uint32_t c, Visit visit) {
 ColumnBounds bound_columns(const ModelView& view, std::uint32_t c, std::uint32_t set_columns,
                            const LiftingCounts* lifting) noexcept {
   Degrees degrees;
-  fill_degrees(view, c, degrees);
+  fill_degrees(view, c, lifting, degrees);
   return bound_with(view, c, set_columns, lifting, degrees);
 }
 

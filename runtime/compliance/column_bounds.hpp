@@ -29,9 +29,9 @@ constexpr std::uint64_t neighbour_visits(const LiftingCounts& lifting, std::uint
 }
 
 /// Of sets of at most `set_columns` columns of level c; blocks are those with levels 0..c. lifting: of every level.
-/// bound_reach must have bounded the level. Exact but for the blocks of coefficients after the first 1,024, for which
+/// bound_reach must have bounded the level. Exact but for the blocks of coefficients after the first 640, for which
 /// the largest count of their level stands, for those after the first 4,096, which count as reached, and for lifted
-/// wavelets, whose neighbours are not listed here. Start-up;
+/// wavelets, whose neighbours are not listed here: as many of the most blocks stand for them. Start-up;
 /// linear in the level's nodes times levels, and in the blocks.
 [[nodiscard]] ColumnBounds bound_columns(const ModelView& view, std::uint32_t c, std::uint32_t set_columns,
                                          const LiftingCounts* lifting) noexcept;

@@ -77,9 +77,9 @@ std::uint64_t plan_mixture_work(const ModelCounts& model, const SetCounts& coars
   return mixture_work(model, mixed) + plan_set_work(model, mixed) + plan_set_work(model, coarser);
 }
 
-// most_of, mixed_of: by constraint level
+// most_of, mixture_of: by constraint level; of planning mixtures
 void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const MostCounts* most_of,
-                const SetCounts* mixed_of, const BodySizes& sizes, Elastostatic::Requirement& requirement) {
+                const std::uint64_t* mixture_of, const BodySizes& sizes, Elastostatic::Requirement& requirement) {
   const ModelCounts& counts = sizes.counts;
   const std::uint32_t finest = view.levels - 1;
   const std::uint32_t coarsest = view.info->coarsest_constraint_level;
@@ -106,7 +106,7 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     } else {
       // the budget of such a step did not hold an answer of the next finer level; what is not the answer's is bounded
       // by refining_work, too
-      mixture = limits.mixtures ? larger(mixture, plan_mixture_work(counts, most, mixed_of[c])) : 0;
+      mixture = limits.mixtures ? larger(mixture, mixture_of[c]) : 0;
       const std::uint64_t refining = checking + smaller(limits.refining_work, finer_answer);
       requirement.worst_work[c] = smaller(finer_answer, larger(answer + mixture, refining) + older);
     }
@@ -139,7 +139,7 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   BaseColumnsMaker<3> base;
   base.carve(counting, view);
   MostCounts most_of[layout::max_levels];
-  SetCounts mixed_of[layout::max_levels];
+  std::uint64_t mixture_of[layout::max_levels] = {};
   ColumnBounds finest;
   const std::uint32_t contacts = answered_contacts(view, limits);
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
@@ -151,13 +151,14 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
     const ColumnBounds bounds = bound_columns(view, c, contacts, sizes.lifting);
     finest = c + 1 == view.levels ? bounds : finest;
     most_of[c] = most_counts(view, c, contacts, bounds, sizes.lifting);
-    mixed_of[c] = most_counts(view, view.levels - 1, contacts, larger_bounds(finest, bounds), sizes.lifting).set;
+    const MostCounts mixed = most_counts(view, view.levels - 1, contacts, larger_bounds(finest, bounds), sizes.lifting);
+    mixture_of[c] = plan_mixture_work(sizes.counts, most_of[c].set, mixed.set);
   }
   add_blocks(view, base.columns(), most_of);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
   sizes.counts.capacitance_room = capacitance_room(sizes.slots, sizes.set_columns);
-  bound_work(view, limits, most_of, mixed_of, sizes, requirement);
+  bound_work(view, limits, most_of, mixture_of, sizes, requirement);
   sizes.supported = true;
 }
 

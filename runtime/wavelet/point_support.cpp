@@ -74,7 +74,7 @@ bool follow(const ModelView& view, std::uint32_t c, std::uint32_t node, const Li
 }  // namespace
 
 bool PointSupport::add(std::uint32_t node) {
-  std::uint32_t at = node * 0x9e3779b1U >> 23;  // of 512
+  std::uint32_t at = node * 0x9e3779b1U >> 24;  // of 256
   while (slot_[at] != layout::none) {
     if (slot_[at] == node) {
       return true;

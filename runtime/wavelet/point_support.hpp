@@ -27,7 +27,7 @@ class PointSupport {
   void clear();
 
  private:
-  static constexpr std::uint32_t slots = 512;
+  static constexpr std::uint32_t slots = 256;
 
   std::uint32_t limit_;
   std::uint32_t count_ = 0;
