@@ -4,26 +4,12 @@
 #include <cstring>
 
 namespace greenloop {
-namespace {
-
-// whether a contact that was held is resolved at another level than it was
-bool moves(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::uint32_t place = last.place(contacts[i].node);
-    if (place != layout::none && last.level(place) != set.level_of(i)) {
-      return true;
-    }
-  }
-  return false;
-}
-
-}  // namespace
-
 void Glide::carve(Arena& arena, std::uint32_t contacts, std::uint32_t cycles) noexcept {
   cycles_ = cycles;
   // a glide that begins reads them, times zero
   difference_ = arena.take_zeroed<float>(std::uint64_t{3} * contacts);
   next_difference_ = arena.take_zeroed<float>(std::uint64_t{3} * contacts);
+  foreseen_difference_ = arena.take<float>(std::uint64_t{3} * contacts);
 }
 
 void Glide::turn_back(std::uint32_t contacts) noexcept {
@@ -36,13 +22,13 @@ void Glide::turn_back(std::uint32_t contacts) noexcept {
   }
 }
 
-void Glide::advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept {
-  const std::uint32_t level = set.coarsest() == set.finest() ? set.coarsest() : mixed;
+void Glide::advance(std::span<const Constraint> contacts, std::uint32_t level, const LastAnswer& last) noexcept {
   const bool persist = last.persists(contacts);
-  // contacts change places between two levels only where both sets are mixed
-  const bool changes = persist && (level != to_ || (level == mixed && moves(contacts, set, last)));
-  const bool returns = changes && left_ > 0 && !kept_ && level == from_ && level != mixed;
+  const bool changes = persist && level != to_;
+  const bool returns = changes && left_ > 0 && !kept_ && level == from_;
   fresh_ = changes && !returns;
+  foreseen_ = fresh_ && foreseen_level_ == level;
+  foreseen_level_ = layout::none;
   moving_ = persist && (changes || left_ > 0);
   if (fresh_) {
     kept_ = left_ > 0;  // in the middle of a glide the last answer is of no single level
@@ -56,6 +42,15 @@ void Glide::advance(std::span<const Constraint> contacts, const ContactSet& set,
   } else {
     to_ = level;
     left_ = 0;
+  }
+}
+
+void Glide::foresee(std::uint32_t level, const LastAnswer& last, const float* force) noexcept {
+  foreseen_level_ = level;
+  for (std::uint32_t place = 0; place < last.contacts(); ++place) {
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      foreseen_difference_[3 * place + r] = last.force(place)[r] - force[3 * place + r];
+    }
   }
 }
 
@@ -77,7 +72,10 @@ GlideReport Glide::blend(std::span<const Constraint> contacts, const LastAnswer&
     for (std::size_t r = 0; r < 3; ++r) {
       float& newer = force[3 * i + r];
       const float was = last_force == nullptr ? 0 : difference_[std::size_t{3} * place + r];
-      const float known = last_force == nullptr ? 0 : fresh_ ? last_force[r] - newer : was;
+      const float begun = last_force == nullptr ? 0
+                          : foreseen_           ? foreseen_difference_[std::size_t{3} * place + r]
+                                                : last_force[r] - newer;
+      const float known = fresh_ ? begun : was;
       const float difference = older != nullptr ? older[3 * i + r] - newer : known;
       const float displacement = without_tiny(contacts[i].value[r]);
       const float size = std::fabs(difference);

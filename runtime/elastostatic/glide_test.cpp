@@ -178,16 +178,10 @@ class TwoLevels {
   // the forces of the level before are known if `both_known`
   GlideReport step(const std::vector<Constraint>& contacts, std::uint32_t level, bool both_known) {
     force = forces(contacts, level);
-    std::vector<std::uint32_t> columns, places;
-    for (const Constraint& contact : contacts) {
-      places.push_back(static_cast<std::uint32_t>(columns.size()));
-      columns.push_back(make_column(level, contact.node));
-    }
+    std::vector<std::uint32_t> places(contacts.size());
     ContactSet set;
-    set.columns = static_cast<std::uint32_t>(columns.size());
-    set.column = columns.data();
     set.place = places.data();
-    glide.advance(contacts, set, last);
+    glide.advance(contacts, level, last);
     const std::vector<float> older = forces(contacts, 1 - level);
     const GlideReport report =
         glide.blend(contacts, last, both_known && glide.follows() ? older.data() : nullptr, force.data());

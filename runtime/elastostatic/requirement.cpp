@@ -21,7 +21,6 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.prices = limits.prices;
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
-  counts.mixtures = limits.mixtures;
   counts.keeps_capacitance = limits.keep_capacitance;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
@@ -34,26 +33,16 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
 
 std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
 
-// bound of what a column of either reaches
-ReachBound larger_reach(const ReachBound& a, const ReachBound& b) {
-  ReachBound both = a;
-  both.visits = larger(a.visits, b.visits);
-  for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
-    both.coefficients[q] = a.coefficients[q] > b.coefficients[q] ? a.coefficients[q] : b.coefficients[q];
-  }
-  return both;
-}
-
 // the dearest that a step may have done before and after it is answered, over the levels looked at
 struct OtherWork {
-  std::uint64_t plans = 0;    // of the sets of one level
-  std::uint64_t mixture = 0;  // of a mixed one, and going back to the level's
+  std::uint64_t plans = 0;    // of the sets
+  std::uint64_t part = 0;     // planning what a factor at hand has of one of them
   std::uint64_t dropped = 0;  // batch of a finer set
   std::uint64_t older = 0;    // forces of the level before
-  std::uint64_t slices = 0;   // of the factor of a finer set
+  std::uint64_t slices = 0;   // of the factor of a set as fine or finer
 };
 
-// a step's work with what it may spend on the factor of a finer set
+// a step's work with what it may spend on a factor for the next
 std::uint64_t with_slices(std::uint64_t answer, std::uint64_t slices, std::uint64_t refining_work) {
   const std::uint64_t whole = answer + slices;
   return larger(answer, whole < refining_work ? whole : refining_work);
@@ -66,8 +55,8 @@ void add_set(const ModelCounts& model, const SetCounts& most, OtherWork& other) 
 }
 
 void add_slices(const ModelCounts& model, const SetCounts& most, OtherWork& other) {
-  const std::uint64_t slice =
-      resolve_contacts_work(model.prices, most.contacts) + most_slice_work(model, most) + other.dropped;
+  const std::uint64_t slice = resolve_contacts_work(model.prices, most.contacts) + most_slice_work(model, most) +
+                              other.dropped + force_work(model.prices, most);
   other.slices = larger(other.slices, slice);
 }
 
@@ -77,18 +66,13 @@ std::uint64_t fresh_forces_work(const ModelCounts& model, const SetCounts& most,
 }
 
 void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const MostCounts* most_of,
-                const MostCounts* mixed_of, const BodySizes& sizes, Elastostatic::Requirement& requirement) {
+                const BodySizes& sizes, Elastostatic::Requirement& requirement) {
   const ModelCounts& counts = sizes.counts;
   const std::uint32_t finest = view.levels - 1;
   const auto field = [&](const MostCounts& most, std::uint32_t field_level) {
     const std::uint64_t blocks = most.field_blocks[field_level];
     return limits.forces_only ? 0 : field_work(counts, most.set, {finest, field_level}, blocks);
   };
-  // a mixed set may be planned after all levels were, whatever its own
-  std::uint64_t all_plans = check_contacts_work(counts.prices, limits.max_contacts);
-  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
-    all_plans += plan_set_work(counts, most_of[c].set);
-  }
   OtherWork other;
   other.plans = check_contacts_work(counts.prices, limits.max_contacts);
   other.older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
@@ -96,22 +80,19 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     const SetCounts& most = most_of[c].set;
     add_set(counts, most, other);
     // at the coarsest level the field is cut as well
-    const std::uint64_t cuts =
-        c == view.info->coarsest_constraint_level ? finest * count_field_work(counts.prices, most) : 0;
-    const std::uint64_t forces = other.plans + cuts + fresh_forces_work(counts, most, other);
-    std::uint64_t answer = forces + field(most_of[c], finest);
-    std::uint64_t mixed_factor = 0;
-    if (limits.mixtures && c < finest) {
-      const SetCounts& mixed = mixed_of[c].set;
-      other.mixture = larger(other.mixture, mixture_work(counts, mixed) + plan_set_work(counts, most));
-      const std::uint64_t mixed_answer = all_plans + force_work(counts.prices, mixed) + field(mixed_of[c], finest);
-      mixed_factor = mixed_answer + other.dropped + most_change_work(counts, mixed);
-      answer = larger(answer, mixed_answer);
-    }
-    const std::uint64_t refined = larger(with_slices(answer, other.slices, limits.refining_work), mixed_factor);
-    requirement.worst_work[c] = refined + other.mixture + other.older;
-    requirement.least_work = forces + field(most_of[c], 0);
+    const bool coarsest = c == view.info->coarsest_constraint_level;
+    const std::uint64_t cuts = coarsest ? finest * count_field_work(counts.prices, most) : 0;
+    const std::uint64_t planning = other.plans + other.part + cuts;
+    const std::uint64_t forces = planning + fresh_forces_work(counts, most, other);
+    std::uint64_t answer = with_slices(forces + field(most_of[c], finest), other.slices, limits.refining_work);
     add_slices(counts, most, other);
+    if (!coarsest && limits.glide_cycles > 1) {  // where contacts wait, slices make the factor
+      other.part = larger(other.part, plan_part_work(counts, most));
+      const std::uint64_t known = other.plans + other.part + force_work(counts.prices, most) + field(most_of[c], finest);
+      answer = larger(answer, with_slices(known, other.slices, limits.refining_work));
+    }
+    requirement.worst_work[c] = answer + other.older;
+    requirement.least_work = forces + field(most_of[c], 0);
   }
 }
 
@@ -138,19 +119,12 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   BaseColumnsMaker<3> base;
   base.carve(counting, view);
   MostCounts most_of[layout::max_levels];
-  MostCounts mixed_of[layout::max_levels];
-  const std::uint32_t finest = view.levels - 1;
-  ReachBound finest_reach;
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const ReachBound reach = bound_reach(view, c, sizes.most_neighbours);
     if (!reach.bounded) {
       return;
     }
-    finest_reach = c == finest ? reach : finest_reach;
     most_of[c] = most_counts(view, couplings, c, limits.max_contacts, reach, base.columns());
-    mixed_of[c] =
-        most_counts(view, couplings, finest, limits.max_contacts, larger_reach(finest_reach, reach), base.columns());
-    mixed_of[c].set.slots += mixed_of[c].set.columns;
     const SetCounts& most = most_of[c].set;
     const std::uint64_t functional = most.columns > 0 ? most.column.coefficients / most.columns : 0;
     sizes.functional = larger(sizes.functional, functional);
@@ -158,7 +132,7 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
   sizes.counts.capacitance_room = capacitance_room(sizes.slots, sizes.set_columns);
-  bound_work(view, limits, most_of, mixed_of, sizes, requirement);
+  bound_work(view, limits, most_of, sizes, requirement);
   sizes.supported = true;
 }
 
