@@ -170,14 +170,14 @@ typedef struct greenloop_constraint {
 
 /* How a step was answered. */
 typedef struct greenloop_elastostatic_details {
-  int cached_factor;       /* 1: the capacitance factor came from the cache, unchanged */
+  int cached_factor;         /* 1: the capacitance factor came from the cache, unchanged */
   uint32_t held_contacts;    /* constraints that the answer holds */
   uint32_t waiting_contacts; /* the others: they are new and have no force yet */
-  uint32_t changed_nodes;  /* nodes put into a cached factor and taken out of it, to make this one */
-  float glide;             /* share of constraint_level in the forces; the rest is of the level before it */
-  float level_difference;  /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
-  double switch_work;      /* J, elastic energy that this step's change of `glide` put into the body */
-  uint64_t pending_work;   /* units, at most, until the factor of a finer level is complete; 0: none is made */
+  uint32_t changed_nodes;    /* nodes put into a cached factor and taken out of it, to make this one */
+  float glide;               /* share of constraint_level in the forces; the rest is of the level before it */
+  float level_difference;    /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
+  double switch_work;        /* J, elastic energy that this step's change of `glide` put into the body */
+  uint64_t pending_work;     /* units, at most, until the factor of a finer level is complete; 0: none is made */
 } greenloop_elastostatic_details;
 
 typedef struct greenloop_elastostatic_report {

@@ -88,7 +88,8 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     add_slices(counts, most, other);
     if (!coarsest && limits.glide_cycles > 1) {  // where contacts wait, slices make the factor
       other.part = larger(other.part, plan_part_work(counts, most));
-      const std::uint64_t known = other.plans + other.part + force_work(counts.prices, most) + field(most_of[c], finest);
+      const std::uint64_t known =
+          other.plans + other.part + force_work(counts.prices, most) + field(most_of[c], finest);
       answer = larger(answer, with_slices(known, other.slices, limits.refining_work));
     }
     requirement.worst_work[c] = answer + other.older;
