@@ -150,7 +150,7 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
 void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, float* force,
                   Elastostatic::StepReport& report) {
-  body.glide.advance(contacts, body.planned.level(), body.last);
+  body.glide.advance(contacts, body.planned, body.last);
   const float* const older = solve_older_level(body, contacts, budget, report.work);
   const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
   body.last.remember(contacts, body.planned, force);

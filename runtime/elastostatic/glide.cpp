@@ -4,6 +4,21 @@
 #include <cstring>
 
 namespace greenloop {
+namespace {
+
+// whether a contact is held that waited
+bool comes_in(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::uint32_t place = last.place(contacts[i].node);
+    if (place != layout::none && last.waited(place) > 0 && set.holds(i)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 void Glide::carve(Arena& arena, std::uint32_t contacts, std::uint32_t cycles) noexcept {
   cycles_ = cycles;
   // a glide that begins reads them, times zero
@@ -16,13 +31,14 @@ void Glide::turn_back(std::uint32_t contacts) noexcept {
   const std::uint32_t from = from_;
   from_ = to_;
   to_ = from;
-  left_ = cycles_ - left_ - 1;
+  left_ = span_ - left_ - 1;
   for (std::uint32_t i = 0; i < 3 * contacts; ++i) {
     difference_[i] = -difference_[i];
   }
 }
 
-void Glide::advance(std::span<const Constraint> contacts, std::uint32_t level, const LastAnswer& last) noexcept {
+void Glide::advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept {
+  const std::uint32_t level = set.level();
   const bool persist = last.persists(contacts);
   const bool changes = persist && level != to_;
   const bool returns = changes && left_ > 0 && !kept_ && level == from_;
@@ -34,11 +50,16 @@ void Glide::advance(std::span<const Constraint> contacts, std::uint32_t level, c
     kept_ = left_ > 0;  // in the middle of a glide the last answer is of no single level
     from_ = to_;
     to_ = level;
-    left_ = cycles_ - 1;
+    span_ = cycles_;
+    left_ = span_ - 1;
   } else if (returns) {
     turn_back(last.contacts());
   } else if (moving_) {
     --left_;
+  } else if (persist && comes_in(contacts, set, last)) {
+    fresh_ = moving_ = kept_ = true;
+    span_ = (cycles_ + 3) / 4;
+    left_ = span_ - 1;
   } else {
     to_ = level;
     left_ = 0;
@@ -61,7 +82,7 @@ GlideReport Glide::blend(std::span<const Constraint> contacts, const LastAnswer&
     return {};
   }
   kept_ = older == nullptr;
-  const auto cycles = static_cast<float>(cycles_);
+  const auto cycles = static_cast<float>(span_);
   const float weight = static_cast<float>(left_) / cycles;
   float largest = 0;
   double along = 0;  // displacements times this difference, and the one before; neither overflows

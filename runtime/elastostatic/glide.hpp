@@ -17,20 +17,21 @@ struct GlideReport {
   double work = 0;       ///< J, as of StepDetails::switch_work
 };
 
-/// Leads the forces from one constraint level to another in equal parts of their difference.
-/// While both can be solved, the forces are (1 - s) K_old u + s K_new u of the present displacements u, with s growing
-/// by 1 / cycles: both are symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new
-/// - f_old) . u. Else the last known difference is kept and let go in the same parts: the
-/// stiffness is the newer level's at once. Differences belong to nodes: contacts that are new have none. There is no
-/// glide, and one under way ends, where fewer than three quarters of the contacts persist: forces change with the
-/// contacts then, and a difference of other contacts would only falsify them.
+/// Leads the forces from one constraint level to another in equal parts of their difference. While both can be solved,
+/// the forces are (1 - s) K_old u + s K_new u of the present displacements u, with s growing by 1 / cycles: both are
+/// symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new - f_old) . u. Else the
+/// last known difference is kept and let go in the same parts: the stiffness is the newer level's at once. So is that
+/// of what was answered while contacts waited that now are held, in a quarter of the cycles. Differences belong to
+/// nodes: contacts that are new have none. There is no glide, and one under way ends, where fewer than three quarters
+/// of the contacts persist: forces change with the contacts then, and a difference of other contacts would only falsify
+/// them.
 class Glide {
  public:
   /// Arrays out of `arena`; null while it counts. cycles: of a whole glide, at least 1; with 1 there is none.
   void carve(Arena& arena, std::uint32_t contacts, std::uint32_t cycles) noexcept;
 
-  /// Takes this step's contacts and the level that they are resolved at. For the loop; work: within blend's.
-  void advance(std::span<const Constraint> contacts, std::uint32_t level, const LastAnswer& last) noexcept;
+  /// Takes this step's contacts as they are resolved. For the loop; work: within blend's.
+  void advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept;
 
   /// Whether the forces of `older_level` are wanted.
   [[nodiscard]] bool follows() const noexcept { return moving_ && !kept_ && cycles_ > 1; }
@@ -55,6 +56,7 @@ class Glide {
   void turn_back(std::uint32_t contacts) noexcept;
 
   std::uint32_t cycles_ = 1;
+  std::uint32_t span_ = 1;  ///< cycles of this glide: a quarter where contacts come in that waited
   std::uint32_t left_ = 0;  ///< cycles until the newer level stands alone
   std::uint32_t from_ = 0;
   std::uint32_t to_ = 0;

@@ -179,9 +179,12 @@ class TwoLevels {
   GlideReport step(const std::vector<Constraint>& contacts, std::uint32_t level, bool both_known) {
     force = forces(contacts, level);
     std::vector<std::uint32_t> places(contacts.size());
+    std::vector<std::uint32_t> column{make_column(level, 0)};
     ContactSet set;
+    set.columns = 1;
+    set.column = column.data();
     set.place = places.data();
-    glide.advance(contacts, level, last);
+    glide.advance(contacts, set, last);
     const std::vector<float> older = forces(contacts, 1 - level);
     const GlideReport report =
         glide.blend(contacts, last, both_known && glide.follows() ? older.data() : nullptr, force.data());
