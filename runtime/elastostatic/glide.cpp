@@ -41,25 +41,24 @@ void Glide::advance(std::span<const Constraint> contacts, const ContactSet& set,
   const std::uint32_t level = set.level();
   const bool persist = last.persists(contacts);
   const bool changes = persist && level != to_;
-  const bool returns = changes && left_ > 0 && !kept_ && level == from_;
-  fresh_ = changes && !returns;
+  const bool comes = persist && comes_in(contacts, set, last);
+  const bool returns = changes && !comes && left_ > 0 && !kept_ && level == from_;
+  fresh_ = comes || (changes && !returns);
   foreseen_ = fresh_ && foreseen_level_ == level;
   foreseen_level_ = layout::none;
-  moving_ = persist && (changes || left_ > 0);
+  moving_ = persist && (changes || comes || left_ > 0);
   if (fresh_) {
-    kept_ = left_ > 0;  // in the middle of a glide the last answer is of no single level
+    // in the middle of a glide, or without those that waited, the last answer is of no single level
+    kept_ = left_ > 0 || last.waiting();
+    const std::uint32_t quarter = (cycles_ + 3) / 4;
+    span_ = changes ? cycles_ : left_ > quarter ? left_ : quarter;
+    left_ = span_ - 1;
     from_ = to_;
     to_ = level;
-    span_ = cycles_;
-    left_ = span_ - 1;
   } else if (returns) {
     turn_back(last.contacts());
   } else if (moving_) {
     --left_;
-  } else if (persist && comes_in(contacts, set, last)) {
-    fresh_ = moving_ = kept_ = true;
-    span_ = (cycles_ + 3) / 4;
-    left_ = span_ - 1;
   } else {
     to_ = level;
     left_ = 0;

@@ -38,6 +38,7 @@ void LastAnswer::remember(std::span<const Constraint> contacts, const ContactSet
     next_waited_[i] = static_cast<std::uint16_t>(set.holds(i) ? 0 : before + 1);
   }
   std::swap(waited_, next_waited_);
+  waiting_ = set.waiting > 0;
   contacts_ = static_cast<std::uint32_t>(contacts.size());
   for (std::uint32_t i = 0; i < contacts_; ++i) {
     node_[i] = contacts[i].node;

@@ -30,6 +30,9 @@ class LastAnswer {
   /// Steps in a row that a place has waited.
   [[nodiscard]] std::uint32_t waited(std::uint32_t place) const noexcept { return waited_[place]; }
 
+  /// Whether any has.
+  [[nodiscard]] bool waiting() const noexcept { return waiting_; }
+
   /// Whether most contacts were held: three quarters, of the larger set. For the loop; work: a unit a contact.
   [[nodiscard]] bool persists(std::span<const Constraint> contacts) const noexcept;
 
@@ -50,6 +53,7 @@ class LastAnswer {
   [[nodiscard]] std::size_t common(std::span<const Constraint> contacts) const noexcept;
 
   std::uint32_t contacts_ = 0;
+  bool waiting_ = false;
   float error_ = 0;
   std::uint32_t* node_ = nullptr;         ///< [contacts]
   std::uint32_t* place_ = nullptr;        ///< [nodes] in node_, of those that are there
