@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -67,6 +68,71 @@ TEST_CASE("a patch with one new contact in every step reaches the finest level a
     error[percent] = prepared.error;
   }
   CHECK(error[60] <= 0.05);
+}
+
+// a pressed patch that slides on by a node in 16 steps: the last contact comes from where the others leave its node to
+// where it is pressed, the first one goes the other way, so that the finest level's forces change little from step to
+// step
+std::vector<std::vector<Constraint>> sliding_press(const TestModel& model, std::uint32_t nodes) {
+  constexpr std::uint32_t held = 16, steps_of_node = 16;
+  TestBody body(model, {.max_contacts = held});
+  std::vector<std::vector<Constraint>> contacts;
+  for (std::uint32_t step = 0; step < steps_of_node * nodes; ++step) {
+    auto now = patch(model, step / steps_of_node, held);
+    for (Constraint& contact : now) {
+      std::copy_n(std::array{0.0F, 0.0F, -1e-3F}.begin(), 3, contact.value);
+    }
+    body.step(std::span(now).subspan(1, held - 2), any_budget);
+    const float share = static_cast<float>(step % steps_of_node) / steps_of_node;
+    for (std::size_t r = 0; r < 3; ++r) {
+      const auto left_at = [&](const Constraint& contact) { return body.field()[std::size_t{4} * contact.node + r]; };
+      now.front().value[r] += share * (left_at(now.front()) - now.front().value[r]);
+      now.back().value[r] += (1 - share) * (left_at(now.back()) - now.back().value[r]);
+    }
+    contacts.push_back(now);
+  }
+  return contacts;
+}
+
+struct ForceSteps {
+  double largest = 0;  ///< N, of the total force
+  double mean = 0;     ///< N, total force
+  std::uint64_t worst_work = 0;
+};
+
+ForceSteps force_steps(const TestModel& model, const std::vector<std::vector<Constraint>>& contacts,
+                       std::uint64_t budget) {
+  TestBody body(model, {.max_contacts = 16});
+  ForceSteps steps;
+  std::array<double, 3> last{};
+  for (std::size_t step = 0; step < contacts.size(); ++step) {
+    const Elastostatic::StepReport report = body.step(contacts[step], budget, false);
+    REQUIRE(answered(report.status));
+    steps.worst_work = std::max(steps.worst_work, report.work);
+    std::array<double, 3> total{};
+    for (std::size_t i = 0; i < body.force().size(); ++i) {
+      total[i % 3] += double{body.force()[i]};
+    }
+    steps.mean += std::hypot(total[0], total[1], total[2]) / static_cast<double>(contacts.size());
+    if (step > 0) {
+      steps.largest = std::max(steps.largest, std::hypot(total[0] - last[0], total[1] - last[1], total[2] - last[2]));
+    }
+    last = total;
+  }
+  return steps;
+}
+
+TEST_CASE(
+    "where a pressed patch slides, a starved body's force steps a tenth of it beyond the finest level's at most") {
+  const TestModel model({.levels = 4});
+  const auto contacts = sliding_press(model, 20);
+  const ForceSteps whole = force_steps(model, contacts, any_budget);
+  for (const std::uint64_t part : {10U, 4U, 2U}) {
+    const ForceSteps starved = force_steps(model, contacts, whole.worst_work / part);
+    MESSAGE("largest step of the total force over its mean: ", starved.largest / whole.mean, " at 1/", part,
+            " of the work, at the finest level ", whole.largest / whole.mean);
+    CHECK(starved.largest <= whole.largest + 0.1 * whole.mean);
+  }
 }
 
 // a patch at the finest level, and a budget that holds its cached factor but not the change of a node
