@@ -44,7 +44,9 @@ Factor* find_factor(Body& body, const Plan& plan) {
     body.cache.use(*plan.cached);  // also if the answer overflows
     return plan.cached;
   }
-  drop_batch(body.job, body.capacitance);
+  if (!plan.update || body.changes.added > 0) {
+    drop_batch(body.job, body.capacitance);  // nodes only leave without it
+  }
   Factor* const made =
       make_factor(body.factor_tools(), body.planned.all(), body.touched, plan.update ? &body.changes : nullptr);
   if (made != nullptr) {
@@ -92,7 +94,8 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].value;
-    if (body.planned.level_of(i) + 1 == body.counts.levels && contacts[i].node < body.counts.nodes[levels.nodes]) {
+    if (body.planned.level() + 1 == body.counts.levels && body.planned.holds(i) &&
+        contacts[i].node < body.counts.nodes[levels.nodes]) {
       x[contacts[i].node] = Float4{without_tiny(held[0]), without_tiny(held[1]), without_tiny(held[2]), 0.0F};
     }
   }
@@ -109,7 +112,6 @@ Elastostatic::StepReport release(Body& body, const Elastostatic::Response& respo
   Elastostatic::StepReport report;
   report.work = work;
   report.constraint_level = finest;
-  report.details.finer_level = static_cast<std::uint8_t>(finest);
   report.field_level = response.displacement.empty() ? finest : finest_displaced(body, response);
   return report;
 }
@@ -129,7 +131,7 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
     return nullptr;
   }
   ContactSet& set = body.other;
-  resolve_contacts(contacts, *body.view, body.facts, {body.glide.older_level()}, body.resolution, set);
+  resolve_contacts(contacts, *body.view, body.facts, body.glide.older_level(), body.resolution, set);
   work += resolve_contacts_work(body.counts.prices, contacts.size()) +
           FactorCache::find_work(body.counts.prices, body.counts.cached_factors, set.columns);
   Factor* const factor = body.cache.find(set.all());
@@ -157,45 +159,45 @@ void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_
   report.details.switch_work = glide.work;
 }
 
-// what is left of the budget goes into the factor that a finer level lacked
-void prepare_finer_level(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t budget,
-                         Elastostatic::StepReport& report) {
-  if (!plan.wanted.exists || plan.wanted.level <= report.constraint_level) {
-    return;
+// what the glide to a finer level begins with, if its factor has just been completed
+void foresee_finer_level(Body& body, std::span<const Constraint> contacts) {
+  Factor* const factor = body.cache.find(body.other.all());
+  if (factor != nullptr && solve_forces(body, contacts, body.other, *factor, body.other_column_force)) {
+    share_forces(body.other_column_force, contacts.size(), body.other, body.older_force);
+    body.glide.foresee(body.other.level(), body.last, body.older_force);
   }
-  // the step that makes a mixed factor has had the scratch, and its share of the work
-  const bool mixed = plan.resolution.fine != nullptr && plan.cached == nullptr;
-  const std::uint64_t resolving = resolve_contacts_work(body.counts.prices, contacts.size());
-  const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
-  if (mixed || report.work + resolving > limit) {
-    report.details.pending_work = pending_work(body.counts, plan.wanted.counts);
-    return;
-  }
-  resolve_contacts(contacts, *body.view, body.facts, {plan.wanted.level}, body.resolution, body.other);
-  report.work += resolving;
-  const std::uint64_t left = limit - report.work;
-  const std::uint64_t most =
-      most_slice_work(body.counts, plan.wanted.counts) + drop_batch_work(body.counts.prices, body.job);
-  const FactorProgress progress =
-      continue_factor(body.job, body.factor_tools(), body.other.all(), plan.wanted.counts, left < most ? left : most);
-  report.work += progress.work;
-  report.details.pending_work = progress.pending;
 }
 
-// which levels the planned set has
-void report_levels(const Body& body, const Plan& plan, Elastostatic::StepReport& report) {
-  const ContactSet& set = body.planned;
-  report.constraint_level = set.coarsest();
-  report.details.finer_level = static_cast<std::uint8_t>(set.finest());
-  report.details.finer_contacts = static_cast<std::uint16_t>(plan.counts.contacts);
-  if (set.coarsest() != set.finest()) {
-    std::uint32_t finer = 0;
-    for (std::uint32_t k = 0; k < set.columns; ++k) {
-      finer += column_level(set.column[k]) == set.finest() ? set.members[k] : 0;
-    }
-    report.details.finer_contacts = static_cast<std::uint16_t>(finer);
+// what is left of the budget goes into the factor that the finest level lacked. moving: the contacts are not the last
+// step's
+void prepare_factor(Body& body, std::span<const Constraint> contacts, const Plan& plan, bool moving,
+                    std::uint64_t budget, Elastostatic::StepReport& report) {
+  const bool waits = body.planned.waiting > 0;
+  if (!plan.wanted.exists || (plan.wanted.level <= report.constraint_level && !waits)) {
+    return;
   }
-  report.field_level = plan.field_levels.details;
+  const SetCounts& whole = plan.wanted.counts;
+  const std::uint64_t resolving = resolve_contacts_work(body.counts.prices, contacts.size());
+  const bool glides = !waits && body.counts.glide_cycles > 1;
+  const std::uint64_t foreseeing = glides ? force_work(body.counts.prices, whole) : 0;
+  const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
+  if (report.work + resolving + foreseeing > limit) {
+    report.details.pending_work = pending_work(body.counts, whole);
+    return;
+  }
+  resolve_contacts(contacts, *body.view, body.facts, plan.wanted.level, body.resolution, body.other);
+  report.work += resolving;
+  const std::uint64_t left = limit - report.work - foreseeing;
+  const std::uint64_t made = waits && plan.cached == nullptr ? plan.factor : 0;
+  const std::uint64_t most = most_slice_work(body.counts, whole) + drop_batch_work(body.counts.prices, body.job) - made;
+  const FactorProgress progress = continue_factor(body.job, body.factor_tools(), body.other.all(), whole,
+                                                  {left < most ? left : most, moving || waits, waits});
+  report.work += progress.work;
+  report.details.pending_work = progress.pending;
+  if (progress.pending == 0 && glides) {
+    foresee_finer_level(body, contacts);
+    report.work += foreseeing;
+  }
 }
 
 float larger(float a, float b) { return a > b ? a : b; }
@@ -206,6 +208,9 @@ float measured(float error) { return error > 0 ? error : std::numeric_limits<flo
 // what an answer was measured to be off by: forces, the field with the details that it has, and while forces go over
 // from an answer to another the worse of both
 float answer_error(const Body& body, const Plan& plan, bool with_field, const Elastostatic::StepReport& report) {
+  if (report.details.waiting_contacts > 0) {
+    return measured(0);
+  }
   const layout::Level& counts = *body.view->level[report.constraint_level].counts;
   float error = measured(counts.force_error);
   if (with_field) {
@@ -236,16 +241,20 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   }
   Elastostatic::StepReport report;
   report.work = work;
-  report_levels(body, plan, report);
+  report.constraint_level = set.level();
+  report.field_level = plan.field_levels.details;
+  report.details.held_contacts = static_cast<std::uint16_t>(contacts.size() - set.waiting);
+  report.details.waiting_contacts = static_cast<std::uint16_t>(set.waiting);
+  const bool moving = !body.last.stays(contacts);
   glide_forces(body, contacts, budget, force, report);
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
   body.last.set_error(report.error);
   body.cache.use(*factor);
-  prepare_finer_level(body, contacts, plan, budget, report);
+  prepare_factor(body, contacts, plan, moving, budget, report);
   report.details.cached_factor = plan.cached != nullptr;
   report.details.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
-  const bool finest =
-      report.constraint_level + 1 == body.view->levels && plan.field_levels.details == plan.field_levels.nodes;
+  const bool finest = report.constraint_level + 1 == body.view->levels && set.waiting == 0 &&
+                      plan.field_levels.details == plan.field_levels.nodes;
   report.status = finest && report.details.glide == 1 ? Status::ok : Status::coarser;
   body.answered = true;
   return report;
@@ -346,7 +355,7 @@ Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts
 bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept {
   const Body& body = *body_;
   const ContactSet& set = body.planned;
-  if (!body.answered || i >= body.last.contacts() || j >= body.last.contacts()) {
+  if (!body.answered || i >= body.last.contacts() || j >= body.last.contacts() || !set.holds(i) || !set.holds(j)) {
     return false;
   }
   const Factor* const factor = body.cache.find(set.all());

@@ -22,7 +22,6 @@ class Elastostatic {
     std::uint32_t max_contacts = 64;   ///< 1..4096, constraints per step
     std::uint32_t cached_factors = 8;  ///< 1..1024, capacitance factors kept
     bool forces_only = false;          ///< no fields: little memory, and no couplings to be mirrored
-    bool mixtures = true;              ///< whether sets may mix constraint levels
     bool keep_capacitance = false;     ///< capacitance matrices beside their factors, for `compliance`
     std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
@@ -52,11 +51,11 @@ class Elastostatic {
 
   /// How a step was answered.
   struct StepDetails {
-    bool cached_factor = false;        ///< the capacitance factor came from the cache, unchanged
-    std::uint8_t finer_level = 0;      ///< of a mixed set the finer one, else constraint_level
-    std::uint16_t finer_contacts = 0;  ///< constraints that were resolved at finer_level
-    std::uint32_t changed_nodes = 0;   ///< nodes put into a cached factor and taken out of it, to make this one
-    float glide = 1;                   ///< share of constraint_level in the forces; the rest is of the level before it
+    bool cached_factor = false;          ///< the capacitance factor came from the cache, unchanged
+    std::uint16_t held_contacts = 0;     ///< constraints that the answer holds
+    std::uint16_t waiting_contacts = 0;  ///< the others: they are new and have no force yet
+    std::uint32_t changed_nodes = 0;     ///< nodes put into a cached factor and taken out of it, to make this one
+    float glide = 1;  ///< share of constraint_level in the forces; the rest is of the level before it
     float level_difference =
         0;                   ///< N, largest component of the older level's forces minus the newer one's; 0: no glide
     double switch_work = 0;  ///< J, elastic energy that this step's change of `glide` put into the body
@@ -64,7 +63,7 @@ class Elastostatic {
   };
 
   struct StepReport : greenloop::StepReport {
-    std::uint32_t constraint_level = 0;  ///< level at which they were resolved, of a mixed set the coarser one
+    std::uint32_t constraint_level = 0;  ///< level at which they were resolved
     std::uint32_t field_level = 0;       ///< finest level whose details are in the field (interpolated beyond)
     float error = 0;  ///< largest relative error, of forces and field, that answers like this one were measured to have
                       ///< offline (docs/loop.md, "Errors"); infinity: not measured, or not answered

@@ -25,7 +25,6 @@ Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
   Elastostatic::Limits same{.max_contacts = limits.max_contacts,
                             .cached_factors = limits.cached_factors,
                             .forces_only = limits.forces_only != 0,
-                            .mixtures = limits.no_mixtures == 0,
                             .keep_capacitance = limits.keep_capacitance != 0};
   same.glide_cycles = limits.glide_cycles == 0 ? same.glide_cycles : limits.glide_cycles;
   same.refining_work = limits.refining_work == 0 ? same.refining_work : limits.refining_work;
@@ -43,7 +42,7 @@ greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) 
           report.constraint_level,
           report.field_level,
           report.error,
-          {details.cached_factor ? 1 : 0, details.finer_level, details.finer_contacts, details.changed_nodes,
+          {details.cached_factor ? 1 : 0, details.held_contacts, details.waiting_contacts, details.changed_nodes,
            details.glide, details.level_difference, details.switch_work, details.pending_work}};
 }
 
@@ -56,8 +55,8 @@ greenloop_prices greenloop_default_prices(void) { return std::bit_cast<greenloop
 greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
   const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
   const Elastostatic::Limits& limits = intent.limits;
-  return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.mixtures ? 0 : 1,
-           limits.keep_capacitance ? 1 : 0, limits.glide_cycles, limits.refining_work, nullptr},
+  return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.keep_capacitance ? 1 : 0,
+           limits.glide_cycles, limits.refining_work, nullptr},
           intent.budget.work,
           intent.rate,
           intent.share};

@@ -128,7 +128,6 @@ typedef struct greenloop_elastostatic_limits {
   uint32_t max_contacts;   /* 1..4096, contacts per step */
   uint32_t cached_factors; /* 1..1024, capacitance factors kept */
   int forces_only;         /* 1: no fields, little memory */
-  int no_mixtures;         /* 1: sets do not mix constraint levels */
   int keep_capacitance;    /* 1: capacitance matrices beside their factors, for greenloop_elastostatic_compliance */
   uint32_t glide_cycles;   /* 1..256, steps in which the forces go over to another level; 1: at once; 0: 16 */
   uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
@@ -172,21 +171,21 @@ typedef struct greenloop_constraint {
 
 /* How a step was answered. */
 typedef struct greenloop_elastostatic_details {
-  int cached_factor;       /* 1: the capacitance factor came from the cache, unchanged */
-  uint32_t finer_level;    /* of a mixed set the finer one, else constraint_level */
-  uint32_t finer_contacts; /* constraints that were resolved at finer_level */
-  uint32_t changed_nodes;  /* nodes put into a cached factor and taken out of it, to make this one */
-  float glide;             /* share of constraint_level in the forces; the rest is of the level before it */
-  float level_difference;  /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
-  double switch_work;      /* J, elastic energy that this step's change of `glide` put into the body */
-  uint64_t pending_work;   /* units, at most, until the factor of a finer level is complete; 0: none is made */
+  int cached_factor;         /* 1: the capacitance factor came from the cache, unchanged */
+  uint32_t held_contacts;    /* constraints that the answer holds */
+  uint32_t waiting_contacts; /* the others: they are new and have no force yet */
+  uint32_t changed_nodes;    /* nodes put into a cached factor and taken out of it, to make this one */
+  float glide;               /* share of constraint_level in the forces; the rest is of the level before it */
+  float level_difference;    /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
+  double switch_work;        /* J, elastic energy that this step's change of `glide` put into the body */
+  uint64_t pending_work;     /* units, at most, until the factor of a finer level is complete; 0: none is made */
 } greenloop_elastostatic_details;
 
 typedef struct greenloop_elastostatic_report {
   greenloop_status status;
   uint32_t refused;          /* first constraint, by its place, that `status` is about; or GREENLOOP_NO_CONSTRAINT */
   uint64_t work;             /* units spent, never more than the budget */
-  uint32_t constraint_level; /* level at which they were resolved, of a mixed set the coarser one */
+  uint32_t constraint_level; /* level at which they were resolved */
   uint32_t field_level;      /* finest level whose details are in the field */
   float error; /* largest relative error that such answers were measured to have; infinity: unknown, held */
   greenloop_elastostatic_details details;

@@ -164,6 +164,7 @@ Json inspection_of(const ModelFile& model) {
       {"units", units_of(view)},
       {"constraint_levels", levels_of(view)},
       {"patterns", patterns_of(view)},
+      {"mesh_error", recorded(view, "mesh_error", nullptr)},
       {"vertices", view.vertices.size()},
       {"ready", view.ready.read != nullptr},
       {"ready_bytes", ready_bytes(view)},
@@ -197,6 +198,13 @@ std::string certificate_text(const Json& found) {
                      found["lambda_min"].get<double>(), unit.is_null() ? "" : " " + unit.get<std::string>());
 }
 
+// what the mesh itself costs, as the build estimated it
+std::string mesh_error_text(const Json& error) {
+  if (!error.is_object() || !error.contains("force") || !error["force"].is_number()) return "not estimated";
+  return fmt::format("forces of pressed patches up to {} too large, against quadratic elements on the same tetrahedra",
+                     percent(error["force"]));
+}
+
 void print_table(const std::filesystem::path& file, const Json& found, std::ostream& out) {
   const auto row = [&](std::string_view name, const std::string& value) {
     fmt::print(out, "  {:<20}{}\n", name, value);
@@ -213,6 +221,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
                                  ratio(found["dense_blocks"], found["kept_blocks"])));
   row("wavelet", found["wavelet"].get<std::string>());
   row("field", field_text(found));
+  row("mesh error", mesh_error_text(found["mesh_error"]));
   row("certificate", certificate_text(found));
   if (!material.is_null()) {
     row("material",

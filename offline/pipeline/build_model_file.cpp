@@ -32,6 +32,7 @@
 #include "offline/scene/fingerprint.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/sources/fem/green_functions.hpp"
+#include "offline/sources/fem/mesh_error.hpp"
 #include "offline/sources/reciprocity.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/greenloop.h"
@@ -40,6 +41,9 @@ namespace greenloop::offline {
 namespace {
 
 using nlohmann::json;
+
+// linear tetrahedra are too stiff by tens of per cent above (docs/solving.md)
+constexpr double locking_poisson = 0.45;
 
 std::string request_fingerprint(const Scene& scene, const std::string& mesh) {
   return fingerprint(canonical_text(scene), fingerprint(mesh, fingerprint(pipeline_version))).hex();
@@ -139,6 +143,37 @@ std::vector<std::uint64_t> worst_step_work(std::span<const std::byte> bytes) {
   return {need.worst_work, need.worst_work + opened.model.level_count()};
 }
 
+/// Surface nodes that may be touched.
+std::vector<int> touched_nodes(const GreenStoreContents& contents) {
+  std::vector<int> touched;
+  for (std::size_t i = 0; i < contents.flags.size(); ++i) {
+    if ((contents.flags[i] & layout::node_touchable) != 0) touched.push_back(static_cast<int>(i));
+  }
+  return touched;
+}
+
+MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar& progress) {
+  progress.begin("mesh error");
+  const GreenStoreContents& contents = store.contents();
+  const MeshError error = estimate_mesh_error(fem_problem(contents), touched_nodes(contents),
+                                              [&](double fraction) { progress.update(fraction); });
+  const std::string found = fmt::format("forces of pressed patches up to {}{:.3g} % too large, against quadratic elements",
+                                        error.settled ? "" : "more than ", 100 * error.force());
+  progress.end(found);
+  if (scene.material.poisson > locking_poisson) {
+    progress.warn(fmt::format("material.poisson = {}: linear tetrahedra lock above {}", scene.material.poisson,
+                              locking_poisson));
+  }
+  if (error.force() > scene.accuracy.patch_force) {
+    const Eigen::Vector3d& at = error.patches.front().center;
+    progress.warn(fmt::format(
+        "mesh error: {}, the worst at ({:.3g}, {:.3g}, {:.3g}) m; accuracy.patch_force = {} asks for less, and what is "
+        "measured of the compression is apart from it. More levels, or a lower Poisson's ratio, lessen it",
+        found, at.x(), at.y(), at.z(), scene.accuracy.patch_force));
+  }
+  return error;
+}
+
 layout::Info scene_facts(const Scene& scene, double asymmetry) {
   layout::Info facts{};
   facts.young = scene.material.young;
@@ -211,6 +246,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   json record = json::parse(store.contents().provenance);
   record["scene"] = request.scene.filename().string();
   record["solve"] = solve_record(solved, store);
+  record["mesh_error"] = mesh_error_record(measure_mesh(scene, store, progress));
 
   json provenance = record;
   provenance["tool"] =
@@ -241,6 +277,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   record["step_work"] = built.model.info.step_work;
   record["units_per_us"] = scene.budget.speed();
   record["period_us"] = 1e6 / scene.budget.rate;
+  record["warnings"] = progress.warnings();
   for (const auto& stage : progress.stages()) {
     record["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}});
   }

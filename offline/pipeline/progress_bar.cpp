@@ -57,6 +57,11 @@ void ProgressBar::end(std::string_view note) {
   }
 }
 
+void ProgressBar::warn(const std::string& what) {
+  warnings_.push_back(what);
+  say("warning: " + what + "\n");
+}
+
 void ProgressBar::draw(double fraction, std::string_view detail) {
   if (quiet_ || !terminal_) {
     return;

@@ -28,7 +28,11 @@ class ProgressBar {
   /// Ends the stage under way with a short note of what came out.
   void end(std::string_view note = {});
 
+  /// Says what people should know about the result, also when quiet; between stages.
+  void warn(const std::string& what);
+
   [[nodiscard]] const std::vector<FinishedStage>& stages() const { return stages_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -42,6 +46,7 @@ class ProgressBar {
   double first_fraction_ = -1;  ///< where a resumed stage started, so that the remaining time is honest
   Clock::time_point started_, drawn_;
   std::vector<FinishedStage> stages_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace greenloop::offline

@@ -69,6 +69,18 @@ json solve_record(const SolveReport& report, const GreenStore& store) {
           {"largest_asymmetry", report.largest_asymmetry}};
 }
 
+json mesh_error_record(const MeshError& error) {
+  json patches = json::array();
+  for (const PressedPatch& patch : error.patches) {
+    patches.push_back({{"center", {patch.center.x(), patch.center.y(), patch.center.z()}},
+                       {"axis", std::string(1, "xyz"[patch.axis])},
+                       {"linear", rounded(patch.linear_force)},
+                       {"quadratic", rounded(patch.quadratic_force)},
+                       {"error", rounded(patch.error())}});
+  }
+  return {{"force", rounded(error.force())}, {"settled", error.settled}, {"patches", std::move(patches)}};
+}
+
 json frontier_record(const CompressionReport& report) {
   json points = json::array();
   for (const auto& trial : report.frontier) {

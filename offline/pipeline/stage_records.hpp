@@ -7,6 +7,7 @@
 #include "offline/compress/model_builder.hpp"
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/sources/fem/green_functions.hpp"
+#include "offline/sources/fem/mesh_error.hpp"
 
 namespace greenloop::offline {
 
@@ -16,6 +17,8 @@ namespace greenloop::offline {
 [[nodiscard]] nlohmann::json geometry_record(const GeometryReport& report);
 [[nodiscard]] nlohmann::json volume_record(const FilledVolume& filled);
 [[nodiscard]] nlohmann::json solve_record(const SolveReport& report, const GreenStore& store);
+
+[[nodiscard]] nlohmann::json mesh_error_record(const MeshError& error);
 
 /// What was tried, from fewer bytes to more, with the figures of every constraint level; those of trials that were not
 /// chosen are measured on a sample of patches and columns.

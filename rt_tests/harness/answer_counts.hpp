@@ -15,7 +15,7 @@ struct AnswerCounts {
   std::array<std::uint64_t, layout::max_levels> by_level{};  ///< answers by the level of the constraints
   std::uint64_t cached = 0;   ///< answers from what was kept of an earlier step, unchanged
   std::uint64_t changed = 0;  ///< answers from what was kept and changed
-  std::uint64_t mixed = 0;    ///< answers with constraints of two levels
+  std::uint64_t waiting = 0;  ///< answers with new constraints that wait
   std::uint64_t refined = 0;  ///< answers at a finer level than the last, prepared in steps before
   std::uint64_t work = 0;     ///< units in all
   std::uint64_t worst_work = 0;

@@ -43,18 +43,18 @@ struct ElastostaticDriver {
     ++counts.by_level[report.constraint_level];
     counts.cached += details.cached_factor ? 1 : 0;
     counts.changed += details.changed_nodes > 0 ? 1 : 0;
-    counts.mixed += details.finer_level > report.constraint_level ? 1 : 0;
+    counts.waiting += details.waiting_contacts > 0 ? 1 : 0;
     const bool finer = report.constraint_level > last.constraint_level;
     counts.refined += finer && last.details.pending_work > 0 && details.cached_factor ? 1 : 0;
   }
 
   static std::string way(const StepReport& report, bool with_field) {
     const Elastostatic::StepDetails& details = report.details;
-    if (details.finer_contacts == 0) {
+    if (details.held_contacts == 0) {
       return with_field ? "released, field" : "released";
     }
     std::string way = details.cached_factor ? "cached" : details.changed_nodes > 0 ? "changed" : "fresh";
-    way += details.finer_level > report.constraint_level ? ", mixed" : "";
+    way += details.waiting_contacts > 0 ? ", waiting" : "";
     way += details.pending_work > 0 ? ", preparing" : "";
     return way + (with_field ? ", field" : "");
   }
@@ -62,8 +62,8 @@ struct ElastostaticDriver {
   static std::array<std::uint64_t, 6> facts(const StepReport& report) {
     return {static_cast<std::uint64_t>(report.status),
             report.constraint_level,
-            report.details.finer_level,
-            report.details.finer_contacts,
+            report.constraint_level,
+            report.details.held_contacts,
             report.field_level,
             report.work};
   }
@@ -71,7 +71,7 @@ struct ElastostaticDriver {
   static std::array<std::uint64_t, 7> all_facts(const StepReport& report) {
     const Elastostatic::StepDetails& details = report.details;
     return {static_cast<std::uint64_t>(report.status) << 32 | report.constraint_level << 8 | report.field_level,
-            std::uint64_t{details.finer_level} << 32 | details.finer_contacts,
+            std::uint64_t{report.constraint_level} << 32 | details.held_contacts,
             report.work << 1 | (details.cached_factor ? 1 : 0),
             std::bit_cast<std::uint32_t>(details.glide),
             std::bit_cast<std::uint32_t>(details.level_difference),

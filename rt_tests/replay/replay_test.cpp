@@ -30,7 +30,7 @@ namespace greenloop {
 namespace {
 
 constexpr Elastostatic::Limits limits{
-    .max_contacts = 12, .cached_factors = 3, .mixtures = false, .keep_capacitance = true, .glide_cycles = 5};
+    .max_contacts = 12, .cached_factors = 3, .keep_capacitance = true, .glide_cycles = 5};
 
 // memory at an address that no allocator uses again in another process
 class Mapped {

@@ -32,7 +32,7 @@ json as_json(const ScriptResult& script) {
           {"coarser", script.counts.of(Status::coarser)},
           {"cached", script.counts.cached},
           {"changed", script.counts.changed},
-          {"mixed_levels", script.counts.mixed},
+          {"waiting", script.counts.waiting},
           {"refused", script.counts.refusals()},
           {"worst_work", script.counts.worst_work},
           {"worst_us", script.worst_us},
@@ -63,10 +63,10 @@ json as_json(const PredictedWork& predicted) {
 
 void print_scripts(const std::vector<ScriptResult>& scripts) {
   fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}\n", "script", "cycles", "answered",
-             "coarser", "mixed", "cached", "changed", "refused", "worst work", "worst us", "force step");
+             "coarser", "waiting", "cached", "changed", "refused", "worst work", "worst us", "force step");
   for (const ScriptResult& s : scripts) {
     fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9.0f} {:>10.2g}\n", name(s.kind), s.cycles,
-               s.counts.answers(), s.counts.of(Status::coarser), s.counts.mixed, s.counts.cached, s.counts.changed,
+               s.counts.answers(), s.counts.of(Status::coarser), s.counts.waiting, s.counts.cached, s.counts.changed,
                s.counts.refusals(), s.counts.worst_work, s.worst_us, s.force_step_max);
   }
 }

@@ -40,9 +40,12 @@ std::uint64_t functionals_work(const CapacitanceCounts& counts) {
          priced(counts.rows * counts.slots, prices.cleared);
 }
 
-// of the blocks in the columns of the slots
+// of the blocks in the columns of the slots; those between coefficients of which no computed row has one are passed
+// over
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
-  return priced(counts.stored, counts.prices->stored_block + counts.prices->scaled_block);
+  const Prices& prices = *counts.prices;
+  return priced(counts.stored, prices.stored_block) +
+         priced(smaller(counts.stored, counts.blocks), prices.scaled_block);
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {

@@ -157,7 +157,6 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.force = arena.take_zeroed<Float4>(view.domain_count);
   body.cache.carve<3>(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.job.carve<3>(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);
-  body.mixture.carve(arena, sizes.counts.max_contacts);
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
   body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);
 }

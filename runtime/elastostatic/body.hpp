@@ -11,7 +11,6 @@
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/elastostatic/last_answer.hpp"
-#include "runtime/elastostatic/mixture.hpp"
 #include "runtime/elastostatic/requirement.hpp"
 #include "runtime/factor/factor_cache.hpp"
 #include "runtime/factor/factor_job.hpp"
@@ -58,7 +57,6 @@ struct Body {
   LastAnswer last;
   bool answered = false;  ///< `planned` is the set of the last answer
   Glide glide;
-  Mixture mixture;
   const std::byte* last_red_zone = nullptr;
 
   [[nodiscard]] const FactorTools<3>& factor_tools() const { return *tools; }

@@ -78,11 +78,10 @@ std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint
 }
 
 void resolve_contacts(std::span<const Constraint> contacts, const ModelView& view, const NodeFacts* facts,
-                      const Resolution& resolution, ResolutionScratch& scratch, ContactSet& set) noexcept {
-  set.columns = 0;
+                      std::uint32_t level, ResolutionScratch& scratch, ContactSet& set) noexcept {
+  set.columns = set.waiting = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const bool fine = resolution.fine != nullptr && resolution.fine[i];
-    const std::uint32_t column = column_of(view, facts, contacts[i].node, fine ? view.levels - 1 : resolution.level);
+    const std::uint32_t column = column_of(view, facts, contacts[i].node, level);
     set.place[i] = column_place(column);
     std::uint32_t& index = scratch.index_of_place[column_place(column)];
     if (index == layout::none) {
@@ -104,13 +103,34 @@ void resolve_contacts(std::span<const Constraint> contacts, const ModelView& vie
   }
 }
 
+void leave_out(ColumnSet columns, std::size_t contacts, ResolutionScratch& scratch, ContactSet& set) noexcept {
+  std::uint32_t* const new_place = scratch.sorting;
+  std::uint32_t kept = 0;
+  std::uint32_t out = 0;
+  for (std::uint32_t k = 0; k < set.columns; ++k) {
+    const bool leaves = out < columns.count && set.column[k] == columns.column[out];
+    new_place[k] = leaves ? layout::none : kept;
+    if (leaves) {
+      ++out;
+    } else {
+      set.column[kept] = set.column[k];
+      set.members[kept++] = set.members[k];
+    }
+  }
+  set.columns = kept;
+  for (std::size_t i = 0; i < contacts; ++i) {
+    set.place[i] = new_place[set.place[i]];
+    set.waiting += set.holds(i) ? 0 : 1;
+  }
+}
+
 void average_displacements(std::span<const Constraint> contacts, const ContactSet& set, float* displacement) noexcept {
   for (std::uint32_t k = 0; k < 3 * set.columns; ++k) {
     displacement[k] = 0;
   }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     float* sum = displacement + std::size_t{3} * set.place[i];
-    for (std::uint32_t r = 0; r < 3; ++r) {
+    for (std::uint32_t r = 0; set.holds(i) && r < 3; ++r) {
       sum[r] += contacts[i].value[r];
     }
   }
@@ -126,9 +146,8 @@ void share_forces(const float* column_force, std::size_t contacts, const Contact
                   float* contact_force) noexcept {
   for (std::size_t i = 0; i < contacts; ++i) {
     const std::uint32_t k = set.place[i];
-    const auto members = static_cast<float>(set.members[k]);
     for (std::uint32_t r = 0; r < 3; ++r) {
-      contact_force[3 * i + r] = column_force[3 * k + r] / members;
+      contact_force[3 * i + r] = set.holds(i) ? column_force[3 * k + r] / static_cast<float>(set.members[k]) : 0;
     }
   }
 }

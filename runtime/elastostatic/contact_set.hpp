@@ -19,7 +19,6 @@ struct NodeFacts {
   std::uint8_t mesh_level = 0;
   bool touchable = false;  ///< a node of every constraint level stands for it
   bool marked = false;     ///< by check_contacts, while it looks for duplicates
-  bool fine = false;       ///< by Mixture: in the last choice
 };
 
 /// Facts of every node; facts: [node_count]. Start-up; linear in nodes.
@@ -50,18 +49,13 @@ constexpr float without_tiny(float displacement) {
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(displacement) & (tiny - 1));
 }
 
-/// The constraint levels that contacts are resolved at.
-struct Resolution {
-  std::uint32_t level = 0;
-  const bool* fine = nullptr;  ///< [contacts] resolved at the finest level instead; null: none of them
-};
-
-/// The contacts of a step as columns: the nodes, of one constraint level or of two, that stand for them. Contacts that
-/// share a column are merged.
+/// The contacts of a step as columns: the nodes of one constraint level that stand for them. Contacts that share a
+/// column are merged.
 struct ContactSet {
   std::uint32_t columns = 0;         ///< columns that hold them
+  std::uint32_t waiting = 0;         ///< contacts that none of them holds
   std::uint32_t* column = nullptr;   ///< [columns] increasing, of distinct places
-  std::uint32_t* place = nullptr;    ///< [contacts] of each contact's column in `column`
+  std::uint32_t* place = nullptr;    ///< [contacts] of each contact's column in `column`; layout::none: it waits
   std::uint32_t* members = nullptr;  ///< [columns] contacts merged into it
 
   /// Arrays out of `arena`; null while it counts.
@@ -69,14 +63,11 @@ struct ContactSet {
 
   [[nodiscard]] ColumnSet all() const noexcept { return {columns, column}; }
 
-  /// Constraint level of a contact.
-  [[nodiscard]] std::uint32_t level_of(std::size_t contact) const noexcept {
-    return column_level(column[place[contact]]);
-  }
+  /// Constraint level of its columns; of a set that has some.
+  [[nodiscard]] std::uint32_t level() const noexcept { return column_level(column[0]); }
 
-  /// Constraint levels of its columns; of a set that has some.
-  [[nodiscard]] std::uint32_t coarsest() const noexcept { return column_level(column[0]); }
-  [[nodiscard]] std::uint32_t finest() const noexcept { return column_level(column[columns - 1]); }
+  /// Whether a column holds a contact.
+  [[nodiscard]] bool holds(std::size_t contact) const noexcept { return place[contact] != layout::none; }
 };
 
 /// What contacts are resolved with.
@@ -97,15 +88,19 @@ constexpr std::uint64_t resolve_contacts_work(const Prices& prices, std::uint64_
 [[nodiscard]] std::uint32_t column_of(const ModelView& view, const NodeFacts* facts, std::uint32_t node,
                                       std::uint32_t level) noexcept;
 
-/// Resolves checked contacts at levels that have representatives. Of contacts that share a representative all or none
-/// are fine: then no place has two columns, since a node that can be held stands for itself on every level of its own.
+/// Resolves checked contacts at a level that has representatives; none waits.
 void resolve_contacts(std::span<const Constraint> contacts, const ModelView& view, const NodeFacts* facts,
-                      const Resolution& resolution, ResolutionScratch& scratch, ContactSet& set) noexcept;
+                      std::uint32_t level, ResolutionScratch& scratch, ContactSet& set) noexcept;
+
+/// Takes columns out of a set, some of it, increasing: their contacts wait. For the loop; work: within
+/// resolve_contacts_work.
+void leave_out(ColumnSet columns, std::size_t contacts, ResolutionScratch& scratch, ContactSet& set) noexcept;
 
 /// displacement[3 * columns]: mean over each column's contacts.
 void average_displacements(std::span<const Constraint> contacts, const ContactSet& set, float* displacement) noexcept;
 
-/// contact_force[3 * contacts]: each column's force in equal parts, so that the total is kept.
+/// contact_force[3 * contacts]: each column's force in equal parts, so that the total is kept; none for those that
+/// wait.
 void share_forces(const float* column_force, std::size_t contacts, const ContactSet& set,
                   float* contact_force) noexcept;
 

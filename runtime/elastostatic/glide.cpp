@@ -6,11 +6,11 @@
 namespace greenloop {
 namespace {
 
-// whether a contact that was held is resolved at another level than it was
-bool moves(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) {
+// whether a contact is held that waited
+bool comes_in(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const std::uint32_t place = last.place(contacts[i].node);
-    if (place != layout::none && last.level(place) != set.level_of(i)) {
+    if (place != layout::none && last.waited(place) > 0 && set.holds(i)) {
       return true;
     }
   }
@@ -24,31 +24,37 @@ void Glide::carve(Arena& arena, std::uint32_t contacts, std::uint32_t cycles) no
   // a glide that begins reads them, times zero
   difference_ = arena.take_zeroed<float>(std::uint64_t{3} * contacts);
   next_difference_ = arena.take_zeroed<float>(std::uint64_t{3} * contacts);
+  foreseen_difference_ = arena.take<float>(std::uint64_t{3} * contacts);
 }
 
 void Glide::turn_back(std::uint32_t contacts) noexcept {
   const std::uint32_t from = from_;
   from_ = to_;
   to_ = from;
-  left_ = cycles_ - left_ - 1;
+  left_ = span_ - left_ - 1;
   for (std::uint32_t i = 0; i < 3 * contacts; ++i) {
     difference_[i] = -difference_[i];
   }
 }
 
 void Glide::advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept {
-  const std::uint32_t level = set.coarsest() == set.finest() ? set.coarsest() : mixed;
+  const std::uint32_t level = set.level();
   const bool persist = last.persists(contacts);
-  // contacts change places between two levels only where both sets are mixed
-  const bool changes = persist && (level != to_ || (level == mixed && moves(contacts, set, last)));
-  const bool returns = changes && left_ > 0 && !kept_ && level == from_ && level != mixed;
-  fresh_ = changes && !returns;
-  moving_ = persist && (changes || left_ > 0);
+  const bool changes = persist && level != to_;
+  const bool comes = persist && comes_in(contacts, set, last);
+  const bool returns = changes && !comes && left_ > 0 && !kept_ && level == from_;
+  fresh_ = comes || (changes && !returns);
+  foreseen_ = fresh_ && foreseen_level_ == level;
+  foreseen_level_ = layout::none;
+  moving_ = persist && (changes || comes || left_ > 0);
   if (fresh_) {
-    kept_ = left_ > 0;  // in the middle of a glide the last answer is of no single level
+    // in the middle of a glide, or without those that waited, the last answer is of no single level
+    kept_ = left_ > 0 || last.waiting();
+    const std::uint32_t quarter = (cycles_ + 3) / 4;
+    span_ = changes ? cycles_ : left_ > quarter ? left_ : quarter;
+    left_ = span_ - 1;
     from_ = to_;
     to_ = level;
-    left_ = cycles_ - 1;
   } else if (returns) {
     turn_back(last.contacts());
   } else if (moving_) {
@@ -59,6 +65,15 @@ void Glide::advance(std::span<const Constraint> contacts, const ContactSet& set,
   }
 }
 
+void Glide::foresee(std::uint32_t level, const LastAnswer& last, const float* force) noexcept {
+  foreseen_level_ = level;
+  for (std::uint32_t place = 0; place < last.contacts(); ++place) {
+    for (std::uint32_t r = 0; r < 3; ++r) {
+      foreseen_difference_[3 * place + r] = last.force(place)[r] - force[3 * place + r];
+    }
+  }
+}
+
 GlideReport Glide::blend(std::span<const Constraint> contacts, const LastAnswer& last, const float* older,
                          float* force) noexcept {
   if (!moving_) {
@@ -66,7 +81,7 @@ GlideReport Glide::blend(std::span<const Constraint> contacts, const LastAnswer&
     return {};
   }
   kept_ = older == nullptr;
-  const auto cycles = static_cast<float>(cycles_);
+  const auto cycles = static_cast<float>(span_);
   const float weight = static_cast<float>(left_) / cycles;
   float largest = 0;
   double along = 0;  // displacements times this difference, and the one before; neither overflows
@@ -77,7 +92,10 @@ GlideReport Glide::blend(std::span<const Constraint> contacts, const LastAnswer&
     for (std::size_t r = 0; r < 3; ++r) {
       float& newer = force[3 * i + r];
       const float was = last_force == nullptr ? 0 : difference_[std::size_t{3} * place + r];
-      const float known = last_force == nullptr ? 0 : fresh_ ? last_force[r] - newer : was;
+      const float begun = last_force == nullptr ? 0
+                          : foreseen_           ? foreseen_difference_[std::size_t{3} * place + r]
+                                                : last_force[r] - newer;
+      const float known = fresh_ ? begun : was;
       const float difference = older != nullptr ? older[3 * i + r] - newer : known;
       const float displacement = without_tiny(contacts[i].value[r]);
       const float size = std::fabs(difference);

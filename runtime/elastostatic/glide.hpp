@@ -17,13 +17,14 @@ struct GlideReport {
   double work = 0;       ///< J, as of StepDetails::switch_work
 };
 
-/// Leads the forces from one constraint level, or mixture of levels, to another in equal parts of their difference.
-/// While both can be solved, the forces are (1 - s) K_old u + s K_new u of the present displacements u, with s growing
-/// by 1 / cycles: both are symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new
-/// - f_old) . u. Else, and always from a mixture, the last known difference is kept and let go in the same parts: the
-/// stiffness is the newer level's at once. Differences belong to nodes: contacts that are new have none. There is no
-/// glide, and one under way ends, where fewer than three quarters of the contacts persist: forces change with the
-/// contacts then, and a difference of other contacts would only falsify them.
+/// Leads the forces from one constraint level to another in equal parts of their difference. While both can be solved,
+/// the forces are (1 - s) K_old u + s K_new u of the present displacements u, with s growing by 1 / cycles: both are
+/// symmetric and positive definite, so is their mixture, and a change of s stores 1/2 ds (f_new - f_old) . u. Else the
+/// last known difference is kept and let go in the same parts: the stiffness is the newer level's at once. So is that
+/// of what was answered while contacts waited that now are held, in a quarter of the cycles. Differences belong to
+/// nodes: contacts that are new have none. There is no glide, and one under way ends, where fewer than three quarters
+/// of the contacts persist: forces change with the contacts then, and a difference of other contacts would only falsify
+/// them.
 class Glide {
  public:
   /// Arrays out of `arena`; null while it counts. cycles: of a whole glide, at least 1; with 1 there is none.
@@ -33,7 +34,7 @@ class Glide {
   void advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept;
 
   /// Whether the forces of `older_level` are wanted.
-  [[nodiscard]] bool follows() const noexcept { return moving_ && !kept_ && cycles_ > 1 && from_ != mixed; }
+  [[nodiscard]] bool follows() const noexcept { return moving_ && !kept_ && cycles_ > 1; }
   [[nodiscard]] std::uint32_t older_level() const noexcept { return from_; }
 
   /// Work units of advance and blend, and of LastAnswer::remember.
@@ -46,24 +47,28 @@ class Glide {
   GlideReport blend(std::span<const Constraint> contacts, const LastAnswer& last, const float* older,
                     float* force) noexcept;
 
-  /// Whether the last answer was not of one level, or mixture, alone.
-  [[nodiscard]] bool under_way() const noexcept { return left_ > 0; }
+  /// What `level` answers to the contacts of the last answer: if the next step is answered there, its glide begins with
+  /// the difference of the two, whatever the contacts do meanwhile. force: [3 * contacts]. For the loop; work: within
+  /// blend's.
+  void foresee(std::uint32_t level, const LastAnswer& last, const float* force) noexcept;
 
  private:
-  static constexpr std::uint32_t mixed = layout::max_levels;  // for a level
-
   void turn_back(std::uint32_t contacts) noexcept;
 
   std::uint32_t cycles_ = 1;
+  std::uint32_t span_ = 1;  ///< cycles of this glide: a quarter where contacts come in that waited
   std::uint32_t left_ = 0;  ///< cycles until the newer level stands alone
   std::uint32_t from_ = 0;
   std::uint32_t to_ = 0;
-  bool moving_ = false;               ///< this step's share differs from that of the last
-  bool fresh_ = false;                ///< this step begins a glide
-  bool kept_ = false;                 ///< the difference is kept, not computed
-  float kept_weight_ = 0;             ///< of a kept difference in the last answer
-  float* difference_ = nullptr;       ///< [3 * contacts] by place in the last answer
-  float* next_difference_ = nullptr;  ///< [3 * contacts] scratch
+  bool moving_ = false;    ///< this step's share differs from that of the last
+  bool fresh_ = false;     ///< this step begins a glide
+  bool kept_ = false;      ///< the difference is kept, not computed
+  float kept_weight_ = 0;  ///< of a kept difference in the last answer
+  bool foreseen_ = false;  ///< this step begins a glide whose difference was
+  std::uint32_t foreseen_level_ = layout::none;
+  float* foreseen_difference_ = nullptr;  ///< [3 * contacts] by place in the last answer
+  float* difference_ = nullptr;           ///< [3 * contacts] by place in the last answer
+  float* next_difference_ = nullptr;      ///< [3 * contacts] scratch
 };
 
 }  // namespace greenloop

@@ -178,14 +178,11 @@ class TwoLevels {
   // the forces of the level before are known if `both_known`
   GlideReport step(const std::vector<Constraint>& contacts, std::uint32_t level, bool both_known) {
     force = forces(contacts, level);
-    std::vector<std::uint32_t> columns, places;
-    for (const Constraint& contact : contacts) {
-      places.push_back(static_cast<std::uint32_t>(columns.size()));
-      columns.push_back(make_column(level, contact.node));
-    }
+    std::vector<std::uint32_t> places(contacts.size());
+    std::vector<std::uint32_t> column{make_column(level, 0)};
     ContactSet set;
-    set.columns = static_cast<std::uint32_t>(columns.size());
-    set.column = columns.data();
+    set.columns = 1;
+    set.column = column.data();
     set.place = places.data();
     glide.advance(contacts, set, last);
     const std::vector<float> older = forces(contacts, 1 - level);
@@ -246,6 +243,36 @@ TEST_CASE("contacts that persist glide, those that join are answered by the new 
   CHECK(body.step(before, 1, true).share == 1);
   CHECK(body.step(row(40, 12), 0, true).share == 1);
   CHECK(body.step(before, 1, true).share == 1);
+}
+
+TEST_CASE("a glide that was foreseen begins with what the levels made of the same contacts") {
+  const auto before = row(0, 12);
+  const auto after = row(1, 12);
+  TwoLevels body;
+  body.step(before, 0, false);
+  const std::vector<float> coarse = body.force;
+  const std::vector<float> finer = TwoLevels::forces(before, 1);
+  body.glide.foresee(1, body.last, finer.data());
+  const std::vector<float> newest = TwoLevels::forces(after, 1);
+  for (std::uint32_t step = 1; step <= cycles; ++step) {
+    const float left = 1 - static_cast<float>(step) / cycles;
+    CHECK(body.step(after, 1, false).share == 1 - left);
+    std::vector<float> expected = newest;
+    for (std::size_t i = 0; i < 3 * std::size_t{11}; ++i) {
+      expected[i] += left * (coarse[i + 3] - finer[i + 3]);
+    }
+    CHECK(largest_difference(body.force, expected) <= 1e-5 * largest(expected));
+  }
+  // what was foreseen of a level is forgotten if another one answers
+  body.glide.foresee(0, body.last, finer.data());
+  body.step(after, 1, false);
+  body.step(after, 0, false);
+  const std::vector<float> coarser = TwoLevels::forces(after, 0);
+  std::vector<float> expected = coarser;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    expected[i] += (1 - 1.0F / cycles) * (newest[i] - coarser[i]);
+  }
+  CHECK(largest_difference(body.force, expected) <= 1e-5 * largest(expected));
 }
 
 TEST_CASE("on a closed path with flapping levels the hand gets back what it gave and what the switches put in") {

@@ -1,13 +1,15 @@
 #include "runtime/elastostatic/last_answer.hpp"
 
 #include <cstring>
+#include <utility>
 
 namespace greenloop {
 
 void LastAnswer::carve(Arena& arena, std::uint32_t contacts, std::uint64_t nodes) noexcept {
   node_ = arena.take<std::uint32_t>(contacts);
   place_ = arena.take_zeroed<std::uint32_t>(nodes);
-  level_ = arena.take<std::uint8_t>(contacts);
+  waited_ = arena.take<std::uint16_t>(contacts);
+  next_waited_ = arena.take<std::uint16_t>(contacts);
   force_ = arena.take<float>(std::uint64_t{3} * contacts);
 }
 
@@ -30,11 +32,17 @@ bool LastAnswer::persists(std::span<const Constraint> contacts) const noexcept {
 }
 
 void LastAnswer::remember(std::span<const Constraint> contacts, const ContactSet& set, const float* force) noexcept {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::uint32_t place = this->place(contacts[i].node);
+    const std::uint32_t before = place == layout::none ? 0 : waited_[place];
+    next_waited_[i] = static_cast<std::uint16_t>(set.holds(i) ? 0 : before + 1);
+  }
+  std::swap(waited_, next_waited_);
+  waiting_ = set.waiting > 0;
   contacts_ = static_cast<std::uint32_t>(contacts.size());
   for (std::uint32_t i = 0; i < contacts_; ++i) {
     node_[i] = contacts[i].node;
     place_[contacts[i].node] = i;
-    level_[i] = static_cast<std::uint8_t>(set.level_of(i));
   }
   std::memcpy(force_, force, sizeof(float) * 3 * contacts_);
 }

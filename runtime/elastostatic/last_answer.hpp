@@ -9,7 +9,7 @@
 
 namespace greenloop {
 
-/// The last answer of a body: which nodes were held, at which constraint level, with what force.
+/// The last answer of a body: which nodes were held, with what force, and which waited to be.
 class LastAnswer {
  public:
   /// Arrays out of `arena`; null while it counts.
@@ -27,8 +27,11 @@ class LastAnswer {
   /// [3] of a place, N.
   [[nodiscard]] const float* force(std::uint32_t place) const noexcept { return force_ + std::size_t{3} * place; }
 
-  /// Constraint level of a place.
-  [[nodiscard]] std::uint32_t level(std::uint32_t place) const noexcept { return level_[place]; }
+  /// Steps in a row that a place has waited.
+  [[nodiscard]] std::uint32_t waited(std::uint32_t place) const noexcept { return waited_[place]; }
+
+  /// Whether any has.
+  [[nodiscard]] bool waiting() const noexcept { return waiting_; }
 
   /// Whether most contacts were held: three quarters, of the larger set. For the loop; work: a unit a contact.
   [[nodiscard]] bool persists(std::span<const Constraint> contacts) const noexcept;
@@ -50,11 +53,13 @@ class LastAnswer {
   [[nodiscard]] std::size_t common(std::span<const Constraint> contacts) const noexcept;
 
   std::uint32_t contacts_ = 0;
+  bool waiting_ = false;
   float error_ = 0;
-  std::uint32_t* node_ = nullptr;   ///< [contacts]
-  std::uint32_t* place_ = nullptr;  ///< [nodes] in node_, of those that are there
-  std::uint8_t* level_ = nullptr;   ///< [contacts]
-  float* force_ = nullptr;          ///< [3 * contacts]
+  std::uint32_t* node_ = nullptr;         ///< [contacts]
+  std::uint32_t* place_ = nullptr;        ///< [nodes] in node_, of those that are there
+  std::uint16_t* waited_ = nullptr;       ///< [contacts]
+  std::uint16_t* next_waited_ = nullptr;  ///< [contacts] scratch
+  float* force_ = nullptr;                ///< [3 * contacts]
 };
 
 }  // namespace greenloop

@@ -8,10 +8,10 @@
 
 namespace greenloop {
 
-/// How a step will be answered. Its contacts are resolved in body.planned, whose coefficients are touched unless its
-/// factor is cached and no field is wanted.
+/// How a step will be answered. Its contacts are resolved in body.planned, whose coefficients are touched if a field is
+/// wanted or nodes enter its factor.
 struct Plan {
-  Resolution resolution;
+  std::uint32_t level = 0;
   SetCounts counts;
   Factor* cached = nullptr;
   bool update = false;       ///< of another factor, by body.changes; else a fresh one is made
@@ -26,19 +26,18 @@ struct Plan {
     bool exists = false;
     std::uint32_t level = 0;
     SetCounts counts;
-    std::uint64_t field = 0;  ///< work of its field
   } wanted;
 };
 
 /// Work units of planning a set whose factor is not cached.
 [[nodiscard]] std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
-/// Work units of planning a mixed set of such counts.
-[[nodiscard]] std::uint64_t mixture_work(const ModelCounts& model, const SetCounts& set) noexcept;
+/// Work units of planning the part of a set that a factor at hand has, after the set; of one level in a step.
+[[nodiscard]] std::uint64_t plan_part_work(const ModelCounts& model, const SetCounts& set) noexcept;
 
 /// Chooses by closed-form work the finest level whose answer fits, with the field as it was asked for: by its cached
-/// factor, an update of another one or a fresh one. Where only the factor of the finest level is too dear, groups of
-/// contacts of the level that fits are put there, as many as a factor at hand can take (Mixture). If no level fits, the
+/// factor, an update of another one or a fresh one. Where only the factor of the finest level is too dear, contacts
+/// that are new may wait, and the others be answered there by what a factor at hand has of them. If no level fits, the
 /// coarsest with as many details in the field as fit. finest_displaced: level of the nodes that are displaced. For the
 /// loop; work: Plan::work.
 [[nodiscard]] Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, bool wants_field,

@@ -22,7 +22,6 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.prices = limits.prices;
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
-  counts.mixtures = limits.mixtures;
   counts.keeps_capacitance = limits.keep_capacitance;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
@@ -49,20 +48,6 @@ std::uint32_t answered_contacts(const ModelView& view, const Elastostatic::Limit
   return std::min(touchable, limits.max_contacts);
 }
 
-// of columns of two levels in one set
-ColumnBounds larger_bounds(const ColumnBounds& a, const ColumnBounds& b) {
-  ColumnBounds both = a;
-  both.columns += b.columns;
-  both.visits = larger(a.visits, b.visits);
-  for (std::uint32_t q = 0; q < layout::max_levels; ++q) {
-    both.reached[q] += b.reached[q];
-    both.coefficients[q] += b.coefficients[q];
-    both.forced[q] = std::max(a.forced[q], b.forced[q]);
-    both.even[q] = std::max(a.even[q], b.even[q]);
-  }
-  return both;
-}
-
 // most coefficients of a column
 std::uint64_t functional_of(const ModelView& view, const ReachBound& reach) {
   std::uint64_t functional = 0;
@@ -72,14 +57,9 @@ std::uint64_t functional_of(const ModelView& view, const ReachBound& reach) {
   return functional;
 }
 
-// planning a mixed set, that of its coarser level before it and after it
-std::uint64_t plan_mixture_work(const ModelCounts& model, const SetCounts& coarser, const SetCounts& mixed) {
-  return mixture_work(model, mixed) + plan_set_work(model, mixed) + plan_set_work(model, coarser);
-}
-
-// most_of, mixture_of: by constraint level; of planning mixtures
+// most_of: by constraint level
 void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const MostCounts* most_of,
-                const std::uint64_t* mixture_of, const BodySizes& sizes, Elastostatic::Requirement& requirement) {
+                const BodySizes& sizes, Elastostatic::Requirement& requirement) {
   const ModelCounts& counts = sizes.counts;
   const std::uint32_t finest = view.levels - 1;
   const std::uint32_t coarsest = view.info->coarsest_constraint_level;
@@ -94,24 +74,25 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     dropped = larger(dropped, priced(most_of[c].set.coefficients, counts.prices.dropped));
   }
   std::uint64_t planned = checking;
-  std::uint64_t mixture = 0;
+  std::uint64_t part = 0;  // planning what a factor at hand has of a finer set, once in a step
   std::uint64_t finer_answer = 0;
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     const SetCounts& most = most_of[c].set;
     planned += plan_set_work(counts, most);
-    const std::uint64_t forces = planned + dropped + factor_work(counts, most) + force_work(counts.prices, most);
+    const std::uint64_t forces =
+        planned + part + dropped + factor_work(counts, most) + force_work(counts.prices, most);
     const std::uint64_t answer = forces + field(most_of[c], finest);
     if (c == finest) {
       requirement.worst_work[c] = answer + older;
     } else {
       // the budget of such a step did not hold an answer of the next finer level; what is not the answer's is bounded
-      // by refining_work, too
-      mixture = limits.mixtures ? larger(mixture, mixture_of[c]) : 0;
+      // by refining_work, too. Where contacts wait it did not hold the whole answer of this level
       const std::uint64_t refining = checking + smaller(limits.refining_work, finer_answer);
-      requirement.worst_work[c] = smaller(finer_answer, larger(answer + mixture, refining) + older);
+      requirement.worst_work[c] = smaller(finer_answer, larger(answer, refining) + older);
     }
     const std::uint64_t cuts = finest * count_field_work(counts.prices, most);
     requirement.least_work = forces + cuts + field(most_of[c], 0);
+    part = limits.glide_cycles > 1 ? larger(part, plan_part_work(counts, most)) : 0;
     finer_answer = answer;
   }
 }
@@ -139,8 +120,6 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   BaseColumnsMaker<3> base;
   base.carve(counting, view);
   MostCounts most_of[layout::max_levels];
-  std::uint64_t mixture_of[layout::max_levels] = {};
-  ColumnBounds finest;
   const std::uint32_t contacts = answered_contacts(view, limits);
   for (std::uint32_t c = view.levels; c-- > view.info->coarsest_constraint_level;) {
     const ReachBound reach = bound_reach(view, c, sizes.lifting);
@@ -149,16 +128,13 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
     }
     sizes.functional = larger(sizes.functional, functional_of(view, reach));
     const ColumnBounds bounds = bound_columns(view, c, contacts, sizes.lifting);
-    finest = c + 1 == view.levels ? bounds : finest;
     most_of[c] = most_counts(view, c, contacts, bounds, sizes.lifting);
-    const MostCounts mixed = most_counts(view, view.levels - 1, contacts, larger_bounds(finest, bounds), sizes.lifting);
-    mixture_of[c] = plan_mixture_work(sizes.counts, most_of[c].set, mixed.set);
   }
   add_blocks(view, base.columns(), most_of);
   const std::uint64_t entries = sizes.set_columns * sizes.functional;
   sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
   sizes.counts.capacitance_room = capacitance_room(sizes.slots, sizes.set_columns);
-  bound_work(view, limits, most_of, mixture_of, sizes, requirement);
+  bound_work(view, limits, most_of, sizes, requirement);
   sizes.supported = true;
 }
 

@@ -16,7 +16,6 @@ struct ModelCounts : FactorCounts {
   std::uint32_t max_contacts = 0;
   std::uint32_t glide_cycles = 1;
   bool forces_only = false;
-  bool mixtures = true;
   std::uint64_t refining_work = 0;
   std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
   std::uint64_t rows[layout::max_levels] = {};   ///< coefficients of levels 0..F

@@ -68,7 +68,7 @@ void FactorCache::keep(Factor& factor, ColumnSet set) noexcept {
   factor.key = room_key_;
   use(factor);
   factor.columns = set.count;
-  std::memcpy(factor.column, set.column, sizeof(std::uint32_t) * set.count);
+  std::memmove(factor.column, set.column, sizeof(std::uint32_t) * set.count);  // may be its own
 }
 
 template void FactorCache::carve<1>(Arena&, std::uint32_t, std::uint32_t, bool) noexcept;

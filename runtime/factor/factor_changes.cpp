@@ -50,7 +50,8 @@ void find_changes(const FactorCache& cache, ColumnSet set, FactorChanges& neares
     }
     list_changes(factor, set, changes);
     if (changes.base != nullptr && changes.missing == changes.added &&
-        (nearest.base == nullptr || changes.added + changes.removed < nearest.added + nearest.removed)) {
+        (nearest.base == nullptr || changes.added < nearest.added ||
+         (changes.added == nearest.added && changes.removed < nearest.removed))) {
       nearest = changes;
     }
   }

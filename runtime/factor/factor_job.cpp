@@ -213,10 +213,9 @@ std::uint32_t list_batch(const Factor& factor, ColumnSet set, std::uint32_t most
 
 // prepares for the nodes that enter
 template <unsigned N>
-void begin_batch(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole) {
+void begin_batch(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, std::uint32_t width) {
   const Factor& factor = job.factor;
   std::uint32_t* const order = tools.scratch.order;
-  const auto width = static_cast<std::uint32_t>(most_in_a_batch(tools.counts, whole));
   std::memcpy(order, factor.node, sizeof(std::uint32_t) * factor.columns);
   const std::uint32_t added = list_batch(factor, set, width, order + factor.columns, job.column);
   job.columns = factor.columns + added;
@@ -264,7 +263,8 @@ bool continue_batch(FactorJob& job, const FactorTools<N>& tools, std::uint64_t a
 // failed
 template <unsigned N>
 bool continue_changes(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
-                      std::uint64_t allowance, std::uint64_t& work) {
+                      const Slice& slice, std::uint64_t& work) {
+  const std::uint64_t allowance = slice.allowance;
   if (job.batch.computed > 0) {
     return continue_batch(job, tools, allowance - work, work);
   }
@@ -276,7 +276,9 @@ bool continue_changes(FactorJob& job, const FactorTools<N>& tools, ColumnSet set
   begin_from(job, tools);
   if (job.changes.missing > 0) {
     job.spent = begin;
-    begin_batch(job, tools, set, whole);
+    const std::uint64_t width =
+        slice.moving ? most_in_a_slice(tools.counts, whole, allowance - work) : most_in_a_batch(tools.counts, whole);
+    begin_batch(job, tools, set, static_cast<std::uint32_t>(width));
   }
   return true;
 }
@@ -314,12 +316,12 @@ void FactorJob::carve(Arena& arena, const ModelView& view, std::uint32_t columns
 
 template <unsigned N>
 FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
-                               std::uint64_t allowance) noexcept {
+                               const Slice& slice) noexcept {
   FactorProgress progress;
   progress.pending = pending_work(tools.counts, whole);
   const std::uint64_t compare =
       compare_factors_work(tools.counts, whole.columns) + drop_batch_work(tools.counts.prices, job);
-  if (compare > allowance) {
+  if (compare > slice.allowance) {
     return progress;
   }
   progress.work = compare;
@@ -335,8 +337,14 @@ FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, Colu
   const bool at_work = job.batch.computed > 0;
   list_changes(at_work ? job.factor : *choose_base(job, tools.cache, set), set, job.changes);
   for (bool holds = true; holds && changes.missing + changes.removed > 0;) {
-    holds = continue_changes(job, tools, set, whole, allowance, progress.work);
+    holds = continue_changes(job, tools, set, whole, slice, progress.work);
     list_changes(job.factor, set, job.changes);
+    const bool part = !job.singular && job.batch.computed == 0 && changes.missing > 0;
+    if (slice.keeps_parts && part && compare <= slice.allowance - progress.work) {
+      progress.work += compare;
+      hand_over(job, tools, {job.factor.columns, job.factor.column});
+      list_changes(*choose_base(job, tools.cache, set), set, job.changes);
+    }
   }
   progress.pending = job.singular ? 0 : left_of(job, tools.counts, whole);
   if (progress.pending == 0 && !job.singular) {
@@ -364,13 +372,13 @@ template void FactorScratch::carve<1>(Arena&, std::uint32_t) noexcept;
 template void FactorJob::carve<1>(Arena&, const ModelView&, std::uint32_t, bool) noexcept;
 template Factor* make_factor<1>(const FactorTools<1>&, ColumnSet, const Touched&, const FactorChanges*) noexcept;
 template FactorProgress continue_factor<1>(FactorJob&, const FactorTools<1>&, ColumnSet, const SetCounts&,
-                                           std::uint64_t) noexcept;
+                                           const Slice&) noexcept;
 template void drop_batch<1>(FactorJob&, CapacitanceScratch<1>&) noexcept;
 template void FactorScratch::carve<3>(Arena&, std::uint32_t) noexcept;
 template void FactorJob::carve<3>(Arena&, const ModelView&, std::uint32_t, bool) noexcept;
 template Factor* make_factor<3>(const FactorTools<3>&, ColumnSet, const Touched&, const FactorChanges*) noexcept;
 template FactorProgress continue_factor<3>(FactorJob&, const FactorTools<3>&, ColumnSet, const SetCounts&,
-                                           std::uint64_t) noexcept;
+                                           const Slice&) noexcept;
 template void drop_batch<3>(FactorJob&, CapacitanceScratch<3>&) noexcept;
 
 }  // namespace greenloop

@@ -69,20 +69,27 @@ template <unsigned N>
 [[nodiscard]] Factor* make_factor(const FactorTools<N>& tools, ColumnSet set, const Touched& touched,
                                   const FactorChanges* changes) noexcept;
 
+/// What a slice may do.
+struct Slice {
+  std::uint64_t allowance = 0;  ///< work units
+  bool moving = false;  ///< contacts change: no more nodes are begun together than the slice completes, if it does one
+  bool keeps_parts = false;  ///< what enters goes into the cache although other nodes are missing
+};
+
 /// What a slice has done.
 struct FactorProgress {
   std::uint64_t work = 0;     ///< spent
   std::uint64_t pending = 0;  ///< bound of what is left; 0: the factor is in the cache, or there is none
 };
 
-/// Continues, within `allowance` units, the factor of a set, or begins it with the nearest cached one. whole: what the
-/// set's fresh factor takes. An allowance is used up but for less than the next of: compare_factors_work,
+/// Continues, within its allowance, the factor of a set, or begins it with the nearest cached one. whole: what the
+/// set's fresh factor takes. The allowance is used up but for less than the next of: compare_factors_work,
 /// begin_batch_work, the blocks of one coefficient in a layer (add_capacitance_blocks), enter_work. Nodes whose matrix
 /// turned out not to be positive definite are not begun again: of a set with all of them nothing is pending. For the
 /// loop.
 template <unsigned N>
 FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
-                               std::uint64_t allowance) noexcept;
+                               const Slice& slice) noexcept;
 
 /// Work units of drop_batch.
 [[nodiscard]] std::uint64_t drop_batch_work(const Prices& prices, const FactorJob& job) noexcept;

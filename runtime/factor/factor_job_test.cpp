@@ -94,7 +94,7 @@ TEST_CASE_TEMPLATE("a factor is complete after as many slices as its work holds,
     const std::uint64_t allowance = compare + piece + all / part;
     std::vector<FactorProgress> slices;
     do {
-      slices.push_back(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance));
+      slices.push_back(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, {allowance}));
       REQUIRE(slices.back().work <= allowance);
       CHECK((slices.back().pending == 0 || slices.back().work + piece > allowance - compare));
     } while (slices.back().pending > 0 && slices.size() < 1000);
@@ -124,11 +124,11 @@ TEST_CASE_TEMPLATE("less than a piece makes no progress, and says so", Component
   const std::uint64_t begin =
       compare_factors_work(rooms.counts, whole.columns) + begin_batch_work(rooms.counts, whole, 0);
   for (const std::uint64_t allowance : {std::uint64_t{0}, std::uint64_t{100}, begin - 1}) {
-    const FactorProgress progress = continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance);
+    const FactorProgress progress = continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, {allowance});
     CHECK(progress.work <= allowance);
     CHECK(progress.pending == pending_work(rooms.counts, whole));
   }
-  CHECK(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, begin).pending <
+  CHECK(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, {begin}).pending <
         pending_work(rooms.counts, whole));
 }
 
@@ -143,21 +143,21 @@ TEST_CASE_TEMPLATE("a factor in the making follows its contacts, and begins anew
   SetCounts whole = rooms.touch_set(set);
   const std::uint64_t allowance = pending_work(rooms.counts, whole) / 20 + largest_piece<N>(rooms, whole);
   for (std::uint32_t slice = 0; slice < 20 && rooms.job.factor.columns < 20; ++slice) {
-    continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance);
+    continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, {allowance});
   }
   REQUIRE(rooms.job.factor.columns >= 20);
   const std::uint32_t made = rooms.job.factor.columns;
   set.column = after.data();
   whole = rooms.touch_set(set);
   std::uint32_t slices = 0;
-  while (continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance).pending > 0) {
+  while (continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, {allowance}).pending > 0) {
     REQUIRE(++slices < 20);
     CHECK(rooms.job.factor.columns + 2 >= made);
   }
   CHECK(rooms.cache.find(set) != nullptr);
   set.column = elsewhere.data();
   whole = rooms.touch_set(set);
-  CHECK(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance).pending >
+  CHECK(continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, {allowance}).pending >
         pending_work(rooms.counts, whole) / 2);
   set.column = after.data();
   whole = rooms.touch_set(set);
@@ -221,7 +221,8 @@ TEST_CASE("no script of budgets and contacts exceeds a budget or the worst work,
         REQUIRE(answered(report.status));
         REQUIRE(report.work <= budget);
         REQUIRE(report.work <= need.worst_work[report.constraint_level]);
-        CHECK((report.constraint_level < finest || report.details.pending_work == 0));
+        const bool waits = report.details.waiting_contacts > 0;
+        CHECK((report.constraint_level < finest || waits || report.details.pending_work == 0));
         pending += report.details.pending_work > 0 ? 1 : 0;
         refined += last.details.pending_work > 0 && report.constraint_level > last.constraint_level ? 1 : 0;
         last = report;
@@ -299,7 +300,7 @@ TEST_CASE("no more than the refining work of a step goes into a finer level") {
   for (std::uint32_t c = 0; c < 4; ++c) {
     CHECK(bounded_need.worst_work[c] < need.worst_work[c]);
   }
-  CHECK(bounded_need.worst_work[4] == need.worst_work[4]);
+  CHECK(bounded_need.worst_work[4] <= need.worst_work[4]);
 }
 
 TEST_CASE("a comparison with many factors keeps no contact from the finest level") {
@@ -355,7 +356,7 @@ double residual(TestBody& body, const std::vector<Constraint>& contacts) {
 TEST_CASE("the capacitance that is kept is that of the answer, however its factor was made") {
   const TestModel model({.levels = 5, .touchable_above = 0.5});
   const Elastostatic::Limits limits{
-      .max_contacts = 24, .cached_factors = 2, .mixtures = false, .keep_capacitance = true, .glide_cycles = 1};
+      .max_contacts = 24, .cached_factors = 2, .keep_capacitance = true, .glide_cycles = 1};
   TestBody body(model, limits);
   const std::uint64_t fresh_work = body.step(patch(model, 0, 24), any_budget).work;
   CHECK(residual(body, patch(model, 0, 24)) < 1e-4);

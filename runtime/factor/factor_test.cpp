@@ -109,7 +109,7 @@ TEST_CASE_TEMPLATE("factors made afresh, changed and made in slices are those of
     const SetCounts whole = rooms.touch_set(set);
     const std::uint64_t allowance = pending_work(rooms.counts, whole) / 4;
     int slices = 1;
-    while (continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, allowance).pending > 0) {
+    while (continue_factor<N>(rooms.job, rooms.factor_tools(), set, whole, {allowance}).pending > 0) {
       REQUIRE(++slices < 20);
     }
     CHECK(slices > 1);

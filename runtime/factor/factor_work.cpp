@@ -88,6 +88,24 @@ std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole)
   return batch_width(model.capacitance_room, whole.coefficients > 0 ? whole.coefficients : 1);
 }
 
+std::uint64_t most_in_a_slice(const FactorCounts& model, const SetCounts& whole, std::uint64_t allowance) noexcept {
+  const std::uint64_t most = most_in_a_batch(model, whole);
+  const auto batch_of = [&](std::uint64_t rows) {
+    CapacitanceCounts counts = capacitance_counts(model, whole);
+    counts.rows = rows;
+    counts.visits = counts.visits * rows / whole.columns;
+    counts.blocks = counts.blocks * rows / whole.columns;
+    return add_capacitance_blocks_work(counts) + rows * enter_work(model, whole, whole.columns);
+  };
+  const std::uint64_t one = batch_of(1);
+  if (most == 1 || one > allowance) {
+    return most;
+  }
+  const std::uint64_t row = (batch_of(most) - one) / (most - 1);
+  const std::uint64_t rows = 1 + (allowance - one) / (row > 0 ? row : 1);
+  return rows < most ? rows : most;
+}
+
 std::uint64_t compare_factors_work(const FactorCounts& model, std::uint64_t columns) noexcept {
   return find_changes_work(model.prices, model.cached_factors + std::uint64_t{4}, columns);
 }
@@ -125,7 +143,8 @@ std::uint64_t pending_work(const FactorCounts& model, const SetCounts& whole, co
   const std::uint64_t batches = adding == 0 && changes.removed > 0 ? 1 : adding;
   CapacitanceCounts counts = batch_counts(model, whole);
   const std::uint64_t once = add_capacitance_blocks_work(counts);
-  counts.blocks = counts.rows = 0;  // each row is in one batch
+  counts.rows = 0;  // each row is in one batch
+  counts.blocks = counts.stored;
   const std::uint64_t blocks = adding > 0 ? once + (adding - 1) * add_capacitance_blocks_work(counts) : 0;
   return batches * begin_batch_work(model, whole, changes.removed) + blocks +
          missing * enter_work(model, whole, whole.columns);

@@ -64,6 +64,11 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 /// Nodes that enter a factor together: as many rows of their matrix as the scratch has room for.
 [[nodiscard]] std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole) noexcept;
 
+/// The same, but no more than a slice can both begin and complete, so that what follows moving contacts keeps what has
+/// entered; as many as a batch holds if it can complete none. allowance: units after the batch is begun.
+[[nodiscard]] std::uint64_t most_in_a_slice(const FactorCounts& model, const SetCounts& whole,
+                                            std::uint64_t allowance) noexcept;
+
 /// Work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of the batch.
 [[nodiscard]] std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set,
                                              std::uint64_t removed) noexcept;

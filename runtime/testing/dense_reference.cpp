@@ -129,12 +129,11 @@ Eigen::Matrix3d dense_block(const DenseReference& reference, std::uint32_t i, st
 
 }  // namespace
 
-DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, const Resolution& resolution,
+DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t level,
                         std::span<const Constraint> contacts) {
   std::map<std::uint32_t, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const bool fine = resolution.fine != nullptr && resolution.fine[i];
-    members[dense_column(view, contacts[i].node, fine ? view.levels - 1 : resolution.level)].push_back(i);
+    members[dense_column(view, contacts[i].node, level)].push_back(i);
   }
   const auto n = static_cast<Index>(members.size());
   MatrixXd capacitance(3 * n, 3 * n);

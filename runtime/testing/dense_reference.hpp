@@ -47,7 +47,7 @@ struct DenseAnswer {
 
 /// The capacitance matrix algorithm of an elastostatic model on dense matrices in double precision with a complete
 /// factorisation.
-[[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference,
-                                      const Resolution& resolution, std::span<const Constraint> contacts);
+[[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t level,
+                                      std::span<const Constraint> contacts);
 
 }  // namespace greenloop

@@ -51,8 +51,8 @@ std::uint64_t hash_step(std::uint64_t hash, const Elastostatic::StepReport& repo
                         std::span<const float> field) {
   const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status),
                                  report.constraint_level,
-                                 report.details.finer_level,
-                                 report.details.finer_contacts,
+                                 report.constraint_level,
+                                 report.details.held_contacts,
                                  report.field_level,
                                  report.work,
                                  report.details.cached_factor ? 1U : 0U};

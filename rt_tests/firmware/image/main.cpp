@@ -123,8 +123,8 @@ void print_line(const Motion& motion, const Timing& timing) {
   print(timing.finest);
   print(" from step ");
   print(timing.refined);
-  print(" on, mixed ");
-  print(timing.mixed);
+  print(" on, waiting ");
+  print(timing.waiting);
   print(", not answered ");
   print(timing.held);
   print(", late ");

@@ -85,7 +85,7 @@ Timing run_timed_loop(Solver& body, Budget budget, std::span<const std::uint32_t
   stop_periodic_interrupt();
   std::sort(loop.instructions.begin(), loop.instructions.end());
   loop.timing.cycles = timed_cycles;
-  loop.timing.mixed = static_cast<std::uint32_t>(loop.counts.mixed);
+  loop.timing.waiting = static_cast<std::uint32_t>(loop.counts.waiting);
   loop.timing.held = static_cast<std::uint32_t>(loop.counts.refusals());
   loop.timing.worst_work = loop.counts.worst_work;
   loop.timing.median = loop.instructions[timed_cycles / 2];

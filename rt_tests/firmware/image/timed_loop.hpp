@@ -21,7 +21,7 @@ struct Timing {
   std::uint32_t median = 0, worst = 0;  ///< instructions of a step
   std::uint32_t finest = 0;             ///< steps answered at the finest level
   std::uint32_t refined = 0;            ///< steps before the first of those; `cycles` if there is none
-  std::uint32_t mixed = 0;              ///< steps with some contacts at the finest level, others at a coarser one
+  std::uint32_t waiting = 0;            ///< steps in which new contacts wait
   std::uint32_t held = 0;               ///< steps that were not answered
   std::uint32_t late = 0;               ///< cycles that took longer than the period
   std::uint64_t worst_work = 0;         ///< units
