@@ -203,8 +203,11 @@ TriangleMesh triangulate(const std::filesystem::path& file, PolygonMesh mesh, Me
     }
     triangles.clear();
     if (const std::string fault = cut(mesh.vertices, corners, triangles); !fault.empty()) {
-      const std::string line = mesh.lines[i] > 0 ? std::to_string(mesh.lines[i]) + ":" : "";
-      throw MeshFileError(file.string() + ":" + line + " found face " + std::to_string(i) + " (counted from 0) of " +
+      std::string place = file.string();
+      if (mesh.lines[i] > 0) {
+        place.append(":").append(std::to_string(mesh.lines[i]));
+      }
+      throw MeshFileError(place + ": found face " + std::to_string(i) + " (counted from 0) of " +
                           std::to_string(corners.size()) + " corners that " + fault +
                           ", expected a simple polygon; cut it into triangles");
     }

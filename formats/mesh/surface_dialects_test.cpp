@@ -179,7 +179,8 @@ TEST_CASE("every text: Windows and old Macintosh line ends, a byte order mark, u
       {"c.stl", stl},
       {"c.ply", ply},
       {"c.vtk", vtk_header("3.0", "ASCII") + "POINTS 8 float\n" + vertices("") + "POLYGONS 6 30\n" + faces("4", 0)}};
-  for (const auto& [name, content] : files) {
+  for (const auto& file : files) {
+    const std::string &name = file.first, &content = file.second;
     CAPTURE(name);
     check_cube(read(name, content));
     check_cube(read(upper(name), content));

@@ -307,7 +307,7 @@ TEST_CASE("convert: a model becomes C source, header and definition") {
     const AlignedBytes bytes = load_file(folder / name);
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   };
-  CHECK(text("left-hand.h").find("extern const unsigned char left_hand[") != std::string::npos);
+  CHECK(text("left-hand.h").find("extern const unsigned char left_hand_") != std::string::npos);
   CHECK(text("left-hand.c").find("#include \"left-hand.h\"") == 0);
 }
 
