@@ -10,6 +10,26 @@
 namespace greenloop {
 namespace {
 
+/// Whether a file could not be closed, as on a full disk. The library would crash when it closed it again at its end.
+bool has_lost_file = false;
+
+herr_t close_file(hid_t file) {
+  const herr_t result = H5Fclose(file);
+  has_lost_file = has_lost_file || result < 0;
+  return result;
+}
+
+/// Ends the library with the program, in the place of the library's own function.
+struct LibraryEnd {
+  LibraryEnd() { H5dont_atexit(); }
+  LibraryEnd(const LibraryEnd&) = delete;
+  LibraryEnd& operator=(const LibraryEnd&) = delete;
+  ~LibraryEnd() {
+    if (!has_lost_file) H5close();
+  }
+};
+const LibraryEnd library_end;
+
 /// Errors are said by us; the library would print them too, some of them when something is released.
 void be_silent() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
@@ -91,7 +111,7 @@ void Hdf5File::fail(std::string_view object, std::string_view what) const {
 
 Hdf5File Hdf5File::create(const std::filesystem::path& path) {
   be_silent();
-  Hdf5Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  Hdf5Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), close_file);
   if (!handle)
     throw std::runtime_error(path.string() + ": cannot be created; does its folder exist and is it writable?");
   return {std::move(handle), path};
@@ -100,7 +120,7 @@ Hdf5File Hdf5File::create(const std::filesystem::path& path) {
 Hdf5File Hdf5File::open(const std::filesystem::path& path, bool writable) {
   be_silent();
   if (!std::filesystem::exists(path)) throw std::runtime_error(path.string() + ": there is no such file");
-  Hdf5Handle handle(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  Hdf5Handle handle(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT), close_file);
   if (!handle) {
     throw std::runtime_error(path.string() +
                              ": cannot be opened; either it is no HDF5 file, or another process is "
