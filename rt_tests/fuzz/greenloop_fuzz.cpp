@@ -15,7 +15,7 @@
 
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier): the sanitizers' names
-const char* __asan_default_options();
+[[gnu::visibility("default")]] const char* __asan_default_options();
 const char* __asan_default_options() { return "max_allocation_size_mb=1024:detect_leaks=0:handle_abort=1"; }
 void __sanitizer_set_death_callback(void (*callback)());
 // NOLINTEND(bugprone-reserved-identifier)
@@ -83,5 +83,6 @@ int main(int count, char** arguments) {
   alarm(0);
   std::printf("%s: %llu inputs from seed %llu, %llu taken, no finding\n", door_name.c_str(), tried, seed, taken);
   // what is always refused, or never, tries nothing
-  return taken > 0 && taken < tried ? 0 : 1;
+  constexpr unsigned long long enough = 1000;
+  return tried < enough || (taken > 0 && taken < tried) ? 0 : 1;
 }
