@@ -207,7 +207,8 @@ Hdf5Shape Hdf5File::shape(const std::string& name) const {
 }
 
 void Hdf5File::flush() {
-  if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0) fail("file", "cannot be written: " + hdf5_fault());
+  if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0)
+    fail("file", "cannot be written: " + hdf5_fault() + "; make room there, or name a file on another disk");
 }
 
 #define GREENLOOP_INSTANTIATE(Number)                                                                      \
