@@ -335,7 +335,8 @@ void Hdf5File::require_apart(const std::vector<std::string>& names) const {
 }
 
 void Hdf5File::flush() {
-  if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0) fail("file", "cannot be written: " + hdf5_fault());
+  if (H5Fflush(handle_.get(), H5F_SCOPE_GLOBAL) < 0)
+    fail("file", "cannot be written: " + hdf5_fault() + "; make room there, or name a file on another disk");
 }
 
 void Hdf5File::close() { close(handle_, "file"); }

@@ -76,8 +76,12 @@ void require_replaceable(const std::filesystem::path& path) {
 void write_c_array(const std::filesystem::path& path, std::span<const std::byte> file) {
   const auto [header, source] = c_array_files(path);
   const CArray array = c_array(file, identifier_from(path.stem().string()), header.filename().string());
-  write_text_file(source, array.source);
-  write_text_file(header, array.header);
+  OutputFile source_file(source), header_file(header);
+  source_file.write(std::as_bytes(std::span(array.source)));
+  header_file.write(std::as_bytes(std::span(array.header)));
+  // both are written before either is there
+  source_file.close();
+  header_file.close();
 }
 
 }  // namespace greenloop

@@ -55,7 +55,7 @@ const char* anchor_name(Anchor anchor) {
 std::string escape_markup(std::string_view text) {
   std::string safe;
   safe.reserve(text.size());
-  for (const char c : printable(text)) {
+  for (const char c : text) {
     switch (c) {
       case '&':
         safe += "&amp;";
@@ -76,7 +76,7 @@ std::string escape_markup(std::string_view text) {
         safe += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
     }
   }
-  return safe;
+  return printable(safe);
 }
 
 double text_width(std::string_view text, double size) {

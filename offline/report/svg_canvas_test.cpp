@@ -11,6 +11,7 @@ namespace greenloop::offline {
 TEST_CASE("markup in text is escaped") {
   CHECK(escape_markup(R"(<b a="1">'x' & y</b>)") == "&lt;b a=&quot;1&quot;&gt;&#39;x&#39; &amp; y&lt;/b&gt;");
   CHECK(escape_markup(std::string("a\x01\tb", 4)) == "a  b");
+  CHECK(escape_markup("b\xE4r") == "b\xEF\xBF\xBDr");
 }
 
 TEST_CASE("a drawing contains no unescaped caller text") {

@@ -27,7 +27,8 @@ constexpr std::size_t most_bytes = std::size_t{1} << 16;
 std::uint32_t in_units(const nlohmann::json& value, const std::string& where) {
   const double price = value.is_number() ? std::round(256 * value.get<double>()) : -1;
   if (!(price >= 0 && price <= std::numeric_limits<std::uint32_t>::max())) {
-    throw std::runtime_error(where + ": " + greenloop::json_text(value, -1) + " is no price: give work units from 0 to 16777215");
+    throw std::runtime_error(where + ": " + greenloop::json_text(value, -1) +
+                             " is no price: give work units from 0 to 16777215");
   }
   return static_cast<std::uint32_t>(price);
 }

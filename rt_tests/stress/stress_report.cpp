@@ -37,7 +37,7 @@ json as_json(const ScriptResult& script) {
           {"worst_work", script.counts.worst_work},
           {"worst_us", script.worst_us},
           {"force_step_max", script.force_step_max},
-          {"digest", script.digest}};
+          {"digest", fmt::format("{:016x}", script.digest)}};
 }
 
 json as_json(const TimeHistogram& times) {
@@ -157,7 +157,7 @@ nlohmann::json StressReport::json() const {
       {"time_verdict", time.word()},
       {"instructions_max", nullptr},
       {"force_step_max", result.force_step_max},
-      {"digest", result.digest},
+      {"digest", fmt::format("{:016x}", result.digest)},
       {"open_ms", open_ms},
       {"create_ms", result.create_ms},
       {"arena_bytes", result.arena_bytes},

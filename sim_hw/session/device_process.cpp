@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <exception>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -34,6 +35,8 @@ void run_device(HapticDevice& device) {
 /// The whole life of the child.
 [[noreturn]] void child_main(HapticDevice& device, int start, int summary) {
   (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
+  // a terminal interrupts both; the parent ends this one
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) (void)std::signal(signal, SIG_IGN);
   int status = 1;
   try {
     char go = 0;

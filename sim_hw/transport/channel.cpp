@@ -1,5 +1,6 @@
 #include "sim_hw/transport/channel.hpp"
 
+#include <cerrno>
 #include <cstdint>
 #include <stdexcept>
 #include <utility>
@@ -60,7 +61,9 @@ void Channel::send(const DeviceState& state) { publish(lcm_.get(), state_name, t
 void Channel::send(const LoopCommand& command) { publish(lcm_.get(), command_name, to_packet(command)); }
 
 bool Channel::receive(int milliseconds) {
+  errno = 0;
   const int handled = lcm_handle_timeout(lcm_.get(), milliseconds);
+  if (handled < 0 && errno == EINTR) return false;
   if (handled < 0) throw std::runtime_error("lcm: receiving failed");
   return handled > 0;
 }
