@@ -102,10 +102,10 @@ TEST_CASE("a clock that charges a table gives that table's times back") {
     return ns[reading++ % ns.size()] * (disturbed ? 3 : 1);
   };
   const std::vector<double> least =
-      least_times(model.model(), options, counting_prices(), bodies, 4, clock, no_progress);
+      time_meter(4, clock).costs({"m.gloop", model.model()}, options, counting_prices(), bodies, no_progress);
   CHECK(reading == 4 * ns.size());
   FitSteps fit{counted.counts, Eigen::VectorXd(counted.counts.rows()), counted.way};
-  for (std::size_t i = 0; i < counted.step.size(); ++i) fit.ns[static_cast<Eigen::Index>(i)] = least[counted.step[i]];
+  for (std::size_t i = 0; i < counted.step.size(); ++i) fit.cost[static_cast<Eigen::Index>(i)] = least[counted.step[i]];
   const Eigen::VectorXd found = in_units(fit_prices(fit));
 
   options.seed = 2;
@@ -113,8 +113,8 @@ TEST_CASE("a clock that charges a table gives that table's times back") {
   const Eigen::VectorXd expected = others.steps.counts * charged, predicted = others.steps.counts * found;
   CHECK(expected.size() > 1000);
   CHECK((predicted.cwiseQuotient(expected).array() - 1).abs().maxCoeff() < 0.01);
-  CHECK((counted.counts * in_units({})).cwiseQuotient(fit.ns).maxCoeff() >
-        1.3 * (counted.counts * in_units({})).cwiseQuotient(fit.ns).minCoeff());
+  CHECK((counted.counts * in_units({})).cwiseQuotient(fit.cost).maxCoeff() >
+        1.3 * (counted.counts * in_units({})).cwiseQuotient(fit.cost).minCoeff());
 }
 
 TEST_CASE("prices that no step pays keep the ratio of the default ones") {
@@ -126,7 +126,7 @@ TEST_CASE("prices that no step pays keep the ratio of the default ones") {
     steps.counts(i, slot) = static_cast<double>(100 + i);
     steps.counts(i, touched) = static_cast<double>(100 + i);  // always with it: their ratio is not told either
     steps.counts(i, node) = static_cast<double>(1000 + i * i);
-    steps.ns[i] = steps.counts.row(i).dot(in_units(usual)) * 3;
+    steps.cost[i] = steps.counts.row(i).dot(in_units(usual)) * 3;
   }
   const Prices found = fit_prices(steps);
   const auto ratio = [&](const char* name) {
@@ -156,9 +156,10 @@ TEST_CASE("the stopwatch tells processor time, without the time of its own") {
 TEST_CASE("too few steps are refused with what to do") {
   const TestModel model({.levels = 2});
   const std::vector<NamedModel> models{{"m.gloop", model.model()}};
-  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, thread_stopwatch())),
+  const Meter clock = time_meter(1, thread_stopwatch());
+  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, clock)),
                        doctest::Contains("m.gloop: "), std::runtime_error);
-  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, thread_stopwatch())),
+  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, clock)),
                        doctest::Contains("give more --cycles"), std::runtime_error);
 }
 

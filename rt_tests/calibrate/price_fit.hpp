@@ -11,13 +11,13 @@ namespace greenloop {
 /// Steps that prices are fitted to.
 struct FitSteps {
   Eigen::MatrixXd counts;          ///< [steps x price_count], in the order of price_rows
-  Eigen::VectorXd ns;              ///< [steps] that each took, above 0
+  Eigen::VectorXd cost;            ///< [steps] of each, above 0
   std::vector<std::string> group;  ///< [steps] each group weighs the same, unless it is small
 };
 
-/// Prices in nanoseconds whose products with the counts are nearest to the times: least squares of the relative errors,
+/// Prices whose products with the counts are nearest to the costs: least squares of the relative errors,
 /// reweighted so that errors above 5 % count by themselves, not by their squares. None is below a fiftieth of the
-/// default price, in nanoseconds a default unit, and where the steps do not tell, they stand in the ratio of the
+/// default price, in the cost of a default unit, and where the steps do not tell, they stand in the ratio of the
 /// default ones. Throws std::invalid_argument without steps. Offline only.
 [[nodiscard]] Prices fit_prices(const FitSteps& steps);
 

@@ -18,8 +18,8 @@ RecordedScript::RecordedScript(const Model& model, const ScriptBounds& bounds) n
   visit_nodes(model.view(), [this](std::uint32_t node, const layout::NodeRecord& record) {
     if ((record.flags & layout::node_touchable) == 0) {
       not_touchable_ = node;
-    } else if (touchable_++ < most_touchable) {
-      candidate_[touchable_ - 1].node = node;
+    } else if (touchable_ < most_touchable) {
+      candidate_[touchable_++].node = node;
     }
   });
 }

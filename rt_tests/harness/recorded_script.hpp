@@ -28,10 +28,11 @@ class RecordedScript {
     bool with_field;
   };
 
-  /// `model` must outlive the script and have 1..most_touchable touchable nodes (`usable`).
+  /// `model` must outlive the script and have touchable nodes (`usable`), of which the first most_touchable are
+  /// touched.
   RecordedScript(const Model& model, const ScriptBounds& bounds) noexcept;
 
-  [[nodiscard]] bool usable() const noexcept { return touchable_ > 0 && touchable_ <= most_touchable; }
+  [[nodiscard]] bool usable() const noexcept { return touchable_ > 0; }
 
   /// The next cycle.
   [[nodiscard]] Cycle next() noexcept;

@@ -139,7 +139,31 @@ RatioQuantiles quantiles(std::vector<double> ratios) {
   const auto at = [&](double share) {
     return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1) + 0.5)];
   };
-  return {ratios.size(), ratios.front(), at(0.05), at(0.5), at(0.95), ratios.back()};
+  const auto within =
+      std::count_if(ratios.begin(), ratios.end(), [](double ratio) { return ratio >= 0.8 && ratio <= 1.25; });
+  return {.steps = ratios.size(),
+          .least = ratios.front(),
+          .p05 = at(0.05),
+          .median = at(0.5),
+          .p95 = at(0.95),
+          .most = ratios.back(),
+          .within = static_cast<double>(within) / static_cast<double>(ratios.size())};
+}
+
+nlohmann::json as_json(const RatioQuantiles& ratios) {
+  return {{"steps", ratios.steps}, {"least", ratios.least}, {"p05", ratios.p05},      {"median", ratios.median},
+          {"p95", ratios.p95},     {"most", ratios.most},   {"within", ratios.within}};
+}
+
+void print_ratios(const std::map<std::string, RatioQuantiles>& ways, const RatioQuantiles& all) {
+  fmt::print("{:<34} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8}\n", "answered by a factor", "steps", "least", "p05",
+             "median", "p95", "most", "0.8-1.25");
+  const auto print_row = [](const std::string& way, const RatioQuantiles& r) {
+    fmt::print("{:<34} {:>7} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.2f}%\n", way, r.steps, r.least, r.p05,
+               r.median, r.p95, r.most, 100 * r.within);
+  };
+  for (const auto& [way, ratios] : ways) print_row(way, ratios);
+  print_row("all", all);
 }
 
 PredictedWork compare(const std::vector<ReportedStep>& steps, const std::vector<std::uint64_t>& instructions) {
