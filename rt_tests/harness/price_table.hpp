@@ -15,7 +15,7 @@ struct PriceRow {
   const char* what;  ///< it is the price of
 };
 
-#define GREENLOOP_ROW(name, price, what) PriceRow{#name, &Prices::name, what},
+#define GREENLOOP_ROW(name, x86_64, cortex_m7, what) PriceRow{#name, &Prices::name, what},
 inline constexpr PriceRow price_rows[] = {GREENLOOP_PRICES(GREENLOOP_ROW)};
 #undef GREENLOOP_ROW
 

@@ -305,7 +305,7 @@ void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, co
     batch.computed = static_cast<std::uint32_t>(set.count - first < width ? set.count - first : width);
     batch.set = {first + batch.computed, set.column};
     begin_capacitance(refinement, touched, scratch, force, batch);
-    add_capacitance_blocks(refinement, touched, scratch, ~std::uint64_t{0}, batch);
+    scratch.spent += add_capacitance_blocks(refinement, touched, scratch, ~std::uint64_t{0}, batch);
     for (std::uint32_t t = 0; t < batch.computed; ++t) {
       float* rows = reinterpret_cast<float*>(a) + std::size_t{N} * (first + t);
       visit_row(scratch, batch, t, [&](std::uint32_t i, const Block<N>& block) {

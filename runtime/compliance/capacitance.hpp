@@ -34,6 +34,7 @@ struct CapacitanceSizes {
 template <unsigned N>
 struct CapacitanceScratch {
   const Prices* prices = nullptr;        ///< of what it is used for
+  std::uint64_t spent = 0;               ///< work units on the blocks of whole matrices
   Touched touched;                       ///< by the rows that are computed, or by one column
   std::uint32_t* sorted = nullptr;       ///< [columns] those rows
   std::uint32_t* sorting = nullptr;      ///< [columns] scratch
@@ -59,8 +60,8 @@ struct CapacitanceScratch {
 // T^-1. Then T^-1 is applied to each row of sums, step by step. A is symmetric.
 
 /// The lower half of the capacitance matrix. Every block between two touched coefficients is read once, or once per
-/// batch of rows. touched: by the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after. For
-/// the loop; work: assemble_capacitance_work.
+/// batch of rows. touched: by the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after.
+/// For the loop; work: assemble_capacitance_work, of which the blocks take what scratch.spent grows by.
 template <unsigned N>
 void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
                           CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride, Float4* a) noexcept;

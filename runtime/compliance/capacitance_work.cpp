@@ -48,6 +48,12 @@ std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
   return pairs(slots) * panel_pair_work(*counts.prices, counts.prediction, own_visits(counts), counts.rows);
 }
 
+// of rows, in which they are summed
+std::uint64_t batches(const CapacitanceCounts& counts) {
+  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
+  return panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
+}
+
 }  // namespace
 
 void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t* degree) noexcept {
@@ -91,16 +97,16 @@ std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexc
          (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
 }
 
+std::uint64_t assemble_blocks_work(const CapacitanceCounts& counts) noexcept {
+  return counts.rows == 0 ? 0 : add_capacitance_blocks_work(counts) + (batches(counts) - 1) * stored_work(counts);
+}
+
 std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept {
   if (counts.rows == 0) {
     return 0;
   }
-  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
-  const std::uint64_t batches = panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
-  const std::uint64_t more = batches > 1 ? batches - 1 : 0;
-  return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
-         more * (begin_batch_work(counts) + stored_work(counts)) +
-         counts.rows * store_capacitance_work(*counts.prices, counts.columns);
+  return begin_capacitance_work(counts) + (batches(counts) - 1) * begin_batch_work(counts) +
+         assemble_blocks_work(counts) + counts.rows * store_capacitance_work(*counts.prices, counts.columns);
 }
 
 std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept {

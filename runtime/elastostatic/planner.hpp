@@ -15,7 +15,8 @@ struct Plan {
   SetCounts counts;
   Factor* cached = nullptr;
   bool update = false;       ///< of another factor, by body.changes; else a fresh one is made
-  std::uint64_t factor = 0;  ///< work of the factor, unless it is cached
+  std::uint64_t factor = 0;  ///< bound of the work of the factor, unless it is cached
+  std::uint64_t blocks = 0;  ///< the bounded part of it, that of the blocks of its capacitance matrix
   FieldLevels field_levels;
   std::uint64_t work = 0;   ///< spent on deciding
   std::uint64_t field = 0;  ///< work of the field

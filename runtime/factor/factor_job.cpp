@@ -43,7 +43,8 @@ bool enter_nodes(const FactorTools<N>& tools, const FactorChanges& changes, cons
   std::memcpy(order, factor.node, sizeof(std::uint32_t) * factor.columns);
   std::memcpy(order + factor.columns, changes.in, sizeof(std::uint32_t) * changes.added);
   PartialCapacitance rows = begin_rows(tools, touched, {factor.columns + changes.added, order}, changes.added);
-  add_capacitance_blocks(tools.refinement, touched, tools.capacitance, ~std::uint64_t{0}, rows);
+  tools.capacitance.spent +=
+      add_capacitance_blocks(tools.refinement, touched, tools.capacitance, ~std::uint64_t{0}, rows);
   bool definite = true;
   for (std::uint32_t t = 0; definite && t < changes.added; ++t) {
     definite = enter_node(tools, rows, t, factor);

@@ -62,7 +62,8 @@ struct FactorJob {
 
 /// Makes the factor of a set in the place of the least recently used one, from changes.base or, where `changes` is
 /// null, afresh. Null if the matrix is not positive definite. To be kept in the cache afterwards. touched: by the set;
-/// no batch may be at work. For the loop; work: factor_work, or update_factor_work.
+/// no batch may be at work. For the loop; work: factor_work, or update_factor_work, of which blocks take what
+/// tools.capacitance.spent grows by, at most factor_blocks_work or update_blocks_work.
 template <unsigned N>
 [[nodiscard]] Factor* make_factor(const FactorTools<N>& tools, ColumnSet set, const Touched& touched,
                                   const FactorChanges* changes) noexcept;

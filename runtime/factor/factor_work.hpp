@@ -47,6 +47,9 @@ struct SetCounts {
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexcept;
 
+/// Bound of the work units of the blocks of its capacitance matrix, which it holds.
+[[nodiscard]] std::uint64_t factor_blocks_work(const FactorCounts& model, const SetCounts& set) noexcept;
+
 /// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. stored: [domain] blocks of
 /// all layers in each coefficient's column.
 void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
@@ -54,6 +57,10 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 
 /// Work units of make_factor from a base, the columns of the new nodes included.
 [[nodiscard]] std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set,
+                                               const ChangeCounts& changes) noexcept;
+
+/// Bound of the work units of the blocks of those columns, which it holds.
+[[nodiscard]] std::uint64_t update_blocks_work(const FactorCounts& model, const SetCounts& set,
                                                const ChangeCounts& changes) noexcept;
 
 // The pieces of continue_factor (factor_job.hpp).

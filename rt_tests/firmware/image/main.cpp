@@ -1,18 +1,23 @@
 // What the host's command line asks for: "--script" runs the recorded script on models of lifted Linear and of
 // Equilibrated wavelets and compares the digests, "--loop" runs a hand of eight contacts in a 1 kHz interrupt and
 // compares the instructions of a step with the bar, "--ready" holds eight contacts on a larger model that is read in
-// place. "--flip-bit" and "--slow" are their negative controls. Exit status: 0, or which check failed.
+// place. "--steps" prints the instructions of every step of the recorded script with counting_prices on each model,
+// what greenloop-calibrate fits this processor's prices to; "--priced" compares work at these prices with instructions.
+// "--flip-bit" and "--slow" are their negative controls. Exit status: 0, or which check failed.
 #include <algorithm>
 
 #include "body_model.h"
 #include "ready_body_model.h"
+#include "recorded_butterfly.h"
 #include "recorded_equilibrated.h"
 #include "recorded_model.h"
+#include "rt_tests/firmware/image/counted_script.hpp"
 #include "rt_tests/firmware/image/image_driver.hpp"
 #include "rt_tests/firmware/image/instruction_clock.hpp"
 #include "rt_tests/firmware/image/semihosting.hpp"
 #include "rt_tests/firmware/image/stack.hpp"
 #include "rt_tests/firmware/image/timed_loop.hpp"
+#include "rt_tests/harness/price_table.hpp"
 #include "rt_tests/harness/recorded_run.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
 
@@ -205,12 +210,49 @@ int run_ready(bool slow) {
   return status;
 }
 
+// models of all kinds of wavelets
+constexpr std::span<const std::uint8_t> counted_models[] = {recorded_model, recorded_butterfly, recorded_equilibrated,
+                                                            body_model, ready_body_model};
+
+int print_steps() {
+  for (const auto model : counted_models) {
+    const CountedScript script{std::as_bytes(model), counting_prices(), 20, arena, field};
+    const bool ran = script.run([](const Solver::StepReport&, std::uint64_t counted) {
+      print(std::max<std::uint64_t>(counted, 1));
+      print("\n");
+    });
+    if (!ran) {
+      return does_not_run;
+    }
+  }
+  return passed;
+}
+
+int compare_priced() {
+  int status = passed;
+  for (const auto model : counted_models) {
+    PredictedInstructions predicted;
+    const CountedScript script{std::as_bytes(model), cortex_m7_prices(), 21, arena, field};
+    const bool ran = script.run([&](const Solver::StepReport& report, std::uint64_t counted) {
+      if (answered(report.status)) {
+        predicted.add(report.work, counted);
+      }
+    });
+    predicted.print();
+    status = !ran ? does_not_run : predicted.meets_the_bar() ? status : over_the_bar;
+  }
+  return status;
+}
+
 }  // namespace
 }  // namespace greenloop::firmware
 
 int main() {
   using namespace greenloop::firmware;
   start_instruction_clock();
+  if (command_line_contains("--steps")) {
+    return print_steps();
+  }
   if (!clock_is_right()) {
     return clock_is_wrong;
   }
@@ -221,6 +263,8 @@ int main() {
     status = run_loop(command_line_contains("--slow"));
   } else if (command_line_contains("--ready")) {
     status = run_ready(command_line_contains("--slow"));
+  } else if (command_line_contains("--priced")) {
+    status = compare_priced();
   }
   print_sizes();
   return status;
