@@ -31,7 +31,10 @@ void require_kinds(const NamedModel& model, const CountedSteps& counted) {
 // steps that prices are fitted to, and ratios of others
 class Calibrator {
  public:
-  explicit Calibrator(const std::string& unit) { calibration_.unit = unit; }
+  Calibrator(const std::string& unit, bool disturbed) {
+    calibration_.unit = unit;
+    steps_.disturbed = disturbed;
+  }
 
   // the steps `kept` among those that were counted
   void fit_to(const NamedModel& model, const CountedSteps& counted, const std::vector<double>& costs,
@@ -100,7 +103,7 @@ std::vector<Eigen::Index> places(const CountedSteps& counted, IsKept is_kept) {
 }  // namespace
 
 Calibration calibrate(const std::vector<NamedModel>& models, const CalibrationOptions& options, const Meter& meter) {
-  Calibrator calibrator(meter.unit);
+  Calibrator calibrator(meter.unit, meter.disturbed);
   for (const NamedModel& model : models) {
     const ScriptOptions of_model = scripts(options, model, options.seed);
     const std::vector<BodySteps> bodies = record_steps(model.model, of_model, counting_prices());
@@ -131,7 +134,7 @@ Calibration calibrate(const std::vector<NamedModel>& models, const CalibrationOp
     throw std::runtime_error(
         fmt::format("{} costs for {} steps of {} models", costs.size(), of_model * models.size(), models.size()));
   }
-  Calibrator calibrator(unit);
+  Calibrator calibrator(unit, false);
   const auto is_fitted = [](std::size_t step) { return step / stretch % 2 == 0; };
   std::vector<CountedSteps> counts;
   const auto costs_of = [&](std::size_t m) {

@@ -23,7 +23,7 @@ Meter time_meter(int repetitions, const Stopwatch& stopwatch) {
     }
     return least;
   };
-  return {"ns", clock_can_tell, costs};
+  return {"ns", clock_can_tell, true, costs};
 }
 
 Meter instruction_meter(const std::string& program) {
@@ -38,7 +38,7 @@ Meter instruction_meter(const std::string& program) {
         out);
     return std::vector<double>(instructions.begin(), instructions.end());
   };
-  return {"instructions", 1, costs};
+  return {"instructions", 1, false, costs};
 }
 
 }  // namespace greenloop

@@ -19,8 +19,9 @@ using Progress = std::function<void(double)>;
 
 /// How it is measured what steps cost.
 struct Meter {
-  std::string unit;  ///< of a cost, and of work with prices that are fitted to costs
-  double least = 0;  ///< cost of a step that can be told
+  std::string unit;        ///< of a cost, and of work with prices that are fitted to costs
+  double least = 0;        ///< cost of a step that can be told
+  bool disturbed = false;  ///< by what else the machine does
   /// Of each step of the bodies, in order, which are of the model with these prices.
   std::function<std::vector<double>(const NamedModel& model, const ScriptOptions& options, const Prices& prices,
                                     const std::vector<BodySteps>& bodies, const Progress& progress)>

@@ -48,9 +48,9 @@ Prices in_256ths(const Eigen::VectorXd& units, const Eigen::VectorXd& least) {
 }  // namespace
 
 Prices fit_prices(const FitSteps& steps) {
-  constexpr double pull = 3e-6;   // towards the default prices, of the mean square error
-  constexpr double least = 0.02;  // of the default prices
-  constexpr int rounds = 5;
+  constexpr double pull = 1e-5;  // towards the default prices, of the mean square error
+  constexpr double least = 0.1;  // of the default prices
+  const int rounds = steps.disturbed ? 5 : 1;
   constexpr double usual_error = 0.05;  // beyond which steps weigh less, so that a few disturbed ones do not matter
   if (steps.cost.size() == 0) throw std::invalid_argument("fit_prices: no steps");
   const Eigen::VectorXd usual = in_units({});

@@ -4,13 +4,16 @@
 set -euo pipefail
 column=$1 prices=$2 list=$3
 case $column in
-  x86_64) before='ROW\(%s, ' ;;
-  cortex_m7) before='ROW\(%s, [0-9.e+-]+, ' ;;
+  x86_64) others= ;;
+  cortex_m7) others='[0-9.]+, ' ;;
   *) echo "set_prices.sh: no column $column" >&2 && exit 1 ;;
 esac
-script=$(sed -nE 's/^ *"(\w+)": ([0-9.e+-]+),?$/\1 \2/p' "$prices" | while read -r name price; do
-  # shellcheck disable=SC2059
-  printf "s/($before)[0-9.e+-]+/\\\\1%.3g/\n" "$name" "$price"
-done)
+script=$(sed -nE 's/^ *"(\w+)": ([0-9.e+-]+),?$/\1 \2/p' "$prices" | awk -v others="$others" '
+  function rounded(price) {
+    if (price < 100) return sprintf("%.3g", price)
+    for (unit = 1; price / unit >= 1000;) unit *= 10
+    return unit * int(price / unit + 0.5)
+  }
+  { printf "s/(ROW\\(%s, %s)[0-9.]+/\\1%s/\n", $1, others, rounded($2) }')
 sed -i -E "$script" "$list"
 clang-format -i "$list"

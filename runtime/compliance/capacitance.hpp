@@ -34,7 +34,6 @@ struct CapacitanceSizes {
 template <unsigned N>
 struct CapacitanceScratch {
   const Prices* prices = nullptr;        ///< of what it is used for
-  std::uint64_t spent = 0;               ///< work units on the blocks of whole matrices
   Touched touched;                       ///< by the rows that are computed, or by one column
   std::uint32_t* sorted = nullptr;       ///< [columns] those rows
   std::uint32_t* sorting = nullptr;      ///< [columns] scratch
@@ -61,10 +60,11 @@ struct CapacitanceScratch {
 
 /// The lower half of the capacitance matrix. Every block between two touched coefficients is read once, or once per
 /// batch of rows. touched: by the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after.
-/// For the loop; work: assemble_capacitance_work, of which the blocks take what scratch.spent grows by.
+/// Returns the units that the blocks took, at most assemble_blocks_work. For the loop; work: assemble_capacitance_work.
 template <unsigned N>
-void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
-                          CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride, Float4* a) noexcept;
+std::uint64_t assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
+                                   CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride,
+                                   Float4* a) noexcept;
 
 // The last rows of the same, in pieces: begin, add the blocks, store the rows, release. Until it is released,
 // `scratch` and the touched coefficients belong to it.

@@ -101,12 +101,16 @@ std::uint64_t assemble_blocks_work(const CapacitanceCounts& counts) noexcept {
   return counts.rows == 0 ? 0 : add_capacitance_blocks_work(counts) + (batches(counts) - 1) * stored_work(counts);
 }
 
-std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept {
+std::uint64_t begin_assembly_work(const CapacitanceCounts& counts) noexcept {
   if (counts.rows == 0) {
     return 0;
   }
   return begin_capacitance_work(counts) + (batches(counts) - 1) * begin_batch_work(counts) +
-         assemble_blocks_work(counts) + counts.rows * store_capacitance_work(*counts.prices, counts.columns);
+         counts.rows * store_capacitance_work(*counts.prices, counts.columns);
+}
+
+std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept {
+  return begin_assembly_work(counts) + assemble_blocks_work(counts);
 }
 
 std::uint32_t count_slots(const ColumnSet& set, const Touched& touched) noexcept {

@@ -113,7 +113,10 @@ constexpr std::uint64_t store_capacitance_work(const Prices& prices, std::uint64
   return priced(columns, prices.stored_entry);
 }
 
-/// Bound of the work units of assemble_capacitance, assemble_blocks_work included.
+/// What assemble_capacitance takes besides.
+[[nodiscard]] std::uint64_t begin_assembly_work(const CapacitanceCounts& counts) noexcept;
+
+/// Bound of the work units of assemble_capacitance: both.
 [[nodiscard]] std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept;
 
 /// Slots of a set: the coefficients that it touches, and its columns that are coarser than the finest. For the loop;

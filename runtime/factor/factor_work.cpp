@@ -60,7 +60,7 @@ std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexc
          cholesky_factor_work(model.prices, order);
 }
 
-std::uint64_t factor_blocks_work(const FactorCounts& model, const SetCounts& set) noexcept {
+std::uint64_t factor_bounded_work(const FactorCounts& model, const SetCounts& set) noexcept {
   return assemble_blocks_work(capacitance_counts(model, set));
 }
 
@@ -79,6 +79,18 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
   }
 }
 
+std::uint64_t leave_work(const FactorCounts& model, std::uint64_t columns, std::uint64_t removed) noexcept {
+  const std::uint32_t order = model.order(columns + removed);
+  return removed * cholesky_remove_work(model.prices, order, 0, model.prediction.components);
+}
+
+std::uint64_t update_bounded_work(const FactorCounts& model, const SetCounts& set,
+                                  const ChangeCounts& changes) noexcept {
+  const std::uint32_t order = model.order(set.columns + changes.removed);
+  return assemble_blocks_work(entering_counts(model, set, changes)) + leave_work(model, set.columns, changes.removed) +
+         changes.added * cholesky_append_work(model.prices, order, model.prediction.components);
+}
+
 std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set,
                                  const ChangeCounts& changes) noexcept {
   const std::uint32_t components = model.prediction.components;
@@ -87,16 +99,8 @@ std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set
   const Prices& prices = model.prices;
   const std::uint64_t appended = model.keeps_capacitance ? priced(std::uint64_t{components} * order, prices.passed) : 0;
   return priced(1, prices.factor) + kept + priced(std::uint64_t{order} * order / 2, prices.passed) +
-         changes.removed *
-             (priced(set.columns, prices.placed_column) + cholesky_remove_work(prices, order, 0, components)) +
-         changes.added * (appended + cholesky_append_work(prices, order, components)) +
-         assemble_capacitance_work(entering_counts(model, set, changes)) +
-         priced(6 * set.columns, prices.placed_column);
-}
-
-std::uint64_t update_blocks_work(const FactorCounts& model, const SetCounts& set,
-                                 const ChangeCounts& changes) noexcept {
-  return assemble_blocks_work(entering_counts(model, set, changes));
+         changes.added * appended + priced((6 + changes.removed) * set.columns, prices.placed_column) +
+         begin_assembly_work(entering_counts(model, set, changes)) + update_bounded_work(model, set, changes);
 }
 
 std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole) noexcept {
@@ -112,10 +116,8 @@ std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set, 
   const std::uint32_t order = model.order(columns);
   const Prices& prices = model.prices;
   return (1 + removed) * kept_work(model, order) + priced(std::uint64_t{order} * order / 2, prices.passed) +
-         removed * (priced(2 * columns, prices.placed_column) +
-                    cholesky_remove_work(prices, order, 0, model.prediction.components)) +
-         priced(12 * columns, prices.placed_column) + touch_work(prices, set) +
-         begin_capacitance_work(batch_counts(model, set));
+         leave_work(model, set.columns, removed) + priced((12 + 2 * removed) * columns, prices.placed_column) +
+         touch_work(prices, set) + begin_capacitance_work(batch_counts(model, set));
 }
 
 std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {

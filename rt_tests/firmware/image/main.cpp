@@ -29,9 +29,7 @@ namespace {
 enum ExitStatus : int { passed, clock_is_wrong, does_not_run, not_a_check, digest_differs, over_the_bar };
 
 constexpr std::uint32_t bar = 100'000;  // instructions: a quarter of 1 ms at 400 MHz, one instruction a cycle
-constexpr Budget budget{20'500};        // units, measured to stay below the bar whatever is touched
-
-constexpr std::uint64_t refining_work = 15'000;  // the same
+constexpr Budget budget{90'000};        // units, about instructions
 constexpr std::uint32_t most_steps_to_the_finest = 40;
 
 // of the ready body: the field of more nodes takes longer, all of them three times the bar
@@ -144,8 +142,7 @@ int run_loop(bool slow) {
                                 {"a node in 16 ms", 16, false},
                                 {"a node in every step", 1, false},
                                 {"pressed at the finest level", 0, true}};
-  constexpr Solver::Limits limits{
-      .max_contacts = contacts_per_step, .cached_factors = 4, .refining_work = refining_work};
+  constexpr Solver::Limits limits{.max_contacts = contacts_per_step, .cached_factors = 4, .prices = cortex_m7_prices()};
   const auto opened = Model::open(std::as_bytes(std::span(body_model)));
   if (!opened || opened.model.node_count() > most_nodes) {
     return does_not_run;
@@ -177,7 +174,7 @@ int run_loop(bool slow) {
 // steps of the ready body with a cached factor, at the finest level: with the field of all nodes, of those of the
 // coarser levels, and without
 int run_ready(bool slow) {
-  constexpr Solver::Limits limits{.max_contacts = contacts_per_step, .cached_factors = 4};
+  constexpr Solver::Limits limits{.max_contacts = contacts_per_step, .cached_factors = 4, .prices = cortex_m7_prices()};
   std::uint64_t begin = instructions();
   const auto opened = Model::open(std::as_bytes(std::span(ready_body_model)));
   print_line("instructions to open it", instructions() - begin);
