@@ -140,6 +140,26 @@ TEST_CASE("prices that no step pays keep the ratio of the default ones") {
   CHECK_THROWS_AS(static_cast<void>(fit_prices({})), std::invalid_argument);
 }
 
+TEST_CASE("prices of another processor are fitted to what it counted in the recorded script") {
+  const TestModel model({.levels = 3});
+  const std::vector<NamedModel> models{{"m.gloop", model.model()}};
+  const std::vector<BodySteps> bodies = record_script(model.model(), counting_prices());
+  const CountedSteps counted = count_steps(model.model(), recorded_options(), bodies, no_progress);
+  std::vector<double> costs(RecordedScript::cycles, 1);
+  for (std::size_t i = 0; i < counted.step.size(); ++i) {
+    costs[counted.step[i]] = counted.counts.row(static_cast<Eigen::Index>(i)).dot(other_prices());
+  }
+  const Calibration calibration = calibrate(models, {}, costs, "cycles");
+  CHECK(calibration.unit == "cycles");
+  CHECK(calibration.fitted > 3000);
+  CHECK(calibration.all.steps > 3000);
+  CHECK(calibration.all.least > 0.98);
+  CHECK(calibration.all.most < 1.02);
+  costs.pop_back();
+  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {}, costs, "cycles")),
+                       "9999 costs for 10000 steps of 1 models", std::runtime_error);
+}
+
 TEST_CASE("the stopwatch tells processor time, without the time of its own") {
   const Stopwatch clock = thread_stopwatch();
   double least = 1e9;
@@ -224,6 +244,21 @@ TEST_CASE("the program's files are what greenloop-stress and a compiler take") {
             out) == 0);
 }
 
+TEST_CASE("the program counts instructions, the same in every run") {
+  const TemporaryFolder folder("greenloop_calibrate_instructions");
+  const std::filesystem::path body = folder.path() / "body.gloop", out = folder.path() / "out";
+  write_model({.levels = 3}, body);
+  const std::string command =
+      std::string(GREENLOOP_CALIBRATE) + " " + body.string() + " --instructions --contacts 8 --cycles 400 --json -o ";
+  REQUIRE(run(command + (folder.path() / "prices.json").string(), out) == 0);
+  const std::string first = text_of(out);
+  const auto json = nlohmann::json::parse(first.substr(first.find('{')));
+  CHECK(json["prices"][0]["unit"] == "instructions");
+  CHECK(json["predicted_over_measured"]["all"]["within"] > 0.9);
+  REQUIRE(run(command + (folder.path() / "again.json").string(), out) == 0);
+  CHECK(text_of(folder.path() / "prices.json") == text_of(folder.path() / "again.json"));
+}
+
 TEST_CASE("the program says what is wrong with what it is given") {
   const TemporaryFolder folder("greenloop_calibrate_errors");
   const std::filesystem::path body = folder.path() / "body.gloop", out = folder.path() / "out";
@@ -234,6 +269,12 @@ TEST_CASE("the program says what is wrong with what it is given") {
   CHECK(text_of(out).find("elastostatic") != std::string::npos);
   CHECK(run(program + " -o prices.txt", out) == 1);
   CHECK(text_of(out).find("prices.txt: prices are written as .json or .hpp") != std::string::npos);
+  const std::filesystem::path solid = folder.path() / "solid.gloop";
+  write_model({.levels = 2}, solid);
+  CHECK(run(std::string(GREENLOOP_CALIBRATE) + " " + solid.string() + " --costs " +
+                folder.write("costs.txt", "12\nmany\n").string(),
+            out) == 1);
+  CHECK(text_of(out).find("costs.txt: what follows cost 1 is no number") != std::string::npos);
   const std::string broken = std::string(GREENLOOP_CALIBRATE) + " " + folder.write("body.gloop", "no model").string();
   CHECK(run(broken, out) == 1);
   CHECK(text_of(out).find("body.gloop: ") != std::string::npos);
