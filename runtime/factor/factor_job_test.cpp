@@ -197,7 +197,7 @@ TEST_CASE("no script of budgets and contacts exceeds a budget or the worst work,
   const std::uint32_t finest = model.view().levels - 1;
   for (const Elastostatic::Limits& limits :
        {Elastostatic::Limits{.max_contacts = 1, .cached_factors = 1}, Elastostatic::Limits{.max_contacts = 20},
-        Elastostatic::Limits{.max_contacts = 20, .refining_work = 60'000},
+        Elastostatic::Limits{.max_contacts = 20, .refining_work = 200'000},
         Elastostatic::Limits{.max_contacts = 20, .cached_factors = 1, .forces_only = true}}) {
     CAPTURE(limits.max_contacts);
     const std::uint64_t whole =
