@@ -104,7 +104,7 @@ Elastostatic::StepReport release(Body& body, const Elastostatic::Response& respo
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
-    work += priced(1, body.counts.prices.field) + priced(response.displacement.size(), body.counts.prices.node);
+    work += priced(response.displacement.size(), body.counts.prices.node);
   }
   Elastostatic::StepReport report;
   report.work = work;

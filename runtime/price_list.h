@@ -64,7 +64,7 @@
   ROW(summed_block, 16.9, 58.7, "a block in a sum")                                              \
   ROW(scaled_sum, 18.6, 37.7, "a coefficient whose sum is scaled")                               \
   ROW(detail, 9.91, 20.2, "a coefficient whose detail is added")                                 \
-  ROW(node, 0.73, 7.72, "a displaced node")                                                      \
+  ROW(node, 1.12, 7.72, "a displaced node")                                                      \
   ROW(linear_node, 29.9, 125, "a node that is predicted from its parents")                       \
   ROW(butterfly_node, 58.3, 163, "a node that is predicted by a stencil")                        \
   ROW(block_node, 74.1, 509, "a node that is predicted by blocks")                               \
