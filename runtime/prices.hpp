@@ -6,7 +6,8 @@
 
 namespace greenloop {
 
-constexpr std::uint32_t in_256ths(double units) { return static_cast<std::uint32_t>(256 * units + 0.5); }
+/// Rounded to the nearest.
+constexpr std::uint32_t in_256ths(double units) { return (static_cast<std::uint32_t>(512 * units) + 1) / 2; }
 
 /// What pieces of a step cost, in 256ths of a work unit each: see runtime/price_list.h. By default a unit is about an
 /// instruction of an x86-64 processor, on every target, so that the same limits and budgets give the same bits.
