@@ -211,6 +211,7 @@ TEST_CASE("no prices stand for the default ones, and others make other work") {
   const CBody body;
   greenloop_prices prices = greenloop_default_prices();
   CHECK(prices.slot == Prices{}.slot);
+  CHECK(greenloop_cortex_m7_prices().slot == cortex_m7_prices().slot);
   greenloop_elastostatic_limits priced = limits;
   priced.prices = &prices;
   CHECK(greenloop_elastostatic_required(&body.model, priced).least_work == body.need.least_work);

@@ -224,8 +224,9 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
 Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t work,
                                 std::uint64_t budget, const Elastostatic::Response& response) {
   const ContactSet& set = body.planned;
-  work += plan.cached != nullptr ? 0 : plan.factor;
+  body.factoring.spent = 0;
   Factor* const factor = find_factor(body, plan);
+  work += plan.cached != nullptr ? 0 : plan.factor - plan.bounded + body.factoring.spent;
   if (factor == nullptr) {
     return held(Status::held_singular, work);
   }

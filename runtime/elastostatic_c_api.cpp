@@ -52,6 +52,8 @@ using namespace greenloop;
 
 greenloop_prices greenloop_default_prices(void) { return std::bit_cast<greenloop_prices>(Prices{}); }
 
+greenloop_prices greenloop_cortex_m7_prices(void) { return std::bit_cast<greenloop_prices>(cortex_m7_prices()); }
+
 greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_model* model) {
   const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
   const Elastostatic::Limits& limits = intent.limits;

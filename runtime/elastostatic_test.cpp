@@ -209,10 +209,12 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
     }
     CHECK(rank == 15);
     CHECK(seen == 0xf);
-    // one unit less than a level costs is a coarser level
-    const Elastostatic::StepReport whole = TestBody(model, {.max_contacts = 12}).step(contacts, any_budget, with_field);
-    CHECK(TestBody(model, {.max_contacts = 12}).step(contacts, whole.work, with_field).constraint_level == 3);
-    CHECK(TestBody(model, {.max_contacts = 12}).step(contacts, whole.work - 1, with_field).constraint_level == 2);
+    // one unit less than a level is planned to cost is a coarser level; what it costs is no more
+    const Elastostatic::Limits limits{.max_contacts = 12};
+    const std::uint64_t least = least_budget_of_finest(model, limits, contacts, with_field);
+    CHECK(TestBody(model, limits).step(contacts, least, with_field).work <= least);
+    CHECK(TestBody(model, limits).step(contacts, least, with_field).constraint_level == 3);
+    CHECK(TestBody(model, limits).step(contacts, least - 1, with_field).constraint_level == 2);
   }
 }
 
@@ -291,7 +293,7 @@ TEST_CASE("released: no contact, no field") {
   const Elastostatic::StepReport report = body.step({}, body.requirement().least_work);
   CHECK(report.status == Status::ok);
   CHECK(std::all_of(body.field().begin(), body.field().end(), [](float u) { return u == 0; }));
-  CHECK(body.step({}, body.requirement().least_work, false).work == 0);
+  CHECK(body.step({}, body.requirement().least_work, false).work == priced(1, Prices{}.step));
 }
 
 // a body that has answered once, and what it must still show after a refusal

@@ -115,13 +115,16 @@ typedef struct greenloop_fault {
 
 /* What pieces of a step cost, in 256ths of a work unit each: see runtime/price_list.h and docs/budgets.md. */
 typedef struct greenloop_prices {
-#define GREENLOOP_ROW(name, price, what) uint32_t name;
+#define GREENLOOP_ROW(name, x86_64, cortex_m7, what) uint32_t name;
   GREENLOOP_PRICES(GREENLOOP_ROW)
 #undef GREENLOOP_ROW
 } greenloop_prices;
 
-/* The default ones. */
+/* The default ones: a unit is about an instruction of an x86-64 processor. */
 greenloop_prices greenloop_default_prices(void);
+
+/* A unit is about an instruction of a Cortex-M7. */
+greenloop_prices greenloop_cortex_m7_prices(void);
 
 /* What a body must be able to do. */
 typedef struct greenloop_elastostatic_limits {

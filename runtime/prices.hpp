@@ -6,34 +6,22 @@
 
 namespace greenloop {
 
-/// What pieces of a step cost, in 256ths of a work unit each: see runtime/price_list.h.
+/// Rounded to the nearest.
+constexpr std::uint32_t in_256ths(double units) { return (static_cast<std::uint32_t>(512 * units) + 1) / 2; }
+
+/// What pieces of a step cost, in 256ths of a work unit each: see runtime/price_list.h. By default a unit is about an
+/// instruction of an x86-64 processor, on every target, so that the same limits and budgets give the same bits.
 struct Prices {
-#define GREENLOOP_ROW(name, price, what) std::uint32_t name = (price);
+#define GREENLOOP_ROW(name, x86_64, cortex_m7, what) std::uint32_t name = in_256ths(x86_64);
   GREENLOOP_PRICES(GREENLOOP_ROW)
 #undef GREENLOOP_ROW
 };
 
-/// Where nodes have one component.
-constexpr Prices scalar_prices() {
-  Prices prices;
-  prices.slot = 8 * 256;
-  prices.scaled_block = 8 * 256;
-  prices.meeting = prices.meeting_by_blocks = 256;
-  prices.pair_visit = 2 * 256;
-  prices.pair_visit_by_blocks = 4 * 256;
-  prices.panel_row = 2 * 256;
-  prices.stored_entry = 256;
-  prices.force_visit = 256;
-  prices.force_visit_by_blocks = 2 * 256;
-  prices.coefficient = 44 * 256;
-  prices.summed_block = 2 * 256;
-  prices.scaled_sum = 6 * 256;
-  prices.detail = 3 * 256;
-  prices.linear_node = 2 * 256;
-  prices.butterfly_node = 8 * 256;
-  prices.block_node = 2 * 256;
-  prices.block_term = 256;
-  return prices;
+/// A unit is about an instruction of a Cortex-M7.
+constexpr Prices cortex_m7_prices() {
+#define GREENLOOP_ROW(name, x86_64, cortex_m7, what) in_256ths(cortex_m7),
+  return {GREENLOOP_PRICES(GREENLOOP_ROW)};
+#undef GREENLOOP_ROW
 }
 
 /// Work units of so many at a price. No overflow below 2^56 units.

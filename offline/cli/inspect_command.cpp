@@ -121,7 +121,7 @@ Json units_of(const ModelView& view) {
           {"compliance", mechanical("m/N")},
           {"young", mechanical("Pa")},
           {"rate", "Hz"},
-          {"step_work", "multiply-adds"}};
+          {"step_work", "work units"}};
 }
 
 Json inspection_of(const ModelFile& model) {

@@ -102,10 +102,10 @@ TEST_CASE("a clock that charges a table gives that table's times back") {
     return ns[reading++ % ns.size()] * (disturbed ? 3 : 1);
   };
   const std::vector<double> least =
-      least_times(model.model(), options, counting_prices(), bodies, 4, clock, no_progress);
+      time_meter(4, clock).costs({"m.gloop", model.model()}, options, counting_prices(), bodies, no_progress);
   CHECK(reading == 4 * ns.size());
   FitSteps fit{counted.counts, Eigen::VectorXd(counted.counts.rows()), counted.way};
-  for (std::size_t i = 0; i < counted.step.size(); ++i) fit.ns[static_cast<Eigen::Index>(i)] = least[counted.step[i]];
+  for (std::size_t i = 0; i < counted.step.size(); ++i) fit.cost[static_cast<Eigen::Index>(i)] = least[counted.step[i]];
   const Eigen::VectorXd found = in_units(fit_prices(fit));
 
   options.seed = 2;
@@ -113,8 +113,8 @@ TEST_CASE("a clock that charges a table gives that table's times back") {
   const Eigen::VectorXd expected = others.steps.counts * charged, predicted = others.steps.counts * found;
   CHECK(expected.size() > 1000);
   CHECK((predicted.cwiseQuotient(expected).array() - 1).abs().maxCoeff() < 0.01);
-  CHECK((counted.counts * in_units({})).cwiseQuotient(fit.ns).maxCoeff() >
-        1.3 * (counted.counts * in_units({})).cwiseQuotient(fit.ns).minCoeff());
+  CHECK((counted.counts * in_units({})).cwiseQuotient(fit.cost).maxCoeff() >
+        1.3 * (counted.counts * in_units({})).cwiseQuotient(fit.cost).minCoeff());
 }
 
 TEST_CASE("prices that no step pays keep the ratio of the default ones") {
@@ -126,7 +126,7 @@ TEST_CASE("prices that no step pays keep the ratio of the default ones") {
     steps.counts(i, slot) = static_cast<double>(100 + i);
     steps.counts(i, touched) = static_cast<double>(100 + i);  // always with it: their ratio is not told either
     steps.counts(i, node) = static_cast<double>(1000 + i * i);
-    steps.ns[i] = steps.counts.row(i).dot(in_units(usual)) * 3;
+    steps.cost[i] = steps.counts.row(i).dot(in_units(usual)) * 3;
   }
   const Prices found = fit_prices(steps);
   const auto ratio = [&](const char* name) {
@@ -138,6 +138,26 @@ TEST_CASE("prices that no step pays keep the ratio of the default ones") {
     CHECK(ratio(name) == doctest::Approx(3).epsilon(0.01));
   }
   CHECK_THROWS_AS(static_cast<void>(fit_prices({})), std::invalid_argument);
+}
+
+TEST_CASE("prices of another processor are fitted to what it counted in the recorded script") {
+  const TestModel model({.levels = 3});
+  const std::vector<NamedModel> models{{"m.gloop", model.model()}};
+  const std::vector<BodySteps> bodies = record_script(model.model(), counting_prices());
+  const CountedSteps counted = count_steps(model.model(), recorded_options(), bodies, no_progress);
+  std::vector<double> costs(RecordedScript::cycles, 1);
+  for (std::size_t i = 0; i < counted.step.size(); ++i) {
+    costs[counted.step[i]] = counted.counts.row(static_cast<Eigen::Index>(i)).dot(other_prices());
+  }
+  const Calibration calibration = calibrate(models, {}, costs, "cycles");
+  CHECK(calibration.unit == "cycles");
+  CHECK(calibration.fitted > 3000);
+  CHECK(calibration.all.steps > 3000);
+  CHECK(calibration.all.least > 0.98);
+  CHECK(calibration.all.most < 1.02);
+  costs.pop_back();
+  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {}, costs, "cycles")),
+                       "9999 costs for 10000 steps of 1 models", std::runtime_error);
 }
 
 TEST_CASE("the stopwatch tells processor time, without the time of its own") {
@@ -156,9 +176,10 @@ TEST_CASE("the stopwatch tells processor time, without the time of its own") {
 TEST_CASE("too few steps are refused with what to do") {
   const TestModel model({.levels = 2});
   const std::vector<NamedModel> models{{"m.gloop", model.model()}};
-  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, thread_stopwatch())),
+  const Meter clock = time_meter(1, thread_stopwatch());
+  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, clock)),
                        doctest::Contains("m.gloop: "), std::runtime_error);
-  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, thread_stopwatch())),
+  CHECK_THROWS_WITH_AS(static_cast<void>(calibrate(models, {.contacts = 4, .cycles = 60}, clock)),
                        doctest::Contains("give more --cycles"), std::runtime_error);
 }
 
@@ -223,6 +244,21 @@ TEST_CASE("the program's files are what greenloop-stress and a compiler take") {
             out) == 0);
 }
 
+TEST_CASE("the program counts instructions, the same in every run") {
+  const TemporaryFolder folder("greenloop_calibrate_instructions");
+  const std::filesystem::path body = folder.path() / "body.gloop", out = folder.path() / "out";
+  write_model({.levels = 3}, body);
+  const std::string command =
+      std::string(GREENLOOP_CALIBRATE) + " " + body.string() + " --instructions --contacts 8 --cycles 400 --json -o ";
+  REQUIRE(run(command + (folder.path() / "prices.json").string(), out) == 0);
+  const std::string first = text_of(out);
+  const auto json = nlohmann::json::parse(first.substr(first.find('{')));
+  CHECK(json["prices"][0]["unit"] == "instructions");
+  CHECK(json["predicted_over_measured"]["all"]["within"] > 0.9);
+  REQUIRE(run(command + (folder.path() / "again.json").string(), out) == 0);
+  CHECK(text_of(folder.path() / "prices.json") == text_of(folder.path() / "again.json"));
+}
+
 TEST_CASE("the program says what is wrong with what it is given") {
   const TemporaryFolder folder("greenloop_calibrate_errors");
   const std::filesystem::path body = folder.path() / "body.gloop", out = folder.path() / "out";
@@ -233,6 +269,12 @@ TEST_CASE("the program says what is wrong with what it is given") {
   CHECK(text_of(out).find("elastostatic") != std::string::npos);
   CHECK(run(program + " -o prices.txt", out) == 1);
   CHECK(text_of(out).find("prices.txt: prices are written as .json or .hpp") != std::string::npos);
+  const std::filesystem::path solid = folder.path() / "solid.gloop";
+  write_model({.levels = 2}, solid);
+  CHECK(run(std::string(GREENLOOP_CALIBRATE) + " " + solid.string() + " --costs " +
+                folder.write("costs.txt", "12\nmany\n").string(),
+            out) == 1);
+  CHECK(text_of(out).find("costs.txt: what follows cost 1 is no number") != std::string::npos);
   const std::string broken = std::string(GREENLOOP_CALIBRATE) + " " + folder.write("body.gloop", "no model").string();
   CHECK(run(broken, out) == 1);
   CHECK(text_of(out).find("body.gloop: ") != std::string::npos);

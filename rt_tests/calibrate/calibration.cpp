@@ -14,119 +14,148 @@ namespace greenloop {
 namespace {
 
 constexpr std::uint64_t fewest_steps = 100;
-constexpr double shortest = 100;  // ns: what a clock can tell
 
+void require_kinds(const NamedModel& model, const CountedSteps& counted) {
+  if (counted.way.size() < fewest_steps) {
+    throw std::runtime_error(fmt::format("{}: {} steps can be used, of at least {}; give more --cycles", model.name,
+                                         counted.way.size(), fewest_steps));
+  }
+  for (const char* way : {"cached", "cached, field", "fresh", "fresh, field"}) {
+    if (std::find(counted.way.begin(), counted.way.end(), way) == counted.way.end()) {
+      throw std::runtime_error(
+          fmt::format("{}: no step was answered this way: {}; give more --cycles", model.name, way));
+    }
+  }
+}
+
+// steps that prices are fitted to, and ratios of others
 class Calibrator {
  public:
-  Calibrator(const std::vector<NamedModel>& models, const CalibrationOptions& options, const Stopwatch& stopwatch)
-      : models_(models), options_(options), stopwatch_(stopwatch) {}
-
-  Calibration run() {
-    for (const NamedModel& model : models_) measure(model);
-    calibration_.prices = fit_prices(steps_);
-    note_paying();
-    for (const NamedModel& model : models_) predict(model);
-    note_ratios();
-    return calibration_;
+  Calibrator(const std::string& unit, bool disturbed) {
+    calibration_.unit = unit;
+    steps_.disturbed = disturbed;
   }
 
- private:
-  ScriptOptions scripts(const NamedModel& model, std::uint64_t seed) const {
-    return {.contacts = options_.contacts > 0 ? options_.contacts : model.model.view().info->max_contacts,
-            .cycles = options_.cycles,
-            .seed = seed};
-  }
-
-  std::function<void(double)> progress(const NamedModel& model, const char* what, double from, double to) const {
-    return [=, this, stage = model.name + ": " + what](double share) {
-      if (options_.progress) options_.progress(stage, from + (to - from) * share);
-    };
-  }
-
-  // counts and times of a model's steps, with the seeds that prices are fitted to
-  void measure(const NamedModel& model) {
-    const ScriptOptions options = scripts(model, options_.seed);
-    const Prices prices = counting_prices();
-    const std::vector<BodySteps> bodies = record_steps(model.model, options, prices);
-    const std::vector<double> ns = least_times(model.model, options, prices, bodies, options_.repetitions, stopwatch_,
-                                               progress(model, "times", 0, 0.15));
-    const CountedSteps counted = count_steps(model.model, options, bodies, progress(model, "counts", 0.15, 1));
-    require_kinds(model, counted);
-    add(model, counted, ns);
-  }
-
-  static void require_kinds(const NamedModel& model, const CountedSteps& counted) {
-    if (counted.way.size() < fewest_steps) {
-      throw std::runtime_error(fmt::format("{}: {} steps can be used, of at least {}; give more --cycles", model.name,
-                                           counted.way.size(), fewest_steps));
-    }
-    for (const char* way : {"cached", "cached, field", "fresh", "fresh, field"}) {
-      if (std::find(counted.way.begin(), counted.way.end(), way) == counted.way.end()) {
-        throw std::runtime_error(
-            fmt::format("{}: no step was answered this way: {}; give more --cycles", model.name, way));
-      }
-    }
-  }
-
-  // those that are long enough
-  void add(const NamedModel& model, const CountedSteps& counted, const std::vector<double>& ns) {
-    std::vector<Eigen::Index> kept;
-    for (std::size_t i = 0; i < counted.step.size(); ++i) {
-      if (ns[counted.step[i]] >= shortest) kept.push_back(static_cast<Eigen::Index>(i));
-    }
-    const Eigen::Index before = steps_.ns.size(), more = static_cast<Eigen::Index>(kept.size());
+  // the steps `kept` among those that were counted
+  void fit_to(const NamedModel& model, const CountedSteps& counted, const std::vector<double>& costs,
+              const std::vector<Eigen::Index>& kept) {
+    const Eigen::Index before = steps_.cost.size(), more = static_cast<Eigen::Index>(kept.size());
     steps_.counts.conservativeResize(before + more, counted.counts.cols());
     steps_.counts.bottomRows(more) = counted.counts(kept, Eigen::all);
-    steps_.ns.conservativeResize(before + more);
+    steps_.cost.conservativeResize(before + more);
     for (Eigen::Index k = 0; k < more; ++k) {
       const auto i = static_cast<std::size_t>(kept[static_cast<std::size_t>(k)]);
-      steps_.ns[before + k] = ns[counted.step[i]];
+      steps_.cost[before + k] = costs[counted.step[i]];
       steps_.group.push_back(model.name + ": " + counted.way[i]);
     }
   }
 
-  void note_paying() {
+  const Prices& fit() {
     calibration_.fitted = steps_.group.size();
     for (Eigen::Index j = 0; j < steps_.counts.cols(); ++j) {
       calibration_.paying.push_back(static_cast<std::uint64_t>((steps_.counts.col(j).array() > 0).count()));
     }
+    return calibration_.prices = fit_prices(steps_);
   }
 
-  // steps of the other seeds, of bodies with the prices that were found
-  void predict(const NamedModel& model) {
-    const ScriptOptions options = scripts(model, options_.seed + 1);
-    const std::vector<BodySteps> bodies = record_steps(model.model, options, calibration_.prices);
-    const std::vector<RanStep> ran = run_steps(model.model, options, calibration_.prices, bodies);
-    const std::vector<double> ns = least_times(model.model, options, calibration_.prices, bodies, options_.repetitions,
-                                               stopwatch_, progress(model, "check", 0, 1));
-    for (std::size_t i = 0; i < ran.size(); ++i) {
-      if (ran[i].way.empty() || ns[i] < shortest) continue;
-      ratios_[ran[i].way].push_back(static_cast<double>(ran[i].work) / ns[i]);
-    }
+  void predict(const std::string& way, double work, double cost) {
+    if (!way.empty()) ratios_[way].push_back(work / cost);
   }
 
-  void note_ratios() {
+  Calibration finish() {
     std::vector<double> all;
     for (const auto& [way, ratios] : ratios_) {
       calibration_.ways[way] = quantiles(ratios);
       all.insert(all.end(), ratios.begin(), ratios.end());
     }
     calibration_.all = quantiles(std::move(all));
+    return std::move(calibration_);
   }
 
-  const std::vector<NamedModel>& models_;
-  const CalibrationOptions& options_;
-  const Stopwatch& stopwatch_;
+ private:
   FitSteps steps_;
   std::map<std::string, std::vector<double>> ratios_;
   Calibration calibration_;
 };
 
+Progress progress(const CalibrationOptions& options, const NamedModel& model, const char* what) {
+  return [&options, stage = model.name + ": " + what](double share) {
+    if (options.progress) options.progress(stage, share);
+  };
+}
+
+ScriptOptions scripts(const CalibrationOptions& options, const NamedModel& model, std::uint64_t seed) {
+  return {.contacts = options.contacts > 0 ? options.contacts : model.model.view().info->max_contacts,
+          .cycles = options.cycles,
+          .seed = seed};
+}
+
+// places in `counted` of steps for which `is_kept` holds of their place among those that were run
+template <class IsKept>
+std::vector<Eigen::Index> places(const CountedSteps& counted, IsKept is_kept) {
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < counted.step.size(); ++i) {
+    if (is_kept(counted.step[i])) kept.push_back(static_cast<Eigen::Index>(i));
+  }
+  return kept;
+}
+
 }  // namespace
 
+Calibration calibrate(const std::vector<NamedModel>& models, const CalibrationOptions& options, const Meter& meter) {
+  Calibrator calibrator(meter.unit, meter.disturbed);
+  for (const NamedModel& model : models) {
+    const ScriptOptions of_model = scripts(options, model, options.seed);
+    const std::vector<BodySteps> bodies = record_steps(model.model, of_model, counting_prices());
+    const std::vector<double> costs =
+        meter.costs(model, of_model, counting_prices(), bodies, progress(options, model, "costs"));
+    const CountedSteps counted = count_steps(model.model, of_model, bodies, progress(options, model, "counts"));
+    require_kinds(model, counted);
+    calibrator.fit_to(model, counted, costs, places(counted, [&](std::size_t i) { return costs[i] >= meter.least; }));
+  }
+  const Prices prices = calibrator.fit();
+  for (const NamedModel& model : models) {
+    const ScriptOptions of_model = scripts(options, model, options.seed + 1);
+    const std::vector<BodySteps> bodies = record_steps(model.model, of_model, prices);
+    const std::vector<RanStep> ran = run_steps(model.model, of_model, prices, bodies);
+    const std::vector<double> costs = meter.costs(model, of_model, prices, bodies, progress(options, model, "check"));
+    for (std::size_t i = 0; i < ran.size(); ++i) {
+      if (costs[i] >= meter.least) calibrator.predict(ran[i].way, static_cast<double>(ran[i].work), costs[i]);
+    }
+  }
+  return calibrator.finish();
+}
+
 Calibration calibrate(const std::vector<NamedModel>& models, const CalibrationOptions& options,
-                      const Stopwatch& stopwatch) {
-  return Calibrator(models, options, stopwatch).run();
+                      const std::vector<double>& costs, const std::string& unit) {
+  constexpr std::size_t stretch = 100;
+  const std::size_t of_model = RecordedScript::cycles;
+  if (costs.size() != of_model * models.size()) {
+    throw std::runtime_error(
+        fmt::format("{} costs for {} steps of {} models", costs.size(), of_model * models.size(), models.size()));
+  }
+  Calibrator calibrator(unit, false);
+  const auto is_fitted = [](std::size_t step) { return step / stretch % 2 == 0; };
+  std::vector<CountedSteps> counts;
+  const auto costs_of = [&](std::size_t m) {
+    const auto begin = costs.begin() + static_cast<std::ptrdiff_t>(m * of_model);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(of_model));
+  };
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    counts.push_back(count_steps(models[m].model, recorded_options(), record_script(models[m].model, counting_prices()),
+                                 progress(options, models[m], "counts")));
+    require_kinds(models[m], counts[m]);
+    calibrator.fit_to(models[m], counts[m], costs_of(m), places(counts[m], is_fitted));
+  }
+  const Eigen::VectorXd prices = in_units(calibrator.fit());
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const std::vector<double> of_steps = costs_of(m);
+    for (const Eigen::Index i : places(counts[m], [&](std::size_t step) { return !is_fitted(step); })) {
+      const auto place = static_cast<std::size_t>(i);
+      calibrator.predict(counts[m].way[place], counts[m].counts.row(i).dot(prices), of_steps[counts[m].step[place]]);
+    }
+  }
+  return calibrator.finish();
 }
 
 }  // namespace greenloop

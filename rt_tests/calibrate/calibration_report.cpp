@@ -8,26 +8,13 @@
 #include "rt_tests/harness/price_table.hpp"
 
 namespace greenloop {
-namespace {
-
-nlohmann::json as_json(const RatioQuantiles& ratios) {
-  return {{"steps", ratios.steps},   {"least", ratios.least}, {"p05", ratios.p05},
-          {"median", ratios.median}, {"p95", ratios.p95},     {"most", ratios.most}};
-}
-
-void print_ratios(const std::string& way, const RatioQuantiles& ratios) {
-  fmt::print("{:<30} {:>7} {:>8.2f} {:>8.2f} {:>8.2f}\n", way, ratios.steps, ratios.p05, ratios.median, ratios.p95);
-}
-
-}  // namespace
-
 nlohmann::json as_json(const Calibration& calibration) {
   nlohmann::json prices = nlohmann::json::array(), ways = nlohmann::json::object();
   for (std::size_t j = 0; j < price_count; ++j) {
     const PriceRow& row = price_rows[j];
     prices.push_back({{"name", row.name},
                       {"price", calibration.prices.*row.member / 256.0},
-                      {"unit", calibrated_unit},
+                      {"unit", calibration.unit},
                       {"what", row.what},
                       {"steps", calibration.paying[j]}});
   }
@@ -38,7 +25,7 @@ nlohmann::json as_json(const Calibration& calibration) {
 }
 
 void print(const Calibration& calibration) {
-  fmt::print("Prices, fitted to {} steps:\n\n{:<24} {:>10} {:>8}  {}\n", calibration.fitted, "", calibrated_unit,
+  fmt::print("Prices, fitted to {} steps:\n\n{:<24} {:>10} {:>8}  {}\n", calibration.fitted, "", calibration.unit,
              "steps", "what it is the price of");
   for (std::size_t j = 0; j < price_count; ++j) {
     const PriceRow& row = price_rows[j];
@@ -46,10 +33,8 @@ void print(const Calibration& calibration) {
     fmt::print("{:<24} {:>10.3f} {:>8}  {}\n", row.name, calibration.prices.*row.member / 256.0,
                steps > 0 ? std::to_string(steps) : "usual", row.what);
   }
-  fmt::print("\nPredicted over measured time, of {} other steps:\n\n{:<30} {:>7} {:>8} {:>8} {:>8}\n",
-             calibration.all.steps, "way", "steps", "p05", "median", "p95");
-  for (const auto& [way, ratios] : calibration.ways) print_ratios(way, ratios);
-  print_ratios("all", calibration.all);
+  fmt::print("\nPredicted over measured, of {} other steps:\n", calibration.all.steps);
+  print_ratios(calibration.ways, calibration.all);
 }
 
 }  // namespace greenloop

@@ -6,9 +6,6 @@
 
 namespace greenloop {
 
-/// What a work unit is with the prices of a calibration.
-inline constexpr const char* calibrated_unit = "ns";
-
 /// What greenloop-calibrate says with --json: prices, fitted steps, and ratios by way.
 [[nodiscard]] nlohmann::json as_json(const Calibration& calibration);
 

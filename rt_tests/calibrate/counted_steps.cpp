@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "rt_tests/harness/price_table.hpp"
 
@@ -45,19 +44,8 @@ Eigen::VectorXd in_units(const Prices& prices) {
   return units;
 }
 
-Prices counting_prices() {
-  constexpr std::uint32_t room = 64;  // some prices are sums of products of others with small numbers
-  Prices prices;
-  std::uint32_t dearest = 1;
-  for (const PriceRow& row : price_rows) dearest = std::max(dearest, prices.*row.member);
-  std::uint32_t factor = 1;
-  while (dearest <= std::numeric_limits<std::uint32_t>::max() / room / (2 * factor)) factor *= 2;
-  for (const PriceRow& row : price_rows) prices.*row.member *= factor;
-  return prices;
-}
-
 CountedSteps count_steps(const Model& model, const ScriptOptions& options, const std::vector<BodySteps>& bodies,
-                         const std::function<void(double)>& progress) {
+                         const Progress& progress) {
   constexpr std::uint32_t raise = 256;  // a unit
   const Prices prices = counting_prices();
   const std::vector<RanStep> ran = run_steps(model, options, prices, bodies);
@@ -70,19 +58,6 @@ CountedSteps count_steps(const Model& model, const ScriptOptions& options, const
     counts.col(j) = works(run_steps(model, options, raised, bodies)) - work;
   }
   return kept_steps(ran, work, counts, prices);
-}
-
-std::vector<double> least_times(const Model& model, const ScriptOptions& options, const Prices& prices,
-                                const std::vector<BodySteps>& bodies, int repetitions, const Stopwatch& stopwatch,
-                                const std::function<void(double)>& progress) {
-  std::vector<double> least;
-  for (int repetition = 0; repetition < repetitions; ++repetition) {
-    progress(static_cast<double>(repetition) / repetitions);
-    const std::vector<RanStep> ran = run_steps(model, options, prices, bodies, stopwatch);
-    least.resize(ran.size(), std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < ran.size(); ++i) least[i] = std::min(least[i], ran[i].ns);
-  }
-  return least;
 }
 
 }  // namespace greenloop

@@ -1,17 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "rt_tests/calibrate/recorded_steps.hpp"
+#include "rt_tests/calibrate/meter.hpp"
 
 namespace greenloop {
-
-/// The default prices, all so many times as high that the rounding of work does not matter: for bodies that do the same
-/// and count it finely.
-[[nodiscard]] Prices counting_prices();
 
 /// [price_count] work units, in the order of price_rows.
 [[nodiscard]] Eigen::VectorXd in_units(const Prices& prices);
@@ -27,12 +22,6 @@ struct CountedSteps {
 /// counts times prices are not their work, since something else was done for the new price, are left out.
 /// progress: called with the share that is done, 0..1. bodies: record_steps with counting_prices.
 [[nodiscard]] CountedSteps count_steps(const Model& model, const ScriptOptions& options,
-                                       const std::vector<BodySteps>& bodies,
-                                       const std::function<void(double)>& progress);
-
-/// Least time of each step, ns, over so many runs; all of them do the same. progress: as above.
-[[nodiscard]] std::vector<double> least_times(const Model& model, const ScriptOptions& options, const Prices& prices,
-                                              const std::vector<BodySteps>& bodies, int repetitions,
-                                              const Stopwatch& stopwatch, const std::function<void(double)>& progress);
+                                       const std::vector<BodySteps>& bodies, const Progress& progress);
 
 }  // namespace greenloop

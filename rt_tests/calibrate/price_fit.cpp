@@ -29,7 +29,7 @@ double median(Eigen::VectorXd values) {
   return *middle;
 }
 
-// [price_count] prices, each of which would make about the times that are measured alone; 1 where nothing is counted
+// [price_count] prices, each of which would make about the costs that are measured alone; 1 where nothing is counted
 Eigen::VectorXd plain_scale(const Eigen::MatrixXd& relative, const Eigen::VectorXd& weight) {
   const Eigen::VectorXd square = relative.cwiseAbs2().transpose() * weight;
   return (square.array() > 0).select(square.cwiseSqrt().cwiseInverse(), 1.0);
@@ -48,17 +48,17 @@ Prices in_256ths(const Eigen::VectorXd& units, const Eigen::VectorXd& least) {
 }  // namespace
 
 Prices fit_prices(const FitSteps& steps) {
-  constexpr double pull = 3e-6;   // towards the default prices, of the mean square error
-  constexpr double least = 0.02;  // of the default prices
-  constexpr int rounds = 5;
+  constexpr double pull = 1e-5;  // towards the default prices, of the mean square error
+  constexpr double least = 0.1;  // of the default prices
+  const int rounds = steps.disturbed ? 5 : 1;
   constexpr double usual_error = 0.05;  // beyond which steps weigh less, so that a few disturbed ones do not matter
-  if (steps.ns.size() == 0) throw std::invalid_argument("fit_prices: no steps");
+  if (steps.cost.size() == 0) throw std::invalid_argument("fit_prices: no steps");
   const Eigen::VectorXd usual = in_units({});
   const Eigen::VectorXd expected = (usual.array() > 0).cast<double>();
   const Eigen::VectorXd weight = weights(steps.group);
-  const Eigen::MatrixXd relative = steps.ns.cwiseInverse().asDiagonal() * steps.counts;
-  const double ns_per_unit = median((relative * usual).cwiseInverse());
-  const Eigen::VectorXd scale = (expected.array() > 0).select(ns_per_unit * usual, plain_scale(relative, weight));
+  const Eigen::MatrixXd relative = steps.cost.cwiseInverse().asDiagonal() * steps.counts;
+  const double cost_per_unit = median((relative * usual).cwiseInverse());
+  const Eigen::VectorXd scale = (expected.array() > 0).select(cost_per_unit * usual, plain_scale(relative, weight));
   const Eigen::MatrixXd shares = relative * scale.asDiagonal();
   const Eigen::MatrixXd ridge = pull * Eigen::MatrixXd::Identity(scale.size(), scale.size());
   Eigen::VectorXd x, typical = weight;

@@ -1,6 +1,8 @@
 #include "rt_tests/calibrate/recorded_steps.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <stdexcept>
 
 #include "runtime/hosted/thread_clock.hpp"
 
@@ -25,6 +27,9 @@ constexpr std::uint64_t share(std::uint64_t whole, std::uint64_t parts, std::uin
   return whole / parts + (i < whole % parts ? 1 : 0);
 }
 
+// of the declared worst work, that every step of a body may spend; 0: the scripts' own budgets
+constexpr double shares[] = {0, 0, 1.0 / 4, 1.0 / 16, 1.0 / 64, 1.0 / 256};
+
 BodySteps steps_of_body(const Model& model, const ScriptBounds& bounds, std::uint64_t seed, std::uint64_t cycles) {
   BodySteps steps;
   for (std::size_t k = 0; k < kinds; ++k) {
@@ -32,6 +37,11 @@ BodySteps steps_of_body(const Model& model, const ScriptBounds& bounds, std::uin
     for (std::uint64_t i = 0; i < share(cycles, kinds, k); ++i) steps.push_back(script.next());
   }
   return steps;
+}
+
+void limit(BodySteps& steps, const ScriptBounds& bounds, double share) {
+  const auto budget = static_cast<std::uint64_t>(share * static_cast<double>(bounds.worst_work));
+  for (ScriptedStep& step : steps) step.budget = std::max(bounds.least_work, budget);
 }
 
 std::string way_of(const ScriptedStep& step, const Elastostatic::StepReport& report) {
@@ -52,11 +62,25 @@ std::vector<BodySteps> record_steps(const Model& model, const ScriptOptions& opt
   ScriptBounds bounds = ElastostaticDriver::bounds(host.limits(), host.requirement());
   bounds.least_work += bounds.least_work / 100;  // so that it is enough still when a price rises a little
   std::vector<BodySteps> bodies;
-  for (std::uint64_t i = 0; i < options.bodies; ++i) {
-    const std::uint64_t cycles = share(options.cycles, options.bodies, i);
+  for (std::uint64_t i = 0; i < std::size(shares); ++i) {
+    const std::uint64_t cycles = share(options.cycles, std::size(shares), i);
     bodies.push_back(steps_of_body(model, bounds, options.seed + 2 * i, cycles));
+    if (shares[i] > 0) limit(bodies.back(), bounds, shares[i]);
   }
   return bodies;
+}
+
+std::vector<BodySteps> record_script(const Model& model, const Prices& prices) {
+  const ScriptOptions options = recorded_options();
+  const Host host = host_of(model, options, prices);
+  RecordedScript script(model, ElastostaticDriver::bounds(host.limits(), host.requirement()));
+  if (!script.usable()) throw std::runtime_error("the recorded script has no use for such a model");
+  BodySteps steps(RecordedScript::cycles);
+  for (ScriptedStep& step : steps) {
+    const RecordedScript::Cycle cycle = script.next();
+    step = {{cycle.contacts.begin(), cycle.contacts.end()}, cycle.budget.work, cycle.with_field};
+  }
+  return {steps};
 }
 
 std::vector<RanStep> run_steps(const Model& model, const ScriptOptions& options, const Prices& prices,

@@ -1,7 +1,8 @@
-// write_recorded_model FILE.h WAVELET: a model of the recorded script as a C array, FILE.h and FILE.c; WAVELET is
-// lifted-linear, lifted-butterfly, butterfly or equilibrated. It is the synthetic sphere's mesh with arbitrary numbers
-// on it: bits that no mathematical library has a part in.
+// write_recorded_model FILE.h WAVELET: a model of the recorded script as a C array, FILE.h and FILE.c, and as a model
+// file, FILE.gloop; WAVELET is lifted-linear, lifted-butterfly, butterfly or equilibrated. It is the synthetic sphere's
+// mesh with arbitrary numbers on it: bits that no mathematical library has a part in.
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <map>
 #include <random>
@@ -11,6 +12,7 @@
 
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/write/c_array.hpp"
+#include "formats/write/writer.hpp"
 
 namespace greenloop {
 namespace {
@@ -111,7 +113,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    greenloop::write_c_array(argv[1], greenloop::encode(greenloop::arbitrary_model(wavelet->second)));
+    const std::vector<std::byte> bytes = greenloop::encode(greenloop::arbitrary_model(wavelet->second));
+    greenloop::write_c_array(argv[1], bytes);
+    greenloop::write_file(std::filesystem::path(argv[1]).replace_extension(".gloop"), bytes);
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

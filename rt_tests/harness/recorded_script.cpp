@@ -13,13 +13,13 @@ const float* position(const ModelView& view, std::uint32_t node) { return node_r
 
 }  // namespace
 
-RecordedScript::RecordedScript(const Model& model, const ScriptBounds& bounds) noexcept
-    : model_(&model), bounds_(bounds) {
+RecordedScript::RecordedScript(const Model& model, const ScriptBounds& bounds, std::uint64_t seed) noexcept
+    : model_(&model), bounds_(bounds), state_(seed) {
   visit_nodes(model.view(), [this](std::uint32_t node, const layout::NodeRecord& record) {
     if ((record.flags & layout::node_touchable) == 0) {
       not_touchable_ = node;
-    } else if (touchable_++ < most_touchable) {
-      candidate_[touchable_ - 1].node = node;
+    } else if (touchable_ < most_touchable) {
+      candidate_[touchable_++].node = node;
     }
   });
 }

@@ -28,10 +28,11 @@ class RecordedScript {
     bool with_field;
   };
 
-  /// `model` must outlive the script and have 1..most_touchable touchable nodes (`usable`).
-  RecordedScript(const Model& model, const ScriptBounds& bounds) noexcept;
+  /// `model` must outlive the script and have touchable nodes (`usable`), of which the first most_touchable are
+  /// touched.
+  RecordedScript(const Model& model, const ScriptBounds& bounds, std::uint64_t seed = 20) noexcept;
 
-  [[nodiscard]] bool usable() const noexcept { return touchable_ > 0 && touchable_ <= most_touchable; }
+  [[nodiscard]] bool usable() const noexcept { return touchable_ > 0; }
 
   /// The next cycle.
   [[nodiscard]] Cycle next() noexcept;
@@ -57,7 +58,7 @@ class RecordedScript {
 
   const Model* model_;
   ScriptBounds bounds_;
-  std::uint64_t state_ = 20;
+  std::uint64_t state_;
   std::uint32_t touchable_ = 0;
   std::uint32_t not_touchable_ = 0;                    ///< a node that is not, if there is one
   std::array<Candidate, most_touchable> candidate_{};  ///< touchable nodes, in a burst by distance from its centre

@@ -14,6 +14,7 @@
 #include <iterator>
 #include <ostream>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "formats/testing/temporary_folder.hpp"
@@ -42,16 +43,35 @@ ReportedStep reported(const typename D::Solver::StepReport& report, bool with_fi
   return {answered(report.status) ? D::way(report, with_field) : std::string(), report.work};
 }
 
+// of this program, and that the C library clears and copies by vectors: Valgrind would count every byte that one
+// instruction of a processor clears
+std::vector<std::string> environment() {
+  std::vector<std::string> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    if (!std::string_view(*variable).starts_with("GLIBC_TUNABLES=")) variables.emplace_back(*variable);
+  }
+  variables.emplace_back(
+      "GLIBC_TUNABLES=glibc.cpu.x86_rep_stosb_threshold=1073741824:glibc.cpu.x86_rep_movsb_threshold=1073741824");
+  return variables;
+}
+
+// as a program is given them
+std::vector<char*> pointers(const std::vector<std::string>& words) {
+  std::vector<char*> result;
+  for (const std::string& word : words) result.push_back(const_cast<char*>(word.c_str()));
+  result.push_back(nullptr);
+  return result;
+}
+
 // runs a command with its output in a file; its exit status
 int run(const std::vector<std::string>& command, const std::filesystem::path& output) {
-  std::vector<char*> arguments;
-  for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<std::string> variables = environment();
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   pid_t child = 0;
-  const int error = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  const int error =
+      posix_spawnp(&child, command[0].c_str(), &actions, nullptr, pointers(command).data(), pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     throw std::runtime_error(
@@ -139,7 +159,31 @@ RatioQuantiles quantiles(std::vector<double> ratios) {
   const auto at = [&](double share) {
     return ratios[static_cast<std::size_t>(share * static_cast<double>(ratios.size() - 1) + 0.5)];
   };
-  return {ratios.size(), ratios.front(), at(0.05), at(0.5), at(0.95), ratios.back()};
+  const auto within =
+      std::count_if(ratios.begin(), ratios.end(), [](double ratio) { return ratio >= 0.8 && ratio <= 1.25; });
+  return {.steps = ratios.size(),
+          .least = ratios.front(),
+          .p05 = at(0.05),
+          .median = at(0.5),
+          .p95 = at(0.95),
+          .most = ratios.back(),
+          .within = static_cast<double>(within) / static_cast<double>(ratios.size())};
+}
+
+nlohmann::json as_json(const RatioQuantiles& ratios) {
+  return {{"steps", ratios.steps}, {"least", ratios.least}, {"p05", ratios.p05},      {"median", ratios.median},
+          {"p95", ratios.p95},     {"most", ratios.most},   {"within", ratios.within}};
+}
+
+void print_ratios(const std::map<std::string, RatioQuantiles>& ways, const RatioQuantiles& all) {
+  fmt::print("{:<34} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8}\n", "answered by a factor", "steps", "least", "p05",
+             "median", "p95", "most", "0.8-1.25");
+  const auto print_row = [](const std::string& way, const RatioQuantiles& r) {
+    fmt::print("{:<34} {:>7} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.2f}%\n", way, r.steps, r.least, r.p05,
+               r.median, r.p95, r.most, 100 * r.within);
+  };
+  for (const auto& [way, ratios] : ways) print_row(way, ratios);
+  print_row("all", all);
 }
 
 PredictedWork compare(const std::vector<ReportedStep>& steps, const std::vector<std::uint64_t>& instructions) {

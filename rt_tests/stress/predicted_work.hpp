@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iosfwd>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -38,9 +39,15 @@ void write_steps(const std::vector<ReportedStep>& steps, std::ostream& out);
 struct RatioQuantiles {
   std::uint64_t steps = 0;
   double least = 0, p05 = 0, median = 0, p95 = 0, most = 0;  ///< 0 without steps
+  double within = 0;                                         ///< the share that is 0.8..1.25
 };
 
 [[nodiscard]] RatioQuantiles quantiles(std::vector<double> ratios);
+
+[[nodiscard]] nlohmann::json as_json(const RatioQuantiles& ratios);
+
+/// As a table on standard output, of each way of answering and of all.
+void print_ratios(const std::map<std::string, RatioQuantiles>& ways, const RatioQuantiles& all);
 
 /// Work that steps reported, over the instructions that they took.
 struct PredictedWork {

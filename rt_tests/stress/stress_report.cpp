@@ -47,11 +47,6 @@ json as_json(const TimeHistogram& times) {
           {"avg", times.average()}, {"max", times.most()}};
 }
 
-json as_json(const RatioQuantiles& ratios) {
-  return {{"steps", ratios.steps},   {"least", ratios.least}, {"p05", ratios.p05},
-          {"median", ratios.median}, {"p95", ratios.p95},     {"most", ratios.most}};
-}
-
 json as_json(const PredictedWork& predicted) {
   json all = as_json(predicted.all);
   all["ways"] = json::object();
@@ -88,16 +83,8 @@ void print_counts(const StressResult& result) {
 }
 
 void print_predicted(const PredictedWork& predicted) {
-  fmt::print("units of work over instructions:\n{:<32} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "answered by a factor",
-             "steps", "least", "p05", "median", "p95", "most");
-  const auto print_row = [](const std::string& way, const RatioQuantiles& r) {
-    fmt::print("{:<32} {:>7} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g} {:>7.3g}\n", way, r.steps, r.least, r.p05, r.median,
-               r.p95, r.most);
-  };
-  for (const auto& [way, ratios] : predicted.ways) {
-    print_row(way, ratios);
-  }
-  print_row("all", predicted.all);
+  fmt::print("units of work over instructions:\n");
+  print_ratios(predicted.ways, predicted.all);
 }
 
 // as cyclictest prints it; empty bins are left out

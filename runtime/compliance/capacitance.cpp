@@ -256,18 +256,20 @@ void CapacitanceScratch<N>::carve(Arena& arena, const ModelView& view, const Cap
 }
 
 template <unsigned N>
-void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
-                          CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride, Float4* a) noexcept {
+std::uint64_t assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
+                                   CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride,
+                                   Float4* a) noexcept {
   const std::uint32_t slots = count_slots(set, touched);
   const bool panel = has_panel(scratch.room, slots, set.count);
   const std::uint64_t width = panel ? set.count : batch_width(scratch.room, slots);
+  std::uint64_t work = 0;
   for (std::uint32_t first = 0; first < set.count;) {
     PartialCapacitance batch;
     batch.panel = panel;
     batch.computed = static_cast<std::uint32_t>(set.count - first < width ? set.count - first : width);
     batch.set = {first + batch.computed, set.column};
     begin_capacitance(refinement, touched, scratch, force, batch);
-    add_capacitance_blocks(refinement, touched, scratch, ~std::uint64_t{0}, batch);
+    work += add_capacitance_blocks(refinement, touched, scratch, ~std::uint64_t{0}, batch);
     for (std::uint32_t t = 0; t < batch.computed; ++t) {
       float* rows = reinterpret_cast<float*>(a) + std::size_t{N} * (first + t);
       visit_row(scratch, batch, t, [&](std::uint32_t i, const Block<N>& block) {
@@ -277,6 +279,7 @@ void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, co
     release_capacitance(batch, scratch);
     first += batch.computed;
   }
+  return work;
 }
 
 namespace {
@@ -386,8 +389,8 @@ void release_capacitance(const PartialCapacitance& partial, CapacitanceScratch<N
 
 template struct CapacitanceScratch<1>;
 template struct CapacitanceScratch<3>;
-template void assemble_capacitance<1>(const Refinement&, const ColumnSet&, const Touched&, CapacitanceScratch<1>&,
-                                      Vector<1>*, std::uint32_t, Float4*) noexcept;
+template std::uint64_t assemble_capacitance<1>(const Refinement&, const ColumnSet&, const Touched&,
+                                               CapacitanceScratch<1>&, Vector<1>*, std::uint32_t, Float4*) noexcept;
 template void begin_capacitance<1>(const Refinement&, const Touched&, CapacitanceScratch<1>&, Vector<1>*,
                                    PartialCapacitance&) noexcept;
 template std::uint64_t add_capacitance_blocks<1>(const Refinement&, const Touched&, CapacitanceScratch<1>&,
@@ -395,8 +398,8 @@ template std::uint64_t add_capacitance_blocks<1>(const Refinement&, const Touche
 template void store_capacitance_row<1>(const CapacitanceScratch<1>&, const PartialCapacitance&, std::uint32_t,
                                        std::uint32_t, Float4*) noexcept;
 template void release_capacitance<1>(const PartialCapacitance&, CapacitanceScratch<1>&) noexcept;
-template void assemble_capacitance<3>(const Refinement&, const ColumnSet&, const Touched&, CapacitanceScratch<3>&,
-                                      Vector<3>*, std::uint32_t, Float4*) noexcept;
+template std::uint64_t assemble_capacitance<3>(const Refinement&, const ColumnSet&, const Touched&,
+                                               CapacitanceScratch<3>&, Vector<3>*, std::uint32_t, Float4*) noexcept;
 template void begin_capacitance<3>(const Refinement&, const Touched&, CapacitanceScratch<3>&, Vector<3>*,
                                    PartialCapacitance&) noexcept;
 template std::uint64_t add_capacitance_blocks<3>(const Refinement&, const Touched&, CapacitanceScratch<3>&,

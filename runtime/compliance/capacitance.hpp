@@ -54,11 +54,12 @@ struct CapacitanceScratch {
 // T^-1. Then T^-1 is applied to each row of sums, step by step. A is symmetric.
 
 /// The lower half of the capacitance matrix. Every block between two touched coefficients is read once, or once per
-/// batch of rows. touched: by the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after. For
-/// the loop; work: assemble_capacitance_work.
+/// batch of rows. touched: by the set; a: by columns, `stride` floats apart; force: [domain], 0 before and after.
+/// Returns the units that the blocks took, at most assemble_blocks_work. For the loop; work: assemble_capacitance_work.
 template <unsigned N>
-void assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
-                          CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride, Float4* a) noexcept;
+std::uint64_t assemble_capacitance(const Refinement& refinement, const ColumnSet& set, const Touched& touched,
+                                   CapacitanceScratch<N>& scratch, Vector<N>* force, std::uint32_t stride,
+                                   Float4* a) noexcept;
 
 // The last rows of the same, in pieces: begin, add the blocks, store the rows, release. Until it is released,
 // `scratch` and the touched coefficients belong to it.

@@ -168,7 +168,7 @@ TEST_CASE("what bounds the work of any set bounds that of each, with a panel and
     prediction =
         prediction_of(TestModel({.components = 1, .levels = 2, .wavelet = layout::Wavelet::equilibrated}).view());
   }
-  const Prices prices = prediction.components == 1 ? scalar_prices() : Prices{};
+  const Prices prices;
   CapacitanceCounts bounds{.prices = &prices,
                            .prediction = prediction,
                            .columns = 40,

@@ -53,12 +53,7 @@ std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
 }
 
 std::uint64_t whole_work(const CapacitanceCounts& counts) {
-  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
-  const std::uint64_t batches = panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
-  const std::uint64_t more = batches > 1 ? batches - 1 : 0;
-  return begin_capacitance_work(counts) + add_capacitance_blocks_work(counts) +
-         more * (begin_batch_work(counts) + stored_work(counts)) +
-         counts.rows * store_capacitance_work(*counts.prices, counts.columns);
+  return begin_assembly_work(counts) + assemble_blocks_work(counts);
 }
 
 // what sets of so many columns that have a panel hold at most: all that the bounds hold, of which each column has its
@@ -91,6 +86,12 @@ std::uint64_t bound_of_whole(CapacitanceCounts bounds) {
     most = larger(most, whole_work(bound_with_panel(bounds, columns, slots)));
   }
   return most;
+}
+
+// of rows, in which they are summed
+std::uint64_t batches(const CapacitanceCounts& counts) {
+  const std::uint64_t width = batch_width(counts.room, counts.slots > 0 ? counts.slots : 1);
+  return panel_of(counts) ? 1 : (counts.rows + width - 1) / width;
 }
 
 }  // namespace
@@ -137,6 +138,18 @@ std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexc
          pairs(counts.rows) * sum_pair_work(*counts.prices, counts.prediction, counts.set_visits) +
          (panel_of(counts) ? 0 : priced(counts.blocks, meeting_price(*counts.prices, counts.prediction))) +
          (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
+}
+
+std::uint64_t assemble_blocks_work(const CapacitanceCounts& counts) noexcept {
+  return counts.rows == 0 ? 0 : add_capacitance_blocks_work(counts) + (batches(counts) - 1) * stored_work(counts);
+}
+
+std::uint64_t begin_assembly_work(const CapacitanceCounts& counts) noexcept {
+  if (counts.rows == 0) {
+    return 0;
+  }
+  return begin_capacitance_work(counts) + (batches(counts) - 1) * begin_batch_work(counts) +
+         counts.rows * store_capacitance_work(*counts.prices, counts.columns);
 }
 
 std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept {

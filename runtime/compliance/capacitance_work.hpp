@@ -105,12 +105,18 @@ constexpr std::uint64_t sum_pair_work(const Prices& prices, const Prediction& pr
 /// Bound of the work units of add_capacitance_blocks until no blocks are left.
 [[nodiscard]] std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexcept;
 
+/// The same of all batches of assemble_capacitance.
+[[nodiscard]] std::uint64_t assemble_blocks_work(const CapacitanceCounts& counts) noexcept;
+
 /// Work units of store_capacitance_row.
 constexpr std::uint64_t store_capacitance_work(const Prices& prices, std::uint64_t columns) {
   return priced(columns, prices.stored_entry);
 }
 
-/// Work units of assemble_capacitance, or their bound.
+/// What assemble_capacitance takes besides.
+[[nodiscard]] std::uint64_t begin_assembly_work(const CapacitanceCounts& counts) noexcept;
+
+/// Bound of the work units of assemble_capacitance: both.
 [[nodiscard]] std::uint64_t assemble_capacitance_work(const CapacitanceCounts& counts) noexcept;
 
 /// Slots of a set: the coefficients that it touches, and its columns that are coarser than the finest. For the loop;

@@ -57,10 +57,15 @@ void choose_factor(Body& body, Plan& plan) {
   find_changes(body.cache, body.planned.all(), body.changes);
   plan.work += find_changes_work(body.counts.prices, body.counts.cached_factors, plan.counts.columns);
   plan.factor = factor_work(body.counts, plan.counts);
+  plan.bounded = factor_bounded_work(body.counts, plan.counts);
   if (body.changes.base != nullptr) {
-    const std::uint64_t update = update_factor_work(body.counts, plan.counts, count_changes(body.changes, body.cost));
+    const ChangeCounts changes = count_changes(body.changes, body.cost);
+    const std::uint64_t update = update_factor_work(body.counts, plan.counts, changes);
     plan.update = update < plan.factor;
-    plan.factor = plan.update ? update : plan.factor;
+    if (plan.update) {
+      plan.factor = update;
+      plan.bounded = update_bounded_work(body.counts, plan.counts, changes);
+    }
   }
   plan.factor += drop_batch_work(body.counts.prices, body.job);
 }

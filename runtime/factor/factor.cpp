@@ -72,7 +72,7 @@ void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept 
 }
 
 template <unsigned N>
-void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
+std::uint32_t remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept {
   std::uint32_t at = 0;
   while (factor.node[at] != node) {
     ++at;
@@ -83,6 +83,7 @@ void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float
   }
   --factor.columns;
   std::memmove(factor.node + at, factor.node + at + 1, sizeof(std::uint32_t) * (factor.columns - at));
+  return at;
 }
 
 template <unsigned N>
@@ -111,12 +112,12 @@ void list_positions(ColumnSet set, std::uint32_t* index_of_place, Factor& factor
 template void Factor::carve<1>(Arena&, std::uint32_t, bool) noexcept;
 template void keep_capacitance<1>(std::uint32_t, std::uint32_t, Factor&) noexcept;
 template void copy_factor<1>(const Factor&, std::uint32_t, Factor&) noexcept;
-template void remove_node<1>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
+template std::uint32_t remove_node<1>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
 template bool append_node<1>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
 template void Factor::carve<3>(Arena&, std::uint32_t, bool) noexcept;
 template void keep_capacitance<3>(std::uint32_t, std::uint32_t, Factor&) noexcept;
 template void copy_factor<3>(const Factor&, std::uint32_t, Factor&) noexcept;
-template void remove_node<3>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
+template std::uint32_t remove_node<3>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
 template bool append_node<3>(std::uint32_t, std::uint32_t, Factor&, Float4*) noexcept;
 
 }  // namespace greenloop

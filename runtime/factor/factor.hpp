@@ -37,7 +37,7 @@ void copy_factor(const Factor& from, std::uint32_t stride, Factor& to) noexcept;
 /// Takes a node out of a factor by rank-one updates. border: [N * stride / 4] scratch. For the loop; work:
 /// cholesky_remove_work, a unit a column, and half the square of its order where the capacitance is kept.
 template <unsigned N>
-void remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
+std::uint32_t remove_node(std::uint32_t node, std::uint32_t stride, Factor& factor, Float4* border) noexcept;
 
 /// Borders a factor by a node. border: its rows of the capacitance matrix of the factor's nodes and itself, up to the
 /// diagonal. False if it is not positive definite; then it is spoilt. For the loop; work: cholesky_append_work, and N N

@@ -43,33 +43,38 @@ bool enter_nodes(const FactorTools<N>& tools, const FactorChanges& changes, cons
   std::memcpy(order, factor.node, sizeof(std::uint32_t) * factor.columns);
   std::memcpy(order + factor.columns, changes.in, sizeof(std::uint32_t) * changes.added);
   PartialCapacitance rows = begin_rows(tools, touched, {factor.columns + changes.added, order}, changes.added);
-  add_capacitance_blocks(tools.refinement, touched, tools.capacitance, ~std::uint64_t{0}, rows);
+  tools.scratch.spent += add_capacitance_blocks(tools.refinement, touched, tools.capacitance, ~std::uint64_t{0}, rows);
   bool definite = true;
   for (std::uint32_t t = 0; definite && t < changes.added; ++t) {
+    tools.scratch.spent += cholesky_append_work(tools.counts.prices, N * factor.columns, N);
     definite = enter_node(tools, rows, t, factor);
   }
   release_capacitance(rows, tools.capacitance);
   return definite;
 }
 
-// takes the nodes that leave out of a copy of the base
+// takes the nodes that leave out of a copy of the base; the units that that took, besides the copy
 template <unsigned N>
-void copy_without(const FactorChanges& changes, const FactorTools<N>& tools, Factor& factor) {
+std::uint64_t copy_without(const FactorChanges& changes, const FactorTools<N>& tools, Factor& factor) {
   const std::uint32_t stride = tools.cache.stride();
   if (changes.base != &factor) {
     copy_factor<N>(*changes.base, stride, factor);
   }
+  std::uint64_t work = 0;
   for (std::uint32_t t = 0; t < changes.removed; ++t) {
-    remove_node<N>(changes.out[t], stride, factor, tools.scratch.border);
+    const std::uint32_t columns = factor.columns;
+    const std::uint32_t place = remove_node<N>(changes.out[t], stride, factor, tools.scratch.border);
+    work += cholesky_remove_work(tools.counts.prices, N * columns, N * place, N);
   }
+  return work;
 }
 
 // apart, so that neither has the stack of the other
 template <unsigned N>
 [[gnu::noinline]] Factor* make_fresh(const FactorTools<N>& tools, ColumnSet set, const Touched& touched) {
   Factor& factor = tools.cache.make_room(set);
-  assemble_capacitance<N>(tools.refinement, set, touched, tools.capacitance, tools.force, tools.cache.stride(),
-                          factor.matrix);
+  tools.scratch.spent += assemble_capacitance<N>(tools.refinement, set, touched, tools.capacitance, tools.force,
+                                                 tools.cache.stride(), factor.matrix);
   keep_capacitance<N>(set.count, tools.cache.stride(), factor);
   factor.changes = 0;
   for (std::uint32_t k = 0; k < set.count; ++k) {
@@ -84,7 +89,7 @@ template <unsigned N>
                                     const FactorChanges& changes) {
   const std::uint32_t changed = changes.base->changes + changes.added + changes.removed;
   Factor& factor = tools.cache.make_room(set);
-  copy_without(changes, tools, factor);
+  tools.scratch.spent += copy_without(changes, tools, factor);
   factor.changes = changed;
   if (changes.added > 0 && !enter_nodes(tools, changes, touched, factor)) {
     return nullptr;
@@ -179,9 +184,9 @@ void put_in(std::uint32_t node, Factor& factor) {
   factor.column[at] = node;
 }
 
-// the factor without the nodes that leave
+// the factor without the nodes that leave; the units that these took
 template <unsigned N>
-void begin_from(FactorJob& job, const FactorTools<N>& tools) {
+std::uint64_t begin_from(FactorJob& job, const FactorTools<N>& tools) {
   const FactorChanges& changes = job.changes;
   std::uint32_t columns = changes.base->columns;
   if (changes.base != &job.factor) {
@@ -190,8 +195,8 @@ void begin_from(FactorJob& job, const FactorTools<N>& tools) {
   for (std::uint32_t t = 0; t < changes.removed; ++t) {
     take_out(changes.out[t], columns--, job.factor);
   }
-  copy_without(changes, tools, job.factor);
   job.factor.changes += changes.removed;
+  return copy_without(changes, tools, job.factor);
 }
 
 // nodes of the set that the factor lacks, `most` of them at most, in `missing`; those and the factor's in `together`
@@ -272,8 +277,7 @@ bool continue_changes(FactorJob& job, const FactorTools<N>& tools, ColumnSet set
   if (begin > allowance - work) {
     return false;
   }
-  work += begin;
-  begin_from(job, tools);
+  work += begin - leave_work(tools.counts, whole.columns, job.changes.removed) + begin_from(job, tools);
   if (job.changes.missing > 0) {
     job.spent = begin;
     const std::uint64_t width =

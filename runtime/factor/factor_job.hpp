@@ -23,6 +23,7 @@ namespace greenloop {
 struct FactorScratch {
   std::uint32_t* order = nullptr;  ///< [columns] nodes of the factor, then those that enter
   Float4* border = nullptr;        ///< [N * stride / 4] of the node that enters
+  std::uint64_t spent = 0;         ///< work units that make_factor counts
 
   /// Arrays out of `arena` for sets of `columns`; null while it counts.
   template <unsigned N>
@@ -64,7 +65,8 @@ struct FactorJob {
 
 /// Makes the factor of a set in the place of the least recently used one, from changes.base or, where `changes` is
 /// null, afresh. Null if the matrix is not positive definite. To be kept in the cache afterwards. touched: by the set;
-/// no batch may be at work. For the loop; work: factor_work, or update_factor_work.
+/// no batch may be at work. For the loop; work: factor_work, or update_factor_work, of which what
+/// factor_bounded_work or update_bounded_work bounds is what tools.scratch.spent grows by.
 template <unsigned N>
 [[nodiscard]] Factor* make_factor(const FactorTools<N>& tools, ColumnSet set, const Touched& touched,
                                   const FactorChanges* changes) noexcept;

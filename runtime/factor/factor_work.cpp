@@ -17,6 +17,16 @@ CapacitanceCounts batch_counts(const FactorCounts& model, const SetCounts& whole
   return counts;
 }
 
+// of the rows of the nodes that enter
+CapacitanceCounts entering_counts(const FactorCounts& model, const SetCounts& set, const ChangeCounts& changes) {
+  CapacitanceCounts counts = capacitance_counts(model, set);
+  counts.rows = changes.added;
+  counts.visits = changes.entering.visits;
+  counts.coefficients = changes.entering.coefficients;
+  counts.blocks = changes.entering.blocks;
+  return counts;
+}
+
 }  // namespace
 
 std::uint64_t touch_work(const Prices& prices, const SetCounts& set) noexcept {
@@ -50,6 +60,10 @@ std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexc
          cholesky_factor_work(model.prices, order);
 }
 
+std::uint64_t factor_bounded_work(const FactorCounts& model, const SetCounts& set) noexcept {
+  return assemble_blocks_work(capacitance_counts(model, set));
+}
+
 void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
                   SetCounts& counts) noexcept {
   counts.coefficients = touched.coefficients();
@@ -65,23 +79,28 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
   }
 }
 
+std::uint64_t leave_work(const FactorCounts& model, std::uint64_t columns, std::uint64_t removed) noexcept {
+  const std::uint32_t order = model.order(columns + removed);
+  return removed * cholesky_remove_work(model.prices, order, 0, model.prediction.components);
+}
+
+std::uint64_t update_bounded_work(const FactorCounts& model, const SetCounts& set,
+                                  const ChangeCounts& changes) noexcept {
+  const std::uint32_t order = model.order(set.columns + changes.removed);
+  return assemble_blocks_work(entering_counts(model, set, changes)) + leave_work(model, set.columns, changes.removed) +
+         changes.added * cholesky_append_work(model.prices, order, model.prediction.components);
+}
+
 std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set,
                                  const ChangeCounts& changes) noexcept {
   const std::uint32_t components = model.prediction.components;
   const std::uint32_t order = model.order(set.columns + changes.removed);
-  CapacitanceCounts capacitance = capacitance_counts(model, set);
-  capacitance.rows = changes.added;
-  capacitance.visits = changes.entering.visits;
-  capacitance.coefficients = changes.entering.coefficients;
-  capacitance.blocks = changes.entering.blocks;
   const std::uint64_t kept = (1 + changes.removed) * kept_work(model, order);
   const Prices& prices = model.prices;
   const std::uint64_t appended = model.keeps_capacitance ? priced(std::uint64_t{components} * order, prices.passed) : 0;
   return priced(1, prices.factor) + kept + priced(std::uint64_t{order} * order / 2, prices.passed) +
-         changes.removed *
-             (priced(set.columns, prices.placed_column) + cholesky_remove_work(prices, order, 0, components)) +
-         changes.added * (appended + cholesky_append_work(prices, order, components)) +
-         assemble_capacitance_work(capacitance) + priced(6 * set.columns, prices.placed_column);
+         changes.added * appended + priced((6 + changes.removed) * set.columns, prices.placed_column) +
+         begin_assembly_work(entering_counts(model, set, changes)) + update_bounded_work(model, set, changes);
 }
 
 std::uint64_t most_in_a_batch(const FactorCounts& model, const SetCounts& whole) noexcept {
@@ -115,10 +134,8 @@ std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set, 
   const std::uint32_t order = model.order(columns);
   const Prices& prices = model.prices;
   return (1 + removed) * kept_work(model, order) + priced(std::uint64_t{order} * order / 2, prices.passed) +
-         removed * (priced(2 * columns, prices.placed_column) +
-                    cholesky_remove_work(prices, order, 0, model.prediction.components)) +
-         priced(12 * columns, prices.placed_column) + touch_work(prices, set) +
-         begin_capacitance_work(batch_counts(model, set));
+         leave_work(model, set.columns, removed) + priced((12 + 2 * removed) * columns, prices.placed_column) +
+         touch_work(prices, set) + begin_capacitance_work(batch_counts(model, set));
 }
 
 std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {

@@ -47,6 +47,9 @@ struct SetCounts {
 /// Work units of a capacitance factor.
 [[nodiscard]] std::uint64_t factor_work(const FactorCounts& model, const SetCounts& set) noexcept;
 
+/// What bounds, within it, the work units of the blocks of its capacitance matrix.
+[[nodiscard]] std::uint64_t factor_bounded_work(const FactorCounts& model, const SetCounts& set) noexcept;
+
 /// Adds to `counts` what the factor of a resolved set takes, whose coefficients are touched. stored: [domain] blocks of
 /// all layers in each coefficient's column.
 void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost, const std::uint32_t* stored,
@@ -55,6 +58,10 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 /// Work units of make_factor from a base, the columns of the new nodes included.
 [[nodiscard]] std::uint64_t update_factor_work(const FactorCounts& model, const SetCounts& set,
                                                const ChangeCounts& changes) noexcept;
+
+/// What bounds, within it, the work units of the blocks of those columns and of the nodes that leave and enter.
+[[nodiscard]] std::uint64_t update_bounded_work(const FactorCounts& model, const SetCounts& set,
+                                                const ChangeCounts& changes) noexcept;
 
 // The pieces of continue_factor (factor_job.hpp).
 
@@ -69,7 +76,12 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 [[nodiscard]] std::uint64_t most_in_a_slice(const FactorCounts& model, const SetCounts& whole,
                                             std::uint64_t allowance) noexcept;
 
-/// Work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of the batch.
+/// Bound of the work units of so many nodes that leave a factor of a set and those.
+[[nodiscard]] std::uint64_t leave_work(const FactorCounts& model, std::uint64_t columns,
+                                       std::uint64_t removed) noexcept;
+
+/// Work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of the batch;
+/// leave_work, which it holds, is a bound.
 [[nodiscard]] std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set,
                                              std::uint64_t removed) noexcept;
 

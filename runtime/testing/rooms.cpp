@@ -32,7 +32,6 @@ Rooms<N>::Rooms(const ModelView& of_model, std::uint32_t set_columns, bool keeps
     : view(of_model), stored(view.domain_count), index_of_place(view.domain_count, layout::none) {
   counts.cached_factors = 2;
   counts.keeps_capacitance = keeps_capacitance;
-  counts.prices = N == 1 ? scalar_prices() : Prices{};
   counts.prediction = prediction_of(view);
   Arena counting;
   carve(counting, set_columns);

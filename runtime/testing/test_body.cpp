@@ -47,6 +47,19 @@ std::uint64_t hash_bytes(std::uint64_t hash, std::span<const std::byte> bytes) {
   return chained.value();
 }
 
+std::uint64_t least_budget_of_finest(const TestModel& model, const Elastostatic::Limits& limits,
+                                     std::span<const Constraint> contacts, bool with_field) {
+  TestBody body(model, limits);
+  std::uint64_t too_small = body.requirement().least_work - 1, enough = any_budget;
+  while (enough - too_small > 1) {
+    const std::uint64_t middle = too_small + (enough - too_small) / 2;
+    body.renew();
+    const bool is_finest = body.step(contacts, middle, with_field).status == Status::ok;
+    (is_finest ? enough : too_small) = middle;
+  }
+  return enough;
+}
+
 std::uint64_t hash_step(std::uint64_t hash, const Elastostatic::StepReport& report, std::span<const float> force,
                         std::span<const float> field) {
   const std::uint64_t facts[] = {static_cast<std::uint64_t>(report.status),

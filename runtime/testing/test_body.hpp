@@ -36,6 +36,11 @@ class TestBody : public Hosted<Elastostatic> {
   TestBody(const TestModel& model, const Elastostatic::Limits& limits) : Hosted(model.model(), limits) {}
 };
 
+/// The least budget with which a new body answers at the finest level, the whole field if any: what the step is planned
+/// to take, at least what it reports.
+[[nodiscard]] std::uint64_t least_budget_of_finest(const TestModel& model, const Elastostatic::Limits& limits,
+                                                   std::span<const Constraint> contacts, bool with_field);
+
 /// `count` touchable nodes from the `first` on, held at displacements that differ.
 [[nodiscard]] std::vector<Constraint> patch(const TestModel& model, std::size_t first, std::size_t count);
 

@@ -26,7 +26,7 @@ class Workspace {
     std::filesystem::create_directories(folder_);
     ModelData data = synthetic_model({.levels = 5, .touchable_above = -0.2});
     data.info.max_contacts = 16;
-    data.info.step_work = 700000;
+    data.info.step_work = 1400000;
     write_file(model(), encode(data));
   }
   Workspace(const Workspace&) = delete;
@@ -77,8 +77,8 @@ TEST_CASE("in one process every cycle holds its budget, and every run has the sa
   CHECK(json["misses"] == 0);
   CHECK(json["late"] == 0);
   CHECK(json["allocations"] == 0);
-  CHECK(json["budget_work"] == 700000);
-  CHECK(json["worst_work"] <= 700000);
+  CHECK(json["budget_work"] == 1400000);
+  CHECK(json["worst_work"] <= 1400000);
   CHECK(json["worst_work"] > 0);
   CHECK(json["contacts_max"] >= 3);
   CHECK(json["force_max"] > 1.0);
@@ -123,13 +123,13 @@ TEST_CASE("where namespaces are refused, auto says so and runs in one process, a
 }
 
 TEST_CASE("starved, it answers at coarser levels and misses nothing") {
-  const auto fed = run_json({"--transport", "memq", "--budget", "2000000"});
-  const auto starved = run_json({"--transport", "memq", "--budget", "2000000", "--starve", "0.021"});
+  const auto fed = run_json({"--transport", "memq", "--budget", "4000000"});
+  const auto starved = run_json({"--transport", "memq", "--budget", "4000000", "--starve", "0.0535"});
   CHECK(cycles_below(fed, 4) == 0);
   CHECK(cycles_below(starved, 4) > 50);
   CHECK(starved["misses"] == 0);
-  CHECK(starved["budget_work"] == 42000);
-  CHECK(starved["worst_work"] <= 42000);
+  CHECK(starved["budget_work"] == 214000);
+  CHECK(starved["worst_work"] <= 214000);
   CHECK(starved["digest"] != fed["digest"]);
 }
 
