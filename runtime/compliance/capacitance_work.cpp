@@ -40,12 +40,17 @@ std::uint64_t functionals_work(const CapacitanceCounts& counts) {
          priced(counts.rows * counts.slots, prices.cleared);
 }
 
-// of the blocks in the columns of the slots; those between coefficients of which no computed row has one are passed
-// over
+// most meetings of a block between two slots and a functional that is not 0 at one of them
+std::uint64_t most_meetings(const CapacitanceCounts& counts) {
+  return smaller(counts.blocks, counts.coefficients * counts.slots);
+}
+
+// of the blocks in the columns of the slots, at most one of each two; those that no functional meets are passed over
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
+  const std::uint64_t between = smaller(counts.stored, counts.slots * (counts.slots + 1) / 2);
   return priced(counts.stored, prices.stored_block) +
-         priced(smaller(counts.stored, counts.blocks), prices.scaled_block);
+         priced(smaller(between, most_meetings(counts)), prices.scaled_block);
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
@@ -136,7 +141,7 @@ std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexc
   const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
   return stored_work(counts) +
          pairs(counts.rows) * sum_pair_work(*counts.prices, counts.prediction, counts.set_visits) +
-         (panel_of(counts) ? 0 : priced(counts.blocks, meeting_price(*counts.prices, counts.prediction))) +
+         (panel_of(counts) ? 0 : priced(most_meetings(counts), meeting_price(*counts.prices, counts.prediction))) +
          (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
 }
 

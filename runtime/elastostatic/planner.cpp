@@ -123,7 +123,9 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   plan.counts.columns = body.planned.columns;
   plan.cached = changes.removed == 0 ? changes.base : nullptr;
   plan.update = plan.cached == nullptr;
-  plan.factor = plan.update ? update_factor_work(body.counts, plan.counts, {0, changes.removed, {}}) : 0;
+  const ChangeCounts leaving{0, changes.removed, {}};
+  plan.factor = plan.update ? update_factor_work(body.counts, plan.counts, leaving) : 0;
+  plan.bounded = plan.update ? update_bounded_work(body.counts, plan.counts, leaving) : 0;
   if (task.wants_field) {
     touch_set(body, plan);
     plan.field = planned_field_work(body, plan);
