@@ -11,63 +11,62 @@
 
 #define GREENLOOP_PRICES(ROW)                                                                    \
   /* whatever is held; contacts and columns */                                                   \
-  ROW(step, 87.9, 173, "a step")                                                                 \
-  ROW(level, 667, 307, "a level that is planned")                                                \
-  ROW(factor, 3050, 1820, "a factor that is made")                                               \
-  ROW(batch, 59.2, 168, "a batch of rows of a capacitance matrix")                               \
-  ROW(field, 481, 104, "a field")                                                                \
-  ROW(checked_contact, 11.3, 23.4, "a contact that is checked")                                  \
-  ROW(resolved_contact, 46.7, 13.6, "a contact that is resolved at a level")                     \
-  ROW(sorted, 4.15, 5.16, "a value in a pass of a sort")                                         \
+  ROW(step, 88.9, 173, "a step")                                                                 \
+  ROW(level, 601, 307, "a level that is planned")                                                \
+  ROW(factor, 4330, 1820, "a factor that is made")                                               \
+  ROW(batch, 62.7, 168, "a batch of rows of a capacitance matrix")                               \
+  ROW(field, 539, 104, "a field")                                                                \
+  ROW(checked_contact, 9.63, 23.4, "a contact that is checked")                                  \
+  ROW(resolved_contact, 58.1, 13.6, "a contact that is resolved at a level")                     \
+  ROW(sorted, 3.14, 5.16, "a value in a pass of a sort")                                         \
   ROW(resolved_column, 11.4, 23.6, "a column of a resolved set")                                 \
-  ROW(ranked_contact, 552, 952, "a contact whose group is ranked")                               \
-  ROW(solved_contact, 226, 151, "a contact that is solved for")                                  \
-  ROW(solved_column, 239, 400, "a column that is solved for")                                    \
-  ROW(blended_contact, 10.9, 22.7, "a contact whose force glides and is remembered")             \
+  ROW(solved_contact, 221, 151, "a contact that is solved for")                                  \
+  ROW(solved_column, 280, 400, "a column that is solved for")                                    \
+  ROW(blended_contact, 8.92, 22.7, "a contact whose force glides and is remembered")             \
   /* factors that there are */                                                                   \
-  ROW(cached_factor, 17.9, 52, "a factor that is looked at for a set")                           \
-  ROW(cached_column, 5.64, 11.3, "a column that is compared with it")                            \
-  ROW(near_factor, 85.5, 557, "a factor that is compared for changes")                           \
-  ROW(near_column, 34.3, 37.5, "a column of it")                                                 \
+  ROW(cached_factor, 24.2, 52, "a factor that is looked at for a set")                           \
+  ROW(cached_column, 6.25, 11.3, "a column that is compared with it")                            \
+  ROW(near_factor, 15.5, 557, "a factor that is compared for changes")                           \
+  ROW(near_column, 35.1, 37.5, "a column of it")                                                 \
   /* coefficients that forces reach */                                                           \
-  ROW(visit, 6.57, 31.1, "a visit of finding them")                                              \
-  ROW(touched, 46.3, 14.4, "a coefficient that is found")                                        \
-  ROW(counted, 3.91, 6.47, "a coefficient whose blocks are counted")                             \
-  ROW(dropped, 3.66, 9.54, "a coefficient of a batch that is given up")                          \
+  ROW(visit, 4.88, 31.1, "a visit of finding them")                                              \
+  ROW(touched, 4.55, 14.4, "a coefficient that is found")                                        \
+  ROW(counted, 3.12, 6.47, "a coefficient whose blocks are counted")                             \
+  ROW(dropped, 3.74, 9.54, "a coefficient of a batch that is given up")                          \
   /* capacitance matrices */                                                                     \
-  ROW(listed_visit, 14.6, 44.2, "a visit of the computed rows, listed")                          \
-  ROW(set_visit, 5.09, 19.4, "a visit of the set, listed")                                       \
-  ROW(slot, 1080, 688, "a coefficient with its scaled diagonal block")                           \
-  ROW(cleared, 2.06, 6.69, "a sum that is cleared")                                              \
-  ROW(functional_visit, 5.71, 2.06, "a visit of a functional, found")                            \
-  ROW(functional, 3.01, 6.18, "a coefficient of a functional, a transform")                      \
-  ROW(stored_block, 16.5, 38.9, "a stored block whose row is looked up")                         \
-  ROW(scaled_block, 138, 420, "a block between coefficients that are reached, scaled and added") \
-  ROW(meeting, 24, 52.3, "a block times a weight of a functional")                               \
+  ROW(listed_visit, 4.46, 44.2, "a visit of the computed rows, listed")                          \
+  ROW(set_visit, 6.03, 19.4, "a visit of the set, listed")                                       \
+  ROW(slot, 898, 688, "a coefficient with its scaled diagonal block")                            \
+  ROW(cleared, 1.22, 6.69, "a sum that is cleared")                                              \
+  ROW(functional_visit, 7.16, 2.06, "a visit of a functional, found")                            \
+  ROW(functional, 2.23, 6.18, "a coefficient of a functional, a transform")                      \
+  ROW(stored_block, 20.3, 38.9, "a stored block whose row is looked up")                         \
+  ROW(scaled_block, 151, 420, "a block between coefficients that are reached, scaled and added") \
+  ROW(meeting, 24.3, 52.3, "a block times a weight of a functional")                             \
   ROW(meeting_by_blocks, 58.2, 214, "the same where weights are blocks")                         \
-  ROW(pair_visit, 25.6, 144, "a visit of the inverse transform of two rows")                     \
-  ROW(pair_visit_by_blocks, 86.5, 368, "the same where weights are blocks")                      \
-  ROW(panel_row, 84.1, 249, "a row that two coefficients' couplings are handed to")              \
-  ROW(stored_entry, 116, 14.9, "an entry of the matrix, N x N, that is stored")                  \
+  ROW(pair_visit, 15.9, 144, "a visit of the inverse transform of two rows")                     \
+  ROW(pair_visit_by_blocks, 53, 368, "the same where weights are blocks")                        \
+  ROW(panel_row, 114, 249, "a row that two coefficients' couplings are handed to")               \
+  ROW(stored_entry, 74.7, 14.9, "an entry of the matrix, N x N, that is stored")                 \
   /* factors that are made */                                                                    \
-  ROW(eliminated, 0.832, 2.68, "a multiply-add of a factorisation")                              \
-  ROW(passed, 2.59, 0.469, "an entry of a matrix in a pass over it")                             \
-  ROW(substituted, 1.12, 4.48, "a multiply-add of a solution")                                   \
-  ROW(appended, 2.23, 4.1, "a multiply-add of bordering")                                        \
-  ROW(removed, 2.33, 3.86, "a multiply-add of a rank-one update")                                \
-  ROW(placed_column, 3.95, 0.848, "a column whose place in a factor is found")                   \
+  ROW(eliminated, 1.53, 2.68, "a multiply-add of a factorisation")                               \
+  ROW(passed, 1.12, 0.469, "an entry of a matrix in a pass over it")                             \
+  ROW(substituted, 1.02, 4.48, "a multiply-add of a solution")                                   \
+  ROW(appended, 2.54, 4.1, "a multiply-add of bordering")                                        \
+  ROW(removed, 2.7, 3.86, "a multiply-add of a rank-one update")                                 \
+  ROW(placed_column, 0.387, 0.848, "a column whose place in a factor is found")                  \
   /* fields */                                                                                   \
-  ROW(force_visit, 4.38, 10.2, "a visit of the transform of forces")                             \
-  ROW(force_visit_by_blocks, 45.4, 47.9, "the same where weights are blocks")                    \
-  ROW(force_column, 28.2, 4.9, "a column or contact whose force or displacement is entered")     \
-  ROW(coefficient, 1000, 515, "a coefficient whose couplings are summed")                        \
-  ROW(summed_block, 16.9, 58.7, "a block in a sum")                                              \
-  ROW(scaled_sum, 18.6, 37.7, "a coefficient whose sum is scaled")                               \
-  ROW(detail, 9.91, 20.2, "a coefficient whose detail is added")                                 \
-  ROW(node, 1.12, 7.72, "a displaced node")                                                      \
-  ROW(linear_node, 29.9, 125, "a node that is predicted from its parents")                       \
-  ROW(butterfly_node, 58.3, 163, "a node that is predicted by a stencil")                        \
-  ROW(block_node, 74.1, 509, "a node that is predicted by blocks")                               \
-  ROW(block_term, 6.01, 18.6, "a block that it is predicted by")
+  ROW(force_visit, 4.8, 10.2, "a visit of the transform of forces")                              \
+  ROW(force_visit_by_blocks, 41.9, 47.9, "the same where weights are blocks")                    \
+  ROW(force_column, 32.3, 4.9, "a column or contact whose force or displacement is entered")     \
+  ROW(coefficient, 1030, 515, "a coefficient whose couplings are summed")                        \
+  ROW(summed_block, 16.5, 58.7, "a block in a sum")                                              \
+  ROW(scaled_sum, 13.4, 37.7, "a coefficient whose sum is scaled")                               \
+  ROW(detail, 8.36, 20.2, "a coefficient whose detail is added")                                 \
+  ROW(node, 1.14, 7.72, "a displaced node")                                                      \
+  ROW(linear_node, 30, 125, "a node that is predicted from its parents")                         \
+  ROW(butterfly_node, 63.5, 163, "a node that is predicted by a stencil")                        \
+  ROW(block_node, 82.9, 509, "a node that is predicted by blocks")                               \
+  ROW(block_term, 5.73, 18.6, "a block that it is predicted by")
 
 #endif
