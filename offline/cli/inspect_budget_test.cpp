@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "formats/output/output_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/testing/temporary_folder.hpp"
 #include "formats/write/model_file.hpp"

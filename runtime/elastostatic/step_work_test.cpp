@@ -35,7 +35,7 @@ std::uint64_t fresh_work(const ModelCounts& model, const SetCounts& set, std::ui
 Prices draw_prices(std::mt19937_64& random) {
   Prices prices;
   const auto draw = [&random] { return static_cast<std::uint32_t>(1 << random() % 16); };
-#define GREENLOOP_ROW(name, price, what) prices.name = draw();
+#define GREENLOOP_ROW(name, x86_64, cortex_m7, what) prices.name = draw();
   GREENLOOP_PRICES(GREENLOOP_ROW)
 #undef GREENLOOP_ROW
   return prices;
