@@ -157,12 +157,13 @@ MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar&
   const GreenStoreContents& contents = store.contents();
   const MeshError error = estimate_mesh_error(fem_problem(contents), touched_nodes(contents),
                                               [&](double fraction) { progress.update(fraction); });
-  const std::string found = fmt::format("forces of pressed patches up to {}{:.3g} % too large, against quadratic elements",
-                                        error.settled ? "" : "more than ", 100 * error.force());
+  const std::string found =
+      fmt::format("forces of pressed patches up to {}{:.3g} % too large, against quadratic elements",
+                  error.settled ? "" : "more than ", 100 * error.force());
   progress.end(found);
   if (scene.material.poisson > locking_poisson) {
-    progress.warn(fmt::format("material.poisson = {}: linear tetrahedra lock above {}", scene.material.poisson,
-                              locking_poisson));
+    progress.warn(
+        fmt::format("material.poisson = {}: linear tetrahedra lock above {}", scene.material.poisson, locking_poisson));
   }
   if (error.force() > scene.accuracy.patch_force) {
     const Eigen::Vector3d& at = error.patches.front().center;

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "formats/testing/synthetic_model.hpp"
 #include "formats/output/output_file.hpp"
+#include "formats/testing/synthetic_model.hpp"
 #include "formats/write/c_array.hpp"
 #include "formats/write/writer.hpp"
 

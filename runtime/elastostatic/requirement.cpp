@@ -79,8 +79,7 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     const SetCounts& most = most_of[c].set;
     planned += plan_set_work(counts, most);
-    const std::uint64_t forces =
-        planned + part + dropped + factor_work(counts, most) + force_work(counts.prices, most);
+    const std::uint64_t forces = planned + part + dropped + factor_work(counts, most) + force_work(counts.prices, most);
     const std::uint64_t answer = forces + field(most_of[c], finest);
     if (c == finest) {
       requirement.worst_work[c] = answer + older;
