@@ -105,6 +105,7 @@ TEST_CASE("C and C++ give the same answers, bit for bit") {
     CHECK(report.details.glide == expected.details.glide);
     CHECK(report.details.level_difference == expected.details.level_difference);
     CHECK(report.details.switch_work == expected.details.switch_work);
+    CHECK(report.details.needed_work == expected.details.needed_work);
     CHECK(report.details.pending_work == expected.details.pending_work);
     glided |= report.details.glide < 1;
     met.insert(report.status);

@@ -224,6 +224,7 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
 Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t work,
                                 std::uint64_t budget, const Elastostatic::Response& response) {
   const ContactSet& set = body.planned;
+  const std::uint64_t needed = work + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
   body.factoring.spent = 0;
   Factor* const factor = find_factor(body, plan);
   work += plan.cached != nullptr ? 0 : plan.factor - plan.bounded + body.factoring.spent;
@@ -244,6 +245,7 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   report.work = work;
   report.constraint_level = set.level();
   report.field_level = plan.field_levels.details;
+  report.details.needed_work = needed;
   report.details.held_contacts = static_cast<std::uint16_t>(contacts.size() - set.waiting);
   report.details.waiting_contacts = static_cast<std::uint16_t>(set.waiting);
   const bool moving = !body.last.stays(contacts);

@@ -59,6 +59,8 @@ class Elastostatic {
     float level_difference =
         0;                   ///< N, largest component of the older level's forces minus the newer one's; 0: no glide
     double switch_work = 0;  ///< J, elastic energy that this step's change of `glide` put into the body
+    std::uint64_t needed_work =
+        0;  ///< units that the budget had to hold for this answer, bounds of what is counted later
     std::uint64_t pending_work = 0;  ///< units, at most, until the factor of a finer level is complete; 0: none is made
   };
 

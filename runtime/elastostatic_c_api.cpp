@@ -43,7 +43,7 @@ greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) 
           report.field_level,
           report.error,
           {details.cached_factor ? 1 : 0, details.held_contacts, details.waiting_contacts, details.changed_nodes,
-           details.glide, details.level_difference, details.switch_work, details.pending_work}};
+           details.glide, details.level_difference, details.switch_work, details.needed_work, details.pending_work}};
 }
 
 }  // namespace greenloop

@@ -181,6 +181,7 @@ typedef struct greenloop_elastostatic_details {
   float glide;               /* share of constraint_level in the forces; the rest is of the level before it */
   float level_difference;    /* N, largest component of the older level's forces minus the newer one's; 0: no glide */
   double switch_work;        /* J, elastic energy that this step's change of `glide` put into the body */
+  uint64_t needed_work;      /* units that the budget had to hold for this answer, bounds of what is counted later */
   uint64_t pending_work;     /* units, at most, until the factor of a finer level is complete; 0: none is made */
 } greenloop_elastostatic_details;
 

@@ -94,7 +94,7 @@ TEST_CASE("adaptive bits learn: nothing is spent on what never changes") {
     mixed.code(encoder, i % 4 == 1, std::array{i % 4, i % 3}, i % 2);  // the first context knows, the second does not
   }
   const auto bytes = encoder.finish(0);
-  CHECK(bytes.size() < 160);
+  CHECK(bytes.size() < 320);  // a decoder takes 128 decisions from a byte at most: 40,000 in 313
   AdaptiveBit again;
   MixedBits mixed_again(std::array<std::uint32_t, 2>{4, 3}, 2);
   RangeDecoder decoder(bytes);

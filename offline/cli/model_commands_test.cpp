@@ -240,7 +240,7 @@ TEST_CASE("verify: exit code 0 only for a valid file, and the first fault in wor
   CHECK(Json::parse(absent.str())["rule"] == "unreadable");
   std::ostringstream text;
   CHECK(run_verify({folder / "sphere.gloop", false, false}, text) == 0);
-  CHECK(text.str() == (folder / "sphere.gloop").string() + ": the file is valid\n");
+  CHECK(text.str().starts_with((folder / "sphere.gloop").string() + ": the file is valid\na body of "));
 }
 
 // m/N, of the compliance that the model stands for, by its dense matrix

@@ -10,6 +10,7 @@
 
 #include "offline/compress/testing/dense_compliance.hpp"
 #include "offline/figures/comparison_figures.hpp"
+#include "runtime/prices.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -122,7 +123,7 @@ TEST_CASE("a step's work is linear in the blocks summed") {
   REQUIRE(compared().summation.size() == plan().summation_thresholds.size());
   const SummationFit fit = fit_summation(compared().summation);
   CHECK(fit.work.r_squared > 0.999);
-  CHECK(fit.work.slope == doctest::Approx(12).epsilon(0.05));  // block_work
+  CHECK(fit.work.slope == doctest::Approx(Prices{}.summed_block / 256.0).epsilon(0.05));
   CHECK(fit.work.intercept > 0);
   for (const SummationPoint& point : compared().summation) CHECK(point.seconds > 0);
 }

@@ -54,7 +54,7 @@ std::vector<Constraint> held_in(const std::vector<std::uint32_t>& path, std::siz
 
 struct Motion {
   double largest_step = 0;  // N
-  std::uint64_t worst_work = 0;
+  std::uint64_t most_needed = 0;
 };
 
 template <Driver D>
@@ -65,7 +65,7 @@ Motion move_tool(Hosted<typename D::Solver>& host, const std::vector<std::uint32
   double last[3] = {};
   for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
     const auto report = host.step(held_in(path, contacts, cycle), budget, false);
-    motion.worst_work = std::max(motion.worst_work, report.work);
+    motion.most_needed = std::max(motion.most_needed, report.details.needed_work);
     double total[3] = {}, change = 0;
     for (std::size_t i = 0; i < host.force().size(); ++i) total[i % 3] += double{host.force()[i]};
     for (int r = 0; r < 3; ++r) {
@@ -87,7 +87,7 @@ StarvedSteps starved_steps(const Model& model, const StressOptions& options, std
   const Motion finest = move_tool<D>(host, path, held, cycles, any_budget);
   const std::uint64_t least = D::bounds(host.limits(), host.requirement()).least_work;
   const auto starved = [&](std::uint64_t part) {
-    const std::uint64_t budget = std::max(least, finest.worst_work / part);
+    const std::uint64_t budget = std::max(least, finest.most_needed / part);
     return finest.largest_step > 0 ? move_tool<D>(host, path, held, cycles, budget).largest_step / finest.largest_step
                                    : 0;
   };

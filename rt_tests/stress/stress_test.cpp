@@ -25,7 +25,7 @@ double declared_over_worst(const StressResult& result) {
 }
 
 // which neighbours are lifted into a node is not known where work is declared (bound_columns)
-double bar_of(layout::Wavelet wavelet) { return layout::is_lifted(wavelet) ? 1.45 : 1.2; }
+double bar_of(layout::Wavelet wavelet) { return layout::is_lifted(wavelet) ? 1.6 : 1.25; }
 
 // as a processor without much cache may have them: what is done once a coefficient is dear, what a block takes is not
 Prices dear_coefficients() {

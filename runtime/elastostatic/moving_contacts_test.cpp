@@ -53,7 +53,8 @@ Slide slide(const TestModel& model, std::uint64_t budget, std::uint64_t refining
 
 TEST_CASE("a patch with one new contact in every step reaches the finest level and stays there") {
   const TestModel model = wide_model();
-  const std::uint64_t whole = TestBody(model, {.max_contacts = 32}).step(patch(model, 0, 32), any_budget).work;
+  const std::uint64_t whole =
+      TestBody(model, {.max_contacts = 32}).step(patch(model, 0, 32), any_budget).details.needed_work;
   std::map<std::uint64_t, double> error;
   for (const std::uint64_t percent : {80U, 60U, 50U, 45U}) {
     const std::uint64_t budget = whole * percent / 100;
@@ -143,7 +144,7 @@ struct Pressed {
 
   explicit Pressed(const Elastostatic::Limits& limits = {.max_contacts = 32}) : body(model, limits) {
     body.step(patch(model, 0, 32), any_budget);
-    budget = body.step(patch(model, 0, 32), any_budget).work + 400000;
+    budget = body.step(patch(model, 0, 32), any_budget).details.needed_work + 1000000;
   }
 };
 
@@ -208,7 +209,7 @@ TEST_CASE("only new contacts wait, for less steps than a glide takes") {
   const TestModel model = wide_model();
   const Elastostatic::Limits limits{.max_contacts = 32, .cached_factors = 3, .glide_cycles = 3};
   TestBody body(model, limits);
-  const std::uint64_t whole = TestBody(model, limits).step(patch(model, 0, 32), any_budget).work;
+  const std::uint64_t whole = TestBody(model, limits).step(patch(model, 0, 32), any_budget).details.needed_work;
   std::mt19937_64 random(4);
   std::map<std::uint32_t, std::uint32_t> waited;  // by node, of the last step
   std::size_t first = 0;
