@@ -181,7 +181,7 @@ for signal in INT TERM; do
   [ $status -eq $((128 + $(kill -l $signal))) ] || fail "$signal ends a run with $status"
   [ "$(wc -l <i.csv)" -gt 1 ] || fail "$signal loses the trace"
   [ "$(tail -c 1 i.csv | od -An -c | tr -d ' ')" = '\n' ] || fail "$signal cuts a line of the trace"
-  grep -q FAILED out || fail "$signal loses the verdict"
+  grep -q VIOLATED out || fail "$signal loses the verdict"
 done
 nothing_left "the whole"
 finish
