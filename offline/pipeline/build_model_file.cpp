@@ -264,8 +264,10 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   provenance["frontier_contacts"] = built.model.info.max_contacts;
   provenance["patches"] = built.report.patches;
   built.model.provenance = json_text(provenance, -1);
-  if (!scene.budget.asked_work()) built.model.info.step_work = built.report.trials.back().step_work;
   if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
+  if (!scene.budget.asked_work()) {
+    built.model.info.step_work = worst_step_work(AlignedBytes(encode(built.model)).span()).back();
+  }
   const auto plain = encode(built.model);
   const auto bytes = scene.ready ? ready_model(plain) : plain;
   require_work(scene, request.scene, least_work(bytes), LeastOf::this_wavelet);

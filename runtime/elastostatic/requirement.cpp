@@ -76,6 +76,7 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
   std::uint64_t planned = checking;
   std::uint64_t part = 0;  // planning what a factor at hand has of a finer set, once in a step
   std::uint64_t finer_answer = 0;
+  std::uint64_t least_answer = ~std::uint64_t{0};
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     const SetCounts& most = most_of[c].set;
     planned += plan_set_work(counts, most);
@@ -90,7 +91,9 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
       requirement.worst_work[c] = smaller(finer_answer, larger(answer, refining) + older);
     }
     const std::uint64_t cuts = finest * count_field_work(counts.prices, most);
-    requirement.least_work = forces + cuts + field(most_of[c], 0);
+    // with few contacts a finer level may take less than planning it and answering at a coarser one
+    least_answer = smaller(least_answer, answer);
+    requirement.least_work = smaller(least_answer, forces + cuts + field(most_of[c], 0));
     part = limits.glide_cycles > 1 ? larger(part, plan_part_work(counts, most)) : 0;
     finer_answer = answer;
   }
