@@ -218,20 +218,6 @@ TEST_CASE("budgets: the level is the finest that fits, never a unit over, and fi
   }
 }
 
-TEST_CASE("a budget of the finest level's declared work is never too small") {
-  for (const std::uint32_t levels : {1U, 2U, 4U}) {
-    for (const std::uint32_t contacts : {1U, 4U}) {
-      CAPTURE(levels);
-      CAPTURE(contacts);
-      const TestModel model({.levels = levels});
-      TestBody body(model, {.max_contacts = contacts});
-      const std::uint64_t declared = body.requirement().worst_work[levels - 1];
-      CHECK(body.requirement().least_work <= declared);
-      CHECK(body.step(patch(model, 0, contacts), declared).constraint_level == levels - 1);
-    }
-  }
-}
-
 TEST_CASE("a finer level takes part of the budget only while its factor is made") {
   const TestModel model({.levels = 4});
   TestBody body(model, {.max_contacts = 12, .cached_factors = 2});

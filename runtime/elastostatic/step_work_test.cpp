@@ -123,5 +123,19 @@ TEST_CASE("no set of contacts holds more than is declared, nor takes more work a
   }
 }
 
+TEST_CASE("a budget of the finest level's declared work is never too small") {
+  for (const std::uint32_t levels : {1U, 2U, 4U}) {
+    for (const std::uint32_t contacts : {1U, 4U}) {
+      CAPTURE(levels);
+      CAPTURE(contacts);
+      const TestModel model({.levels = levels});
+      TestBody body(model, {.max_contacts = contacts});
+      const std::uint64_t declared = body.requirement().worst_work[levels - 1];
+      CHECK(body.requirement().least_work <= declared);
+      CHECK(body.step(patch(model, 0, contacts), declared).constraint_level == levels - 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace greenloop
