@@ -23,24 +23,6 @@ constexpr std::string_view unfinished_ending = ".h5.part";
 constexpr const char* kChecksum = "/green/checksum";
 constexpr const char* kNotBelieved = "the store is damaged; build it again (greenloop build --overwrite-store)";
 
-constexpr std::array kDatasets{"/surface/position",
-                               "/surface/parents",
-                               "/surface/base_triangles",
-                               "/surface/vertex_end",
-                               "/surface/area",
-                               "/surface/flags",
-                               "/green/row_node",
-                               "/green/column_node",
-                               "/green/displacement",
-                               "/green/checksum",
-                               "/green/done",
-                               "/volume/position",
-                               "/volume/tetrahedra",
-                               "/volume/fixed",
-                               "/volume/interpolation/row_start",
-                               "/volume/interpolation/column",
-                               "/volume/interpolation/weight"};
-
 Hdf5Shape displacement_shape(const GreenStoreContents& contents) {
   const auto components = static_cast<hsize_t>(contents.components);
   return {contents.column_node.size(), components, contents.row_node.size(), components};
@@ -171,7 +153,7 @@ void GreenStore::require_free(const std::filesystem::path& path) {
 GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
   const bool writable = access == Access::kReadWrite;
   auto hdf5 = Hdf5File::open(path, writable);
-  hdf5.require_apart({kDatasets.begin(), kDatasets.end()});
+  hdf5.require_apart({kGreenStoreDatasets.begin(), kGreenStoreDatasets.end()});
   auto contents = read_contents(hdf5);
   require_unit(hdf5, kDisplacement, contents.unit);
   if (hdf5.shape(kDisplacement) != displacement_shape(contents)) {

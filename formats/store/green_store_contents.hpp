@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
@@ -11,6 +12,25 @@ namespace greenloop {
 inline constexpr int kGreenStoreVersion = 2;
 inline constexpr const char* kDisplacement = "/green/displacement";
 inline constexpr const char* kContentsChecksum = "contents_checksum";
+
+/// Every dataset of a store; one that no finite elements made has no /volume.
+inline constexpr std::array kGreenStoreDatasets{"/surface/position",
+                                                "/surface/parents",
+                                                "/surface/base_triangles",
+                                                "/surface/vertex_end",
+                                                "/surface/area",
+                                                "/surface/flags",
+                                                "/green/row_node",
+                                                "/green/column_node",
+                                                "/green/displacement",
+                                                "/green/checksum",
+                                                "/green/done",
+                                                "/volume/position",
+                                                "/volume/tetrahedra",
+                                                "/volume/fixed",
+                                                "/volume/interpolation/row_start",
+                                                "/volume/interpolation/column",
+                                                "/volume/interpolation/weight"};
 
 /// Throws std::invalid_argument naming the first field that contradicts another or is out of range.
 void require_valid(const GreenStoreContents& contents);

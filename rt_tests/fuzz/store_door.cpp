@@ -8,30 +8,13 @@
 #include <string>
 
 #include "formats/store/green_store.hpp"
+#include "formats/store/green_store_contents.hpp"
 #include "formats/store/hdf5_file.hpp"
 #include "formats/testing/small_store.hpp"
 #include "rt_tests/fuzz/doors.hpp"
 
 namespace greenloop {
 namespace {
-
-constexpr std::array datasets{"/surface/position",
-                              "/surface/parents",
-                              "/surface/base_triangles",
-                              "/surface/vertex_end",
-                              "/surface/area",
-                              "/surface/flags",
-                              "/green/row_node",
-                              "/green/column_node",
-                              "/green/displacement",
-                              "/green/checksum",
-                              "/green/done",
-                              "/volume/position",
-                              "/volume/tetrahedra",
-                              "/volume/fixed",
-                              "/volume/interpolation/row_start",
-                              "/volume/interpolation/column",
-                              "/volume/interpolation/weight"};
 
 constexpr std::array attributes{std::pair{"/", "format"},
                                 std::pair{"/", "format_version"},
@@ -98,7 +81,7 @@ void replace_attribute(Random& random, hid_t file) {
 }
 
 void replace_dataset(Random& random, hid_t file, const std::string& victim) {
-  const char* const name = one_of(random, datasets);
+  const char* const name = one_of(random, kGreenStoreDatasets);
   H5Ldelete(file, name, H5P_DEFAULT);
   const Hdf5Handle plist(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   const Hdf5Handle type = arbitrary_type(random), space = arbitrary_space(random);
@@ -111,7 +94,7 @@ void replace_dataset(Random& random, hid_t file, const std::string& victim) {
       H5Lcreate_external(victim.c_str(), "/x", file, name, H5P_DEFAULT, H5P_DEFAULT);
       return;
     case 2:
-      H5Lcreate_hard(file, one_of(random, datasets), file, name, H5P_DEFAULT, H5P_DEFAULT);
+      H5Lcreate_hard(file, one_of(random, kGreenStoreDatasets), file, name, H5P_DEFAULT, H5P_DEFAULT);
       return;
     case 3:
       H5Pset_external(plist.get(), victim.c_str(), 0, H5F_UNLIMITED);
@@ -131,7 +114,7 @@ void replace_dataset(Random& random, hid_t file, const std::string& victim) {
 
 // some numbers of a dataset, of whatever kind it is
 void change_values(Random& random, hid_t file) {
-  const Hdf5Handle id(H5Dopen2(file, one_of(random, datasets), H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle id(H5Dopen2(file, one_of(random, kGreenStoreDatasets), H5P_DEFAULT), H5Dclose);
   const Hdf5Handle type(H5Dget_type(id.get()), H5Tclose);
   const hsize_t bytes = H5Dget_storage_size(id.get());
   if (!id || bytes < 8 || bytes > 1 << 20) return;
