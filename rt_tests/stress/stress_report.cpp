@@ -32,6 +32,7 @@ json as_json(const ScriptResult& script) {
           {"coarser", script.counts.of(Status::coarser)},
           {"cached", script.counts.cached},
           {"changed", script.counts.changed},
+          {"mixed_levels", 0},  // sets are of one level
           {"waiting", script.counts.waiting},
           {"refused", script.counts.refusals()},
           {"worst_work", script.counts.worst_work},
