@@ -161,10 +161,6 @@ MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar&
       fmt::format("forces of pressed patches up to {}{:.3g} % too large, against quadratic elements",
                   error.settled ? "" : "more than ", 100 * error.force());
   progress.end(found);
-  if (scene.material.poisson > locking_poisson) {
-    progress.warn(
-        fmt::format("material.poisson = {}: linear tetrahedra lock above {}", scene.material.poisson, locking_poisson));
-  }
   if (error.force() > scene.accuracy.patch_force) {
     const Eigen::Vector3d& at = error.patches.front().center;
     progress.warn(fmt::format(
@@ -241,6 +237,10 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   }
 
   require_build_files(request, scene);
+  if (scene.material.poisson > locking_poisson) {
+    progress.warn(
+        fmt::format("material.poisson = {}: linear tetrahedra lock above {}", scene.material.poisson, locking_poisson));
+  }
   auto store = open_or_create_store(request, scene, column_fingerprint(scene, mesh), progress);
   const SolveReport solved = solve_missing_columns(store, progress);
   require_shallow(store.contents().provenance, request.store.string() + ": provenance");
