@@ -17,6 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+template <class Value>
+Json known(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json provenance_of(const ModelView& view) {
   return Json::parse(view.provenance.begin(), view.provenance.end(), nullptr, false);
 }
@@ -31,14 +36,16 @@ std::optional<AccuracyGoal> asked_of(const Json& provenance) {
 }
 
 // of the patterns that field_rough bounds
-double rough_error(const LevelView& finest) {
+Json rough_error(const LevelView& finest) {
   constexpr std::uint32_t most_accurate_contacts = 64;
-  double worst = 0;
+  std::optional<double> worst;
   for (const layout::PatternRecord& record : finest.patterns) {
     const bool rough = layout::is_rough(static_cast<layout::PatternKind>(record.kind));
-    if (rough && record.contacts <= most_accurate_contacts) worst = std::max(worst, double{record.field_error[2]});
+    if (rough && record.contacts <= most_accurate_contacts) {
+      worst = std::max(worst.value_or(0), double{record.field_error[2]});
+    }
   }
-  return worst;
+  return known(worst);
 }
 
 // `goal`: null if nobody knows
@@ -54,7 +61,7 @@ Json compression_errors(const LevelView& finest, const std::optional<AccuracyGoa
           {"patch_force", pair(asked, &AccuracyGoal::patch_force, level.patch_force_error)},
           {"field", pair(asked, &AccuracyGoal::field, of_patterns(level.field_error))},
           {"field_peak", pair(asked, &AccuracyGoal::field_peak, of_patterns(level.field_peak))},
-          {"field_rough", pair(asked, &AccuracyGoal::field_rough, of_patterns(rough_error(finest)))}};
+          {"field_rough", pair(asked, &AccuracyGoal::field_rough, rough_error(finest))}};
 }
 
 Json mesh_error(const Json& provenance, const std::optional<AccuracyGoal>& asked) {
@@ -71,7 +78,7 @@ bool holds(const Json& error) {
 }
 
 std::string percent(const Json& value) {
-  return value.is_number() ? fmt::format("{:.3g} %", 100 * value.get<double>()) : "unknown";
+  return value.is_number() ? fmt::format("{:.3g} %", 100 * value.get<double>()) : "not known";
 }
 
 using Named = std::vector<std::pair<std::string, Json>>;
@@ -104,12 +111,9 @@ void judge(Json& quality) {
                                            : fmt::format("{}{}", fmt::join(violated, ", "), rest);
 }
 
-template <class Value>
-Json known(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
+std::string us_text(const Json& us) {
+  return us.is_number() ? fmt::format("{:.4g} us", us.get<double>()) : "not known";
 }
-
-std::string us_text(const Json& us) { return us.is_number() ? fmt::format("{:.4g} us", us.get<double>()) : "unknown"; }
 
 }  // namespace
 
@@ -141,7 +145,7 @@ void print_quality(const Json& quality, std::ostream& out) {
   const std::string by = step["by"].get<std::string>();
   row("a step" + (by.empty() ? "" : ", " + by), us_text(step["asked"]), us_text(step["reached"]));
   const Json& arena = quality["arena_bytes"];
-  row("RAM of a body", "", arena.is_number() ? fmt::format("{:.2f} MB", arena.get<double>() / 1e6) : "unknown");
+  row("RAM of a body", "", arena.is_number() ? fmt::format("{:.2f} MB", arena.get<double>() / 1e6) : "not known");
 }
 
 }  // namespace greenloop::offline
