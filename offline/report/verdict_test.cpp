@@ -83,4 +83,17 @@ TEST_CASE("without the scene nothing is judged; time is at the record's speed") 
   CHECK(row(verdict, "the budget in time, at 500 units").reached.ends_with("µs"));
 }
 
+TEST_CASE("provenance that is not a build's is no scene") {
+  const std::string deep(60, '[');
+  for (const std::string& text :
+       {deep, R"({"scene_text": )" + deep, std::string(R"({"scene_text": 3, "mesh_error": []})"),
+        std::string(R"({"scene_text": "rubbish", "mesh_error": {"force": "x"}})")}) {
+    ModelData data = synthetic_model({.levels = 2});
+    data.provenance = text;
+    const Verdict verdict = verdict_of(encoded_file(data), {}, {});
+    CHECK_FALSE(verdict.good);
+    CHECK(verdict.sentence.starts_with("Not judged"));
+  }
+}
+
 }  // namespace greenloop::offline
