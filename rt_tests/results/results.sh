@@ -17,7 +17,7 @@ measure() {
   for name in inspect bench stress loop; do
     echo "results: ${commands[$name]}" >&2
     # shellcheck disable=SC2086
-    "$programs"/${commands[$name]} 2>/dev/null >"$out/$name.json"
+    "$programs"/${commands[$name]} >"$out/$name.json"
     jq --arg name "$name" --arg command "${commands[$name]}" '{commands: {($name): $command}, ($name): .}' "$out/$name.json"
   done
 }
