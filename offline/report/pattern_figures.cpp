@@ -60,7 +60,8 @@ SvgCanvas legend_panel(const std::vector<KindStyle>& kinds, const std::string& t
   const double rows = std::ceil(static_cast<double>(kinds.size()) / 3);
   SvgCanvas canvas(panel_width, rows * pitch + em, title, caption, em);
   for (std::size_t i = 0; i < kinds.size(); ++i) {
-    const double x = 8 + column * static_cast<double>(i % 3), y = pitch * (1 + static_cast<double>(i / 3));
+    const std::size_t row = i / 3;
+    const double x = 8 + column * static_cast<double>(i % 3), y = pitch * static_cast<double>(1 + row);
     canvas.line({x, y - em / 3}, {x + 22, y - em / 3}, {kinds[i].colour, 2, kinds[i].dashes});
     canvas.circle({x + 11, y - em / 3}, 3, kinds[i].colour);
     canvas.text({x + 28, y}, pattern_name(static_cast<std::uint32_t>(kinds[i].kind)));
