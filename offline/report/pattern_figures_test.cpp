@@ -43,7 +43,7 @@ TEST_CASE("patterns: three panels per level, every kind named once, every record
   for (const char* kind : {">node<", ">patch<", ">turned<", ">pinch<"}) CHECK(count(figure.svg(), kind) == 1);
   CHECK(count(figure.svg(), ">sphere<") == 0);
   CHECK(count(figure.svg(), "field error [%]") == 2);
-  CHECK(count(figure.svg(), "<circle") == 4 + 2 * 3 * synthetic_patterns().size());
+  CHECK(count(figure.svg(), "<circle") == 4 + 6 * synthetic_patterns().size());
 }
 
 TEST_CASE("patterns: errors of zero and of compliances that are not definite have a place") {
