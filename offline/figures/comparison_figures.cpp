@@ -95,7 +95,7 @@ Figure panels_figure(const std::string& name, const std::string& title, const st
     draw_panel(canvas, {x, panels_top, width, height}, panel);
     x += width + gap;
   }
-  return {name, title, caption, canvas.str()};
+  return {name, title, caption, {canvas}};
 }
 
 std::vector<Curve> form_curves(const BodyComparison& body, RateQuantity x, RateQuantity y) {

@@ -175,11 +175,11 @@ TEST_CASE("every figure has its curves and no number that is none") {
        {error_over_ratio(compared()), error_over_threshold(compared()), level_errors_over_ratio(compared()),
         summation_cost(compared()), growth_figure({compared(), larger})}) {
     CAPTURE(figure.name);
-    CHECK(figure.svg.find("<circle") != std::string::npos);
-    CHECK(figure.svg.find("nan") == std::string::npos);
-    CHECK(figure.svg.find("inf") == std::string::npos);
+    CHECK(figure.svg().find("<circle") != std::string::npos);
+    CHECK(figure.svg().find("nan") == std::string::npos);
+    CHECK(figure.svg().find("inf") == std::string::npos);
   }
-  CHECK(error_over_ratio(compared()).svg.find("lifted linear, one-sided") != std::string::npos);
+  CHECK(error_over_ratio(compared()).svg().find("lifted linear, one-sided") != std::string::npos);
 }
 
 }  // namespace

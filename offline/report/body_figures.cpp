@@ -52,13 +52,12 @@ PlacedPicture place(SvgCanvas& canvas, const Picture& picture, const Rectangle& 
 
 void draw_colour_bar(SvgCanvas& canvas, const Rectangle& area, double largest) {
   const SiPrefix prefix = si_prefix(largest);
-  canvas.text({area.x, area.y - 14}, fmt::format("displacement [{}m]", prefix.symbol));
+  canvas.text({area.x, area.y - 12}, fmt::format("[{}m]", prefix.symbol));
   canvas.vertical_gradient(area, "displacement", displacement_gradient(13));
   const Scale scale{.min = 0, .max = largest > 0 ? largest : 1, .from = area.bottom(), .to = area.y};
-  for (const double tick : scale.ticks(6)) {
+  for (const double tick : scale.ticks(5)) {
     canvas.line({area.right(), scale(tick)}, {area.right() + 5, scale(tick)}, {paint::rule, 1});
-    canvas.text({area.right() + 9, scale(tick) + 4}, readable(tick / prefix.factor),
-                {.paint = paint::muted, .size = 11.5});
+    canvas.text({area.right() + 9, scale(tick) + 4}, readable(tick / prefix.factor), {.paint = paint::muted});
   }
 }
 
@@ -82,9 +81,15 @@ void draw_push(SvgCanvas& canvas, Point tip, Point outward, bool behind, const s
   const char* colour = behind ? hidden_push_paint : push_paint;
   canvas.line(tail, neck, {rim_paint, 5});
   canvas.line(tail, neck, {colour, 2.4, behind ? "4 3" : ""});
-  canvas.polygon(
-      {tip, {neck.x - half_width * uy, neck.y + half_width * ux}, {neck.x + half_width * uy, neck.y - half_width * ux}},
-      colour);
+  const auto tip_of = [&](double grown) {
+    const double half = half_width + grown;
+    const Point base{neck.x + grown * ux, neck.y + grown * uy};
+    return std::vector<Point>{{tip.x - grown * ux, tip.y - grown * uy},
+                              {base.x - half * uy, base.y + half * ux},
+                              {base.x + half * uy, base.y - half * ux}};
+  };
+  canvas.polygon(tip_of(2), rim_paint);
+  canvas.polygon(tip_of(0), colour);
   const Anchor anchor = ux > 0.3 ? Anchor::start : ux < -0.3 ? Anchor::end : Anchor::middle;
   canvas.text({tail.x + 6 * ux, tail.y + (uy < 0 ? -5 : 14)}, label,
               {.paint = colour, .anchor = anchor, .bold = true, .halo = rim_paint});
@@ -147,18 +152,18 @@ Figure body_figure(const VisibleSurface& surface, const DrawnDisplacement& drawn
   if (drawn.largest > 0.1 * diagonal(surface.positions)) {
     caption += " That is more than a tenth of the body's size: too far for linear elasticity.";
   }
-  constexpr double height = 520, side = 210;
-  SvgCanvas canvas(figure_width, height, "The deformed body", caption);
+  constexpr double height = 430, side = 76, key = 1.6 * panel_text;
+  SvgCanvas canvas(panel_width, height + 3 * key, "The deformed body", caption, panel_text);
   const PlacedPicture picture = place(canvas, deformed_picture(surface, drawn.magnified, value, frame, 1000),
-                                      {30, 44, figure_width - side - 60, height - 88});
+                                      {20, 30, panel_width - side - 30, height - 50});
   if (cycle != nullptr) draw_pushes(canvas, picture, surface, drawn, *cycle);
-  const double x = figure_width - side + 20;
-  draw_colour_bar(canvas, {x, 60, 20, 260}, drawn.largest);
-  canvas.text({x, 370}, factor_text(drawn.factor), {.bold = true});
-  draw_key(canvas, {x, 400}, rest_paint, false, "outline at rest");
-  draw_key(canvas, {x, 424}, fixed_paint, true, "held in place");
-  if (cycle != nullptr) draw_key(canvas, {x, 448}, paint::ink, false, "force; dashed: behind");
-  return {"body", "The deformed body", caption, canvas.str()};
+  draw_colour_bar(canvas, {panel_width - side + 14, 70, 16, 250}, drawn.largest);
+  draw_key(canvas, {8, height + key}, rest_paint, false, "outline at rest");
+  draw_key(canvas, {8, height + 2 * key}, fixed_paint, true, "held in place");
+  canvas.text({panel_width / 2, height + key}, factor_text(drawn.factor), {.bold = true});
+  if (cycle != nullptr)
+    draw_key(canvas, {panel_width / 2, height + 2 * key}, paint::ink, false, "force; dashed: behind");
+  return {"body", "The deformed body", caption, {canvas}};
 }
 
 Figure mesh_figure(const ModelSurface& surface, const ViewFrame& frame) {
@@ -169,22 +174,21 @@ Figure mesh_figure(const ModelSurface& surface, const ViewFrame& frame) {
       "{} are held in place.",
       finest, readable_count(surface.count(layout::node_touchable)), readable_count(surface.flags.size()),
       readable_count(surface.count(layout::node_fixed)));
-  constexpr double height = 430, width = figure_width / 2;
-  SvgCanvas canvas(figure_width, height, "Base and finest mesh", caption);
+  constexpr double height = 330, width = panel_width / 2, key = 1.6 * panel_text;
+  SvgCanvas canvas(panel_width, height + 3 * key, "Base and finest mesh", caption, panel_text);
   double x = 0;
   for (const int level : finest == 0 ? std::vector{0} : std::vector{0, finest}) {
     const VisibleSurface visible = surface.level(level);
     (void)place(canvas, wire_picture(visible, surface.touchable(level), surface.mesh.positions, frame, 800),
-                {x + 20, 10, width - 40, height - 80});
-    canvas.text({x + width / 2, height - 44},
-                fmt::format("level {}: {} nodes, {} triangles", level, readable_count(visible.positions.size()),
-                            readable_count(visible.triangles.size())),
+                {x + 6, 10, width - 12, height - 20});
+    canvas.text({x + width / 2, height + key},
+                fmt::format("level {}: {} nodes", level, readable_count(visible.positions.size())),
                 {.anchor = Anchor::middle});
     x += width;
   }
-  draw_key(canvas, {figure_width / 2 - 150, height - 12}, touchable_paint, true, "touchable");
-  draw_key(canvas, {figure_width / 2 + 10, height - 12}, fixed_paint, true, "held in place");
-  return {"meshes", "Base and finest mesh", caption, canvas.str()};
+  draw_key(canvas, {8, height + 2 * key}, touchable_paint, true, "may be touched");
+  draw_key(canvas, {panel_width / 2, height + 2 * key}, fixed_paint, true, "held in place");
+  return {"meshes", "Base and finest mesh", caption, {canvas}};
 }
 
 }  // namespace greenloop::offline

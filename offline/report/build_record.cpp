@@ -257,6 +257,7 @@ BuildRecord load_build_record(const std::filesystem::path& path) {
   record.scene = reader.text(root, "scene");
   record.request = reader.text(root, "request");
   record.model_bytes = reader.count(root, "bytes");
+  record.units_per_us = positive(reader, root, "units_per_us");
   read_stages(reader, root, record);
   for (const char* part : {"surface", "remesh", "volume", "solve"}) {
     if (const json* object = reader.object(root, part)) merge_facts(record.groups, fact_groups({{part, *object}}, ""));

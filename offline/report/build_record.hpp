@@ -52,6 +52,7 @@ struct BuildRecord {
   std::string scene;
   std::string request;                              ///< of the model; empty in records of earlier versions
   std::optional<unsigned long long> model_bytes{};  ///< of the whole model file
+  std::optional<double> units_per_us{};             ///< the speed that the scene states, or the nominal one
   std::vector<StageTime> stages;
   std::vector<FactGroup> groups;    ///< of every other object, "remesh", "solve", ..., and of wavelets compared
   std::optional<double> threshold;  ///< the chosen one

@@ -28,16 +28,28 @@ std::vector<Eigen::Vector3f> projected(const Camera& camera, const std::vector<V
   return pixels;
 }
 
+/// Outward normals of the vertices, as long as twice the area around.
+std::vector<Vector3d> area_normals(const std::vector<Vector3d>& positions, const VisibleSurface& surface) {
+  std::vector<Vector3d> normals(positions.size(), Vector3d::Zero());
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vector3d normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+    for (const int corner : {a, b, c}) normals[corner] += normal;
+  }
+  return normals;
+}
+
 /// What a view shows of the surface, each in 0..1.
 struct Visibility {
   double motion = 0;      ///< of the squared displacement
-  double sideways = 0;    ///< of the squared displacement within the picture plane
+  double facing = 0;      ///< of the squared displacement, by the cosine between normal and view
+  double touchable = 0;   ///< of the area that may be touched, likewise
   double fixed = 0;       ///< of the fixed vertices
   double silhouette = 0;  ///< of the picture
 };
 
 Visibility visibility(const VisibleSurface& surface, const std::vector<Vector3d>& displacement,
-                      const std::vector<Vector3d>& positions, const ViewFrame& frame) {
+                      const std::vector<Vector3d>& positions, const std::vector<Vector3d>& normals,
+                      const ViewFrame& frame) {
   constexpr int size = 96;
   constexpr float tolerance = 1.5F;  // pixels: a vertex lies on the triangles around it
   const Camera camera = fit_camera(frame, positions, size, 2);
@@ -45,22 +57,26 @@ Visibility visibility(const VisibleSurface& surface, const std::vector<Vector3d>
   DepthBuffer buffer(camera.width, camera.height);
   buffer.draw(pixels, surface.triangles);
 
-  double all_motion = 0, all_fixed = 0;
+  double all_motion = 0, all_fixed = 0, all_touchable = 0;
   Visibility seen;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vector3d motion = i < displacement.size() ? displacement[i] : Vector3d::Zero();
     const bool visible =
         pixels[i].allFinite() &&
         pixels[i].z() >= buffer.depth(static_cast<int>(pixels[i].x()), static_cast<int>(pixels[i].y())) - tolerance;
-    const double depth_motion = motion.dot(frame.towards);
+    const double area = surface.touchable.empty() || surface.touchable[i] ? normals[i].norm() : 0;
+    const double cosine = std::max(normals[i].normalized().dot(frame.towards), 0.0);
     all_motion += motion.squaredNorm();
     all_fixed += surface.fixed[i] ? 1 : 0;
+    all_touchable += area;
     if (!visible) continue;
     seen.motion += motion.squaredNorm();
-    seen.sideways += motion.squaredNorm() - depth_motion * depth_motion;
+    seen.facing += cosine * motion.squaredNorm();
+    seen.touchable += cosine * area;
     seen.fixed += surface.fixed[i] ? 1 : 0;
   }
-  if (all_motion > 0) seen.motion /= all_motion, seen.sideways /= all_motion;
+  if (all_motion > 0) seen.motion /= all_motion, seen.facing /= all_motion;
+  if (all_touchable > 0) seen.touchable /= all_touchable;
   if (all_fixed > 0) seen.fixed /= all_fixed;
   for (int y = 0; y < buffer.height(); ++y) {
     for (int x = 0; x < buffer.width(); ++x) seen.silhouette += buffer.triangle(x, y) != DepthBuffer::nothing ? 1 : 0;
@@ -125,6 +141,7 @@ Vector3d upright(const VisibleSurface& surface) {
 
 ViewFrame choose_view(const VisibleSurface& surface, const std::vector<Vector3d>& displacement) {
   const auto positions = moved(surface, displacement);
+  const auto normals = area_normals(positions, surface);
   const Vector3d up = upright(surface);
   const Vector3d ahead = up.unitOrthogonal(), aside = up.cross(ahead);
   ViewFrame best = view_frame(ahead, up);
@@ -134,10 +151,10 @@ ViewFrame choose_view(const VisibleSurface& surface, const std::vector<Vector3d>
       const Vector3d level = std::cos(azimuth * radians) * ahead + std::sin(azimuth * radians) * aside;
       const ViewFrame frame =
           view_frame(std::cos(elevation * radians) * level + std::sin(elevation * radians) * up, up);
-      const Visibility seen = visibility(surface, displacement, positions, frame);
+      const Visibility seen = visibility(surface, displacement, positions, normals, frame);
       const double steepness = std::abs(elevation - 15) / 90;
-      const double score =
-          seen.motion + 0.6 * seen.sideways + 0.3 * seen.silhouette + 0.25 * seen.fixed - 0.3 * steepness;
+      const double score = seen.motion + 0.8 * seen.facing + 0.5 * seen.touchable + 0.3 * seen.silhouette +
+                           0.25 * seen.fixed - 0.3 * steepness;
       if (score <= best_score + 1e-9) continue;
       best_score = score;
       best = frame;

@@ -10,7 +10,8 @@ namespace greenloop::offline {
 struct VisibleSurface {
   std::vector<Eigen::Vector3d> positions;  ///< m
   std::vector<std::array<int, 3>> triangles;
-  std::vector<char> fixed;  ///< per vertex: held in place
+  std::vector<char> fixed;           ///< per vertex: held in place
+  std::vector<char> touchable = {};  ///< per vertex: may be a contact; empty: all alike
 };
 
 /// An orthonormal, right-handed frame: to the right, upwards, and out of the picture.
@@ -43,9 +44,10 @@ struct Camera {
 /// Without fixed vertices, or when they surround the body, the longest side of the bounding box stands upright.
 [[nodiscard]] Eigen::Vector3d upright(const VisibleSurface& surface);
 
-/// The view that shows best where the surface moves: of a fixed set of directions the one from which most of the
-/// squared displacement is unhidden and seen from the side, then most of the fixed vertices. Without displacement
-/// (empty or zero): the broadest view. `displacement` in metres as it is to be drawn. Work: about 120 small z-buffers.
+/// The view from the touched side: of a fixed set of directions the one from which most of the squared displacement is
+/// unhidden and faces the viewer, then most of the fixed vertices. Without displacement (empty or zero): from which
+/// most of what may be touched faces the viewer, and broadly. `displacement` in metres as it is to be drawn. Work:
+/// about 120 small z-buffers.
 [[nodiscard]] ViewFrame choose_view(const VisibleSurface& surface, const std::vector<Eigen::Vector3d>& displacement);
 
 }  // namespace greenloop::offline

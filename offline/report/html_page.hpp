@@ -6,16 +6,9 @@
 
 #include "offline/report/figure.hpp"
 #include "offline/report/model_facts.hpp"
+#include "offline/report/verdict.hpp"
 
 namespace greenloop::offline {
-
-/// A number that stands out at the head of the page.
-struct KeyFigure {
-  enum class Mood { plain, good, bad };
-  std::string value;
-  std::string name;
-  Mood mood = Mood::plain;
-};
 
 /// Something the report could show but was not given.
 struct MissingInput {
@@ -29,10 +22,17 @@ class HtmlPage {
  public:
   HtmlPage(std::string_view title, std::string_view subtitle);
 
-  void key_figures(const std::vector<KeyFigure>& figures);
+  /// The sentence, and what was asked beside what is reached.
+  void verdict(const Verdict& verdict);
   void heading(std::string_view text);
   void paragraph(std::string_view text);
+  /// Figures of one panel side by side where there is room.
+  void figures(const std::vector<Figure>& figures);
+  /// One figure, its panels side by side where there is room.
   void figure(const Figure& figure);
+  /// What is added up to end_fold is shown where the reader opens `title`.
+  void begin_fold(std::string_view title);
+  void end_fold();
   /// Groups of facts side by side; values of several lines stand below them.
   void facts(const std::vector<FactGroup>& groups);
   void table(const Table& table, std::string_view caption);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "offline/report/axis.hpp"
@@ -61,27 +63,32 @@ Curve curve_of(const LevelPoints& level, Quantity error, Quantity cost) {
   return curve;
 }
 
-void draw_panel(SvgCanvas& canvas, const Rectangle& area, const LevelPoints& level, const char* cost_name,
-                const char* unit, Quantity cost) {
+/// Nothing if there are too few points for a plot.
+std::optional<SvgCanvas> panel(const std::string& heading, const std::string& caption, const LevelPoints& level,
+                               const char* cost_name, const char* unit, Quantity cost) {
   std::vector<Curve> curves;
   std::vector<double> errors, costs;
+  std::vector<LegendEntry> legend;
   for (const ErrorKind& kind : error_kinds) {
     curves.push_back(curve_of(level, kind.value, cost));
+    legend.push_back({kind.name, {kind.colour, 2}});
     for (const Point& point : curves.back().data) {
       errors.push_back(point.x);
       costs.push_back(point.y);
     }
   }
-  if (errors.size() < 2) return;
-  SvgPlot plot(canvas, area, logarithmic_axis("error", "%", errors), logarithmic_axis(cost_name, unit, costs));
-  std::vector<LegendEntry> legend;
+  if (errors.size() < 2) return {};
+  const PanelFrame frame = panel_frame(true, legend);
+  SvgCanvas canvas(panel_width, frame.height, heading, caption, panel_text);
+  canvas.text({frame.area.x, 1.2 * panel_text}, heading, {.bold = true});
+  SvgPlot plot(canvas, frame.area, logarithmic_axis("error", "%", errors), logarithmic_axis(cost_name, unit, costs));
   for (std::size_t i = 0; i < curves.size(); ++i) {
     plot.curve(curves[i].data, {error_kinds[i].colour, 1.8});
     plot.dots(curves[i].data, 2.5, error_kinds[i].colour);
     plot.dots(curves[i].chosen, 6, paint::none, {paint::ink, 2});
-    legend.push_back({error_kinds[i].name, {error_kinds[i].colour, 2}});
   }
   plot.legend(legend);
+  return canvas;
 }
 
 }  // namespace
@@ -89,8 +96,6 @@ void draw_panel(SvgCanvas& canvas, const Rectangle& area, const LevelPoints& lev
 bool has_level_frontiers(const BuildRecord& record) { return !by_level(record).empty(); }
 
 Figure level_frontiers_figure(const BuildRecord& record) {
-  constexpr double left = 74, right = 16, top = 64, gap = 84, height = 150, pitch = height + 112;
-  constexpr double width = (figure_width - left - right - gap) / 2;
   const std::string title = "Size and speed against error, level by level";
   std::string caption =
       "The same trials on each constraint level: bytes of the model cut off after it, work of a step that is resolved "
@@ -98,17 +103,15 @@ Figure level_frontiers_figure(const BuildRecord& record) {
       "patches; "
       "the other points are measured on a sample.";
   if (record.contacts) caption += fmt::format(" Work: {} contacts.", readable_count(*record.contacts));
-  const auto levels = by_level(record);
-  SvgCanvas canvas(figure_width, pitch * static_cast<double>(levels.size()), title, caption);
-  double y = top;
-  for (const auto& [number, level] : levels) {
-    canvas.text({left, y - 38}, fmt::format("constraint level {}", number), {.size = 13, .bold = true});
-    draw_panel(canvas, {left, y, width, height}, level, "size", "B", &LevelFrontierPoint::bytes);
-    draw_panel(canvas, {left + width + gap, y, width, height}, level, "work of a step", "units",
-               &LevelFrontierPoint::step_work);
-    y += pitch;
+  Figure figure{"level_frontiers", title, caption, {}};
+  for (const auto& [number, level] : by_level(record)) {
+    const std::string heading = fmt::format("constraint level {}", number);
+    for (auto& one : {panel(heading, caption, level, "size", "B", &LevelFrontierPoint::bytes),
+                      panel(heading, caption, level, "work of a step", "units", &LevelFrontierPoint::step_work)}) {
+      if (one) figure.panels.push_back(*one);
+    }
   }
-  return {"level_frontiers", title, caption, canvas.str()};
+  return figure;
 }
 
 }  // namespace greenloop::offline

@@ -13,7 +13,6 @@
 namespace greenloop::offline {
 namespace {
 
-constexpr double left = 74, top = 40, plot_height = 210, figure_height = top + plot_height + 48;
 constexpr std::array<const char*, 4> series_paints{paint::blue, paint::vermilion, paint::green, paint::purple};
 
 template <class Value>
@@ -30,7 +29,16 @@ PlotAxis time_axis(const std::vector<TraceCycle>& trace) {
   return {.label = "time [s]", .min = begin, .max = last + period};
 }
 
-Rectangle full_area() { return {left, top, figure_width - left - 20, plot_height}; }
+/// A plot over time in a panel of its own.
+struct TimePlot {
+  SvgCanvas canvas;
+  Rectangle area;
+};
+
+TimePlot time_plot(const std::string& title, const std::string& caption, const std::vector<LegendEntry>& legend) {
+  const PanelFrame frame = panel_frame(false, legend);
+  return {SvgCanvas(panel_width, frame.height, title, caption, panel_text), frame.area};
+}
 
 bool pushes(const std::vector<TraceCycle>& trace, std::size_t probe) {
   return std::any_of(trace.begin(), trace.end(),
@@ -79,6 +87,21 @@ PlotAxis force_axis(const std::vector<Point>& total, const std::vector<Series>& 
   return axis;
 }
 
+/// Linear from zero; logarithmic where the work is so small a part of the budget that it would lie on the axis.
+PlotAxis work_axis(const std::vector<TraceCycle>& trace, const TraceSummary& summary) {
+  constexpr double small_part = 0.2;
+  std::uint64_t largest = summary.worst_work, least = std::max<std::uint64_t>(summary.worst_work, 1);
+  for (const TraceCycle& cycle : trace) {
+    largest = std::max(largest, cycle.budget);
+    if (cycle.work > 0) least = std::min(least, cycle.work);
+  }
+  const auto most = static_cast<double>(largest);
+  if (summary.worst_work == 0 || static_cast<double>(summary.worst_work) > small_part * most) {
+    return axis_from_zero("work", summary.worst_work > 0 ? "units" : "", most);
+  }
+  return logarithmic_axis("work", "units", {static_cast<double>(least), most});
+}
+
 std::string seconds(double time) { return readable(time) + "\u202fs"; }
 
 }  // namespace
@@ -92,84 +115,78 @@ Figure force_figure(const std::vector<TraceCycle>& trace) {
       fmt::format("Force of the body on the {}. Largest: {} at {} on {} contact nodes.",
                   components || parts.size() < 2 ? "probe" : "probes, total being the sum of their magnitudes",
                   readable(strongest.force, 3) + "\u202fN", seconds(strongest.time), strongest.contacts);
-  SvgCanvas canvas(figure_width, figure_height, "Force over time", caption);
-  SvgPlot plot(canvas, full_area(), time_axis(trace), force_axis(total, parts));
   const Stroke total_stroke{paint::muted, 4, "", 0.5};
-  plot.curve(total, total_stroke);
   std::vector<LegendEntry> legend{{components ? "magnitude" : "total", total_stroke}};
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Stroke stroke{series_paints[i % series_paints.size()], 1.2};
-    plot.curve(parts[i].data, stroke);
-    legend.push_back({parts[i].name, stroke});
+    legend.push_back({parts[i].name, {series_paints[i % series_paints.size()], 1.2}});
   }
+  TimePlot panel = time_plot("Force over time", caption, legend);
+  SvgPlot plot(panel.canvas, panel.area, time_axis(trace), force_axis(total, parts));
+  plot.curve(total, total_stroke);
+  for (std::size_t i = 0; i < parts.size(); ++i) plot.curve(parts[i].data, legend[i + 1].stroke);
   plot.legend(legend);
-  return {"force", "Force over time", caption, canvas.str()};
+  return {"force", "Force over time", caption, {panel.canvas}};
 }
 
 Figure work_figure(const std::vector<TraceCycle>& trace) {
   const TraceSummary summary = summarise(trace);
-  const auto work = over_time(trace, [](const TraceCycle& cycle) { return cycle.work; });
-  const auto budget = over_time(trace, [](const TraceCycle& cycle) { return cycle.budget; });
+  const PlotAxis axis = work_axis(trace, summary);
+  const auto work =
+      over_time(trace, [&](const TraceCycle& cycle) { return std::max(static_cast<double>(cycle.work), axis.min); });
+  const auto budget =
+      over_time(trace, [&](const TraceCycle& cycle) { return std::max(static_cast<double>(cycle.budget), axis.min); });
   std::vector<Point> misses;
-  std::uint64_t largest = summary.worst_work;
-  for (const TraceCycle& cycle : trace) {
-    largest = std::max(largest, cycle.budget);
-    if (cycle.missed()) misses.push_back({cycle.time, static_cast<double>(cycle.work)});
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    if (trace[i].missed()) misses.push_back(work[i]);
   }
-  const std::string caption =
-      fmt::format("Work of each cycle; one unit is one multiply-add. The dearest cycle took {} of its budget. {}",
-                  readable_percent(summary.worst_share),
-                  misses.empty() ? fmt::format("No miss in {} cycles.", readable_count(summary.cycles))
-                                 : fmt::format("Crosses: {} of {} cycles missed (over budget or held).",
-                                               readable_count(misses.size()), readable_count(summary.cycles)));
-  SvgCanvas canvas(figure_width, figure_height, "Work per cycle against the budget", caption);
-  SvgPlot plot(canvas, full_area(), time_axis(trace),
-               axis_from_zero("work", summary.worst_work > 0 ? "units" : "", static_cast<double>(largest)));
+  const std::string caption = fmt::format(
+      "Work of each cycle{}; a unit is an instruction at the default prices. The dearest cycle took {} of its budget. "
+      "{}",
+      axis.logarithmic ? ", on a logarithmic scale" : "", readable_percent(summary.worst_share),
+      misses.empty() ? fmt::format("No miss in {} cycles.", readable_count(summary.cycles))
+                     : fmt::format("Crosses: {} of {} cycles missed (over budget or held).",
+                                   readable_count(misses.size()), readable_count(summary.cycles)));
+  std::vector<LegendEntry> legend{{"work of the cycle", {paint::blue, 2}}, {"budget", {paint::ink, 1.6, "7 4"}}};
+  if (!misses.empty()) {
+    legend.push_back({fmt::format("missed ({})", readable_count(misses.size())), {paint::vermilion}, true});
+  }
+  TimePlot panel = time_plot("Work per cycle against the budget", caption, legend);
+  SvgPlot plot(panel.canvas, panel.area, time_axis(trace), axis);
   plot.area_below(work, paint::blue, 0.15);
   plot.curve(work, {paint::blue, 1.2});
   plot.steps(budget, {paint::ink, 1.6, "7 4"});
-  std::vector<LegendEntry> legend{{"work of the cycle", {paint::blue, 2}}, {"budget", {paint::ink, 1.6, "7 4"}}};
-  if (!misses.empty()) {
-    plot.crosses(misses, paint::vermilion);
-    legend.push_back({fmt::format("missed ({})", readable_count(misses.size())), {paint::vermilion}, true});
-  }
+  plot.crosses(misses, paint::vermilion);
   plot.legend(legend);
-  return {"work", "Work per cycle against the budget", caption, canvas.str()};
+  return {"work", "Work per cycle against the budget", caption, {panel.canvas}};
 }
 
 Figure levels_figure(const std::vector<TraceCycle>& trace, std::size_t levels) {
   const TraceSummary summary = summarise(trace);
   std::size_t answered = 0, shown = std::max<std::size_t>(levels, summary.cycles_at_level.size());
   for (const std::size_t count : summary.cycles_at_level) answered += count;
-  for (const TraceCycle& cycle : trace)
+  for (const TraceCycle& cycle : trace) {
     shown = std::max<std::size_t>(shown, std::max(cycle.level, cycle.field_level) + 1);
-  const std::string caption = fmt::format(
-      "Level at which each cycle was resolved; {} is the finest. Right: share of the {} answered cycles in contact.",
-      shown - 1, readable_count(answered));
-  SvgCanvas canvas(figure_width, figure_height, "Levels used", caption);
-  constexpr double histogram_width = 190;
-  const Rectangle area{left, top, figure_width - left - histogram_width - 50, plot_height};
-  const PlotAxis y{.label = "level", .min = -0.5, .max = static_cast<double>(shown) - 0.5, .whole = true};
-  SvgPlot plot(canvas, area, time_axis(trace), y);
+  }
+  std::string shares;
+  for (std::size_t level = summary.cycles_at_level.size(); level-- > 0 && answered > 0;) {
+    const auto count = static_cast<double>(summary.cycles_at_level[level]);
+    if (count > 0) {
+      shares += fmt::format("{}{} at level {}", shares.empty() ? "" : ", ",
+                            readable_percent(count / static_cast<double>(answered)), level);
+    }
+  }
+  const std::string caption =
+      fmt::format("Level at which each cycle was resolved; {} is the finest. Of the {} answered cycles in contact: {}.",
+                  shown - 1, readable_count(answered), shares.empty() ? "none" : shares);
   const Stroke constraint{paint::blue, 1.5}, field{paint::orange, 3.6};
+  const std::vector<LegendEntry> legend{{"constraint level", constraint}, {"field level", field}};
+  TimePlot panel = time_plot("Levels used", caption, legend);
+  const PlotAxis y{.label = "level", .min = -0.5, .max = static_cast<double>(shown) - 0.5, .whole = true};
+  SvgPlot plot(panel.canvas, panel.area, time_axis(trace), y);
   plot.steps(over_time(trace, [](const TraceCycle& cycle) { return cycle.field_level; }), field);
   plot.steps(over_time(trace, [](const TraceCycle& cycle) { return cycle.level; }), constraint);
-  plot.legend({{"constraint level", constraint}, {"field level", field}});
-
-  // the histogram stands beside the curve, on the same rows
-  const double x = area.right() + 24, room = histogram_width - 58;
-  canvas.text({x, top - 12}, "cycles at constraint level");
-  for (std::size_t level = 0; level < shown; ++level) {
-    const double count =
-        level < summary.cycles_at_level.size() ? static_cast<double>(summary.cycles_at_level[level]) : 0;
-    const double share = answered > 0 ? count / static_cast<double>(answered) : 0;
-    const double middle = plot.at(0, static_cast<double>(level)).y;
-    const double thickness = std::min(0.6 * plot_height / static_cast<double>(shown), 30.0);
-    canvas.rectangle({x, middle - thickness / 2, share * room, thickness}, paint::blue);
-    canvas.text({x + share * room + 6, middle + 4}, readable_percent(share), {.paint = paint::muted, .size = 11.5});
-  }
-  canvas.line({x, top}, {x, top + plot_height}, {paint::rule, 1.2});
-  return {"levels", "Levels used", caption, canvas.str()};
+  plot.legend(legend);
+  return {"levels", "Levels used", caption, {panel.canvas}};
 }
 
 }  // namespace greenloop::offline

@@ -94,8 +94,18 @@ TEST_CASE("the chosen view sees the dent wherever it is") {
        {Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, -1, 0), Vector3d(0.48, 0.64, 0.6)}) {
     CAPTURE(centre.transpose());
     const ViewFrame frame = choose_view(surface, dent(surface, centre));
-    CHECK(frame.towards.dot(centre) > 0.2);
+    CHECK(frame.towards.dot(centre) > 0.7);
     CHECK(frame.up.z() > 0);
+  }
+}
+
+TEST_CASE("a body at rest is seen from where it may be touched") {
+  VisibleSurface surface = sphere();
+  for (const Vector3d& side : {Vector3d(1, 0, 0), Vector3d(0, -1, 0), Vector3d(-0.8, 0.6, 0)}) {
+    CAPTURE(side.transpose());
+    surface.touchable.clear();
+    for (const Vector3d& position : surface.positions) surface.touchable.push_back(position.dot(side) > 0.5);
+    CHECK(choose_view(surface, {}).towards.dot(side) > 0.7);
   }
 }
 

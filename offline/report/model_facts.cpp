@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "formats/stored_blocks.hpp"
 #include "formats/write/describe.hpp"
+#include "formats/write/nested_json.hpp"
 #include "offline/compress/measure/field_size.hpp"
 #include "offline/report/axis.hpp"
 
@@ -115,11 +117,11 @@ FactGroup compression_facts(const ModelView& model) {
                    {"fewer blocks by", times(static_cast<double>(finest.dense_blocks) / kept)},
                    {"wavelet", std::string(wavelet_name(model.info->wavelet))},
                    {"couplings by bits per value", coupling_bits(model)},
-                   {"RMS error", readable_percent(finest.rms_error)},
-                   {"worst column's error", readable_percent(finest.worst_column_error)},
-                   {"worst patch force's error", readable_percent(finest.patch_force_error)},
-                   {"field's RMS error", readable_percent(finest.field_rms_error)},
-                   {"field's worst column", readable_percent(finest.field_column_error)},
+                   {"compression error, RMS", readable_percent(finest.rms_error)},
+                   {"compression error, worst column", readable_percent(finest.worst_column_error)},
+                   {"compression error, worst patch force", readable_percent(finest.patch_force_error)},
+                   {"compression error of the field, RMS", readable_percent(finest.field_rms_error)},
+                   {"compression error of the field, worst column", readable_percent(finest.field_column_error)},
                    {"positive definite", certificate(model)},
                    {"threshold", readable(model.info->threshold)},
                    {"asymmetry of the exact columns", readable(model.info->store_asymmetry, 2)}}};
@@ -192,6 +194,25 @@ Table level_table(const ModelView& model, const std::optional<TraceSummary>& tra
     const std::size_t used = c < trace->cycles_at_level.size() ? trace->cycles_at_level[c] : 0;
     table.rows.back().push_back(
         answered > 0 ? readable_percent(static_cast<double>(used) / static_cast<double>(answered)) : "–");
+  }
+  return table;
+}
+
+Table mesh_error_table(const ModelView& model) {
+  Table table{{"place [mm]", "direction", "mesh error"}, {}};
+  if (!is_shallow({model.provenance.data(), model.provenance.size()})) return table;
+  const auto root = nlohmann::json::parse(model.provenance.begin(), model.provenance.end(), nullptr, false);
+  const nlohmann::json::json_pointer patches("/mesh_error/patches");
+  if (!root.is_object() || !root.contains(patches) || !root[patches].is_array()) return table;
+  for (const auto& patch : root[patches]) {
+    if (!patch.is_object() || !patch.contains("error") || !patch["error"].is_number()) continue;
+    std::string place;
+    for (const auto& x : patch.value("center", nlohmann::json::array())) {
+      place += (place.empty() ? "" : ", ") + (x.is_number() ? readable(1000 * x.get<double>(), 3) : "?");
+    }
+    const bool named = patch.contains("axis") && patch["axis"].is_string();
+    table.rows.push_back(
+        {place, named ? patch["axis"].get<std::string>() : "?", readable_percent(patch["error"].get<double>())});
   }
   return table;
 }

@@ -45,6 +45,9 @@ struct LevelErrors {
 /// share of the answered cycles if there is a trace.
 [[nodiscard]] Table level_table(const ModelView& model, const std::optional<TraceSummary>& trace);
 
+/// The patches that the build's mesh error was estimated on, as its provenance tells; no rows if it does not.
+[[nodiscard]] Table mesh_error_table(const ModelView& model);
+
 /// Of every constraint level in the file, coarse to fine.
 [[nodiscard]] std::vector<LevelErrors> level_errors(const ModelView& model);
 

@@ -12,14 +12,12 @@
 namespace greenloop::offline {
 namespace {
 
-constexpr double bar_pitch = 28, bar_labels = 190;
-
 Figure bar_figure(const std::string& name, const std::string& title, const std::string& caption,
                   const std::vector<Bar>& bars) {
-  const double height = bar_pitch * static_cast<double>(bars.size());
-  SvgCanvas canvas(figure_width, height + 16, title, caption);
-  horizontal_bars(canvas, {bar_labels, 8, figure_width - bar_labels - 20, height}, bars);
-  return {name, title, caption, canvas.str()};
+  const double height = 2.6 * panel_text * static_cast<double>(bars.size());
+  SvgCanvas canvas(panel_width, height + 4, title, caption, panel_text);
+  horizontal_bars(canvas, {8, 0, panel_width - 16, height}, bars);
+  return {name, title, caption, {canvas}};
 }
 
 using Quantity = std::optional<double> FrontierPoint::*;
@@ -61,13 +59,13 @@ bool chosen(const BuildRecord& record, const FrontierPoint& point) {
 /// Rings the chosen point; names its threshold and that of others as far as their texts keep clear of each other.
 void label_thresholds(SvgCanvas& canvas, const SvgPlot& plot, const Rectangle& area, const BuildRecord& record,
                       const Panel& panel) {
-  constexpr double room = 48;
+  constexpr double room = 5 * panel_text;
   std::vector<double> taken;
   const auto label = [&](std::size_t i, const std::string& colour, bool bold) {
     const Point at = plot.at(panel.data[i].x, panel.data[i].y);
     taken.push_back(at.x);
     canvas.text({at.x + 9, at.y - 7}, readable(panel.points[i].threshold, 2),
-                {.paint = colour, .size = 11.5, .bold = bold});
+                {.paint = colour, .bold = bold, .halo = paint::page});
   };
   for (std::size_t i = 0; i < panel.data.size(); ++i) {
     if (!chosen(record, panel.points[i])) continue;
@@ -79,29 +77,32 @@ void label_thresholds(SvgCanvas& canvas, const SvgPlot& plot, const Rectangle& a
   for (std::size_t i = 0; i < panel.data.size(); ++i) {
     const double x = plot.at(panel.data[i].x, panel.data[i].y).x;
     const bool clear = std::none_of(taken.begin(), taken.end(), [&](double t) { return std::abs(t - x) < room; });
-    if (clear && x < area.right() - 40) label(i, paint::muted, false);
+    if (clear && x < area.right() - 3 * panel_text) label(i, paint::muted, false);
   }
 }
 
-void draw_panel(SvgCanvas& canvas, const Rectangle& area, const BuildRecord& record, const Panel& panel) {
+SvgCanvas drawn(const BuildRecord& record, const Panel& panel, const std::string& title, const std::string& caption) {
   std::vector<double> errors, costs;
   for (const Point& point : panel.data) {
     errors.push_back(point.x);
     costs.push_back(point.y);
   }
-  SvgPlot plot(canvas, area, logarithmic_axis(panel.error, "%", errors),
-               logarithmic_axis(panel.cost, panel.unit, costs));
-  std::vector<Point> by_error = panel.data;
-  std::sort(by_error.begin(), by_error.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
-  plot.curve(by_error, {paint::blue, 1.8});
-  plot.dots(panel.data, 3.5, paint::blue);
-  label_thresholds(canvas, plot, area, record, panel);
   std::vector<LegendEntry> legend{{"tried", {paint::blue, 2}}};
   if (std::any_of(panel.points.begin(), panel.points.end(),
                   [&](const FrontierPoint& point) { return chosen(record, point); })) {
     legend.push_back({"chosen", {paint::vermilion}, true});
   }
+  const PanelFrame frame = panel_frame(false, legend);
+  SvgCanvas canvas(panel_width, frame.height, title, caption, panel_text);
+  SvgPlot plot(canvas, frame.area, logarithmic_axis(panel.error, "%", errors),
+               logarithmic_axis(panel.cost, panel.unit, costs));
+  std::vector<Point> by_error = panel.data;
+  std::sort(by_error.begin(), by_error.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
+  plot.curve(by_error, {paint::blue, 1.8});
+  plot.dots(panel.data, 3.5, paint::blue);
+  label_thresholds(canvas, plot, frame.area, record, panel);
   plot.legend(legend);
+  return canvas;
 }
 
 /// One curve of the level figure; errors of zero have no place on its axis.
@@ -142,50 +143,43 @@ Figure bytes_figure(const std::vector<KindBytes>& kinds) {
 bool has_frontier(const BuildRecord& record) { return !panels(record).empty(); }
 
 Figure frontier_figure(const BuildRecord& record) {
-  constexpr double left = 66, right = 16, top = 40, gap = 78, height = 230;
-  const auto drawn = panels(record);
-  const auto count = static_cast<double>(drawn.size());
-  const double width = (figure_width - left - right - gap * (count - 1)) / count;
+  const std::string title = "Size and speed against error";
   std::string caption =
       "Each point is the same set of Green's functions compressed with another threshold, which is written beside it, "
       "and measured against the exact columns. Down is cheaper, left is more exact.";
   if (record.patches) caption += fmt::format(" Patch forces: {} patches.", readable_count(*record.patches));
   if (record.threshold) caption += fmt::format(" This model: {}.", readable(*record.threshold, 3));
-  SvgCanvas canvas(figure_width, top + height + 48, "Size and speed against error", caption);
-  double x = left;
-  for (const Panel& one : drawn) {
-    draw_panel(canvas, {x, top, width, height}, record, one);
-    x += width + gap;
-  }
-  return {"frontier", "Size and speed against error", caption, canvas.str()};
+  Figure figure{"frontier", title, caption, {}};
+  for (const Panel& one : panels(record)) figure.panels.push_back(drawn(record, one, title, caption));
+  return figure;
 }
 
 bool has_level_errors(const std::vector<LevelErrors>& levels) { return !error_curves(levels).empty(); }
 
 Figure level_errors_figure(const std::vector<LevelErrors>& levels) {
-  constexpr double left = 74, top = 40, height = 200;
-  const std::string title = "Error of each constraint level";
+  const std::string title = "Compression error of each constraint level";
   const std::string caption =
       "The compliance of each constraint level against the exact one: all of it, its worst column, and the nodal "
       "forces "
       "that hold its worst patch.";
-  SvgCanvas canvas(figure_width, top + height + 48, title, caption);
   const auto curves = error_curves(levels);
   std::vector<double> values;
+  std::vector<LegendEntry> legend;
   for (const ErrorCurve& curve : curves) {
     for (const Point& point : curve.data) values.push_back(point.y);
+    legend.push_back({curve.name, {curve.colour, 2}});
   }
+  const PanelFrame frame = panel_frame(false, legend);
+  SvgCanvas canvas(panel_width, frame.height, title, caption, panel_text);
   const PlotAxis across{
       .label = "constraint level", .min = levels.front().level - 0.3, .max = levels.back().level + 0.3, .whole = true};
-  SvgPlot plot(canvas, {left, top, figure_width - left - 20, height}, across, logarithmic_axis("error", "%", values));
-  std::vector<LegendEntry> legend;
+  SvgPlot plot(canvas, frame.area, across, logarithmic_axis("error", "%", values));
   for (const ErrorCurve& curve : curves) {
     plot.curve(curve.data, {curve.colour, 1.8});
     plot.dots(curve.data, 3.5, curve.colour);
-    legend.push_back({curve.name, {curve.colour, 2}});
   }
   plot.legend(legend);
-  return {"level_errors", title, caption, canvas.str()};
+  return {"level_errors", title, caption, {canvas}};
 }
 
 Figure stages_figure(const std::vector<StageTime>& stages) {

@@ -29,7 +29,8 @@ VisibleSurface ModelSurface::level(int l) const {
   const auto end = static_cast<std::ptrdiff_t>(mesh.vertex_end[l]);
   return {.positions = {mesh.positions.begin(), mesh.positions.begin() + end},
           .triangles = triangles_of_level(mesh, l),
-          .fixed = with_flag(flags, mesh.vertex_end[l], layout::node_fixed)};
+          .fixed = with_flag(flags, mesh.vertex_end[l], layout::node_fixed),
+          .touchable = touchable(l)};
 }
 
 std::vector<char> ModelSurface::touchable(int l) const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,15 +42,45 @@ constexpr ErrorKind error_kinds[] = {{"field error", &layout::PatternRecord::fie
 
 double drawn(float error) { return std::clamp(double{error}, least_error, most_error); }
 
-void draw_panel(SvgCanvas& canvas, const Rectangle& area, Records records, const ErrorKind& what) {
+// of the kinds in the model, in their order
+std::vector<KindStyle> kinds_of(const ModelView& model) {
+  std::vector<KindStyle> present;
+  for (const KindStyle& style : kind_styles) {
+    const bool measured = std::any_of(model.level, model.level + model.levels, [&](const LevelView& level) {
+      return std::any_of(level.patterns.begin(), level.patterns.end(),
+                         [&](const auto& record) { return record.kind == static_cast<std::uint32_t>(style.kind); });
+    });
+    if (measured) present.push_back(style);
+  }
+  return present;
+}
+
+SvgCanvas legend_panel(const std::vector<KindStyle>& kinds, const std::string& title, const std::string& caption) {
+  constexpr double em = panel_text, pitch = 1.7 * em, column = panel_width / 3;
+  const double rows = std::ceil(static_cast<double>(kinds.size()) / 3);
+  SvgCanvas canvas(panel_width, rows * pitch + em, title, caption, em);
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const std::size_t row = i / 3;
+    const double x = 8 + column * static_cast<double>(i % 3), y = pitch * static_cast<double>(1 + row);
+    canvas.line({x, y - em / 3}, {x + 22, y - em / 3}, {kinds[i].colour, 2, kinds[i].dashes});
+    canvas.circle({x + 11, y - em / 3}, 3, kinds[i].colour);
+    canvas.text({x + 28, y}, pattern_name(static_cast<std::uint32_t>(kinds[i].kind)));
+  }
+  return canvas;
+}
+
+SvgCanvas panel(const std::string& heading, const std::string& caption, Records records, const ErrorKind& what) {
   std::vector<double> errors;
   double most_contacts = 1;
   for (const auto& record : records) {
     errors.push_back(drawn((record.*what.error)[2]));
     most_contacts = std::max(most_contacts, double{1} * record.contacts);
   }
+  const PanelFrame frame = panel_frame(true, {});
+  SvgCanvas canvas(panel_width, frame.height, heading, caption, panel_text);
+  canvas.text({frame.area.x, 1.2 * panel_text}, heading, {.bold = true});
   const PlotAxis across{.label = "contacts", .min = 0.75, .max = 1.35 * most_contacts, .logarithmic = true};
-  SvgPlot plot(canvas, area, across, logarithmic_axis(what.name, "%", errors));
+  SvgPlot plot(canvas, frame.area, across, logarithmic_axis(what.name, "%", errors));
   for (const KindStyle& style : kind_styles) {
     std::vector<Point> data;
     for (const auto& record : records) {
@@ -59,30 +90,7 @@ void draw_panel(SvgCanvas& canvas, const Rectangle& area, Records records, const
     plot.curve(data, {style.colour, 1.8, style.dashes});
     plot.dots(data, 3, style.colour);
   }
-}
-
-// lines and names of all kinds in the model, in rows
-void draw_legend(SvgCanvas& canvas, Point at, double width, const ModelView& model) {
-  constexpr double size = 11.5, line = 18, gap = 16, pitch = 18;
-  double x = at.x;
-  for (const KindStyle& style : kind_styles) {
-    const auto number = static_cast<std::uint32_t>(style.kind);
-    const bool present = std::any_of(model.level, model.level + model.levels, [&](const LevelView& level) {
-      return std::any_of(level.patterns.begin(), level.patterns.end(),
-                         [&](const auto& record) { return record.kind == number; });
-    });
-    if (!present) continue;
-    const auto name = pattern_name(number);
-    const double needed = line + 6 + text_width(name, size);
-    if (x > at.x && x + needed > at.x + width) {
-      x = at.x;
-      at.y += pitch;
-    }
-    canvas.line({x, at.y - 4}, {x + line, at.y - 4}, {style.colour, 2, style.dashes});
-    canvas.circle({x + line / 2, at.y - 4}, 3, style.colour);
-    canvas.text({x + line + 6, at.y}, name, {.paint = paint::muted, .size = size});
-    x += needed + gap;
-  }
+  return canvas;
 }
 
 }  // namespace
@@ -93,31 +101,21 @@ bool has_patterns(const ModelView& model) {
 }
 
 Figure patterns_figure(const ModelView& model) {
-  constexpr double left = 74, right = 16, legend = 46, top = 26, gap = 84, height = 150, pitch = height + 96;
-  constexpr double width = (figure_width - left - right - 2 * gap) / 3;
   const std::string title = "What people do";
   const std::string caption =
       "The worst errors of the model's answers to contacts spread all over the surface, against the exact answers of "
       "the "
       "finest level to the same contacts: of the field in its own norm, of the worst node over the largest "
       "displacement, of the nodal forces. Beyond 0.001 and 1000 % points stand at the edge.";
-  const auto measured = std::count_if(model.level, model.level + model.levels,
-                                      [](const LevelView& level) { return !level.patterns.empty(); });
-  SvgCanvas canvas(figure_width, legend + pitch * static_cast<double>(measured), title, caption);
-  draw_legend(canvas, {left, 16}, figure_width - left - right, model);
-  double y = legend + top;
+  Figure figure{"patterns", title, caption, {legend_panel(kinds_of(model), title, caption)}};
   for (std::uint32_t level = model.levels; level-- > 0;) {
     const Records records = model.level[level].patterns;
     if (records.empty()) continue;
-    canvas.text({left, y - 10}, fmt::format("constraint level {}", level), {.size = 13, .bold = true});
-    double x = left;
     for (const ErrorKind& what : error_kinds) {
-      draw_panel(canvas, {x, y, width, height}, records, what);
-      x += width + gap;
+      figure.panels.push_back(panel(fmt::format("{}, constraint level {}", what.name, level), caption, records, what));
     }
-    y += pitch;
   }
-  return {"patterns", title, caption, canvas.str()};
+  return figure;
 }
 
 }  // namespace greenloop::offline

@@ -17,6 +17,7 @@
 #include "offline/report/model_surface.hpp"
 #include "offline/report/pattern_figures.hpp"
 #include "offline/report/trace.hpp"
+#include "offline/report/verdict.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -77,24 +78,14 @@ Material read_material(const ModelView& model, const ReportInputs& inputs) {
   return material;
 }
 
-std::vector<KeyFigure> loop_keys(const TraceSummary& summary) {
-  const auto mood = summary.misses == 0 ? KeyFigure::Mood::good : KeyFigure::Mood::bad;
-  return {{readable_count(summary.misses), fmt::format("misses in {} cycles", readable_count(summary.cycles)), mood},
-          {readable_percent(summary.worst_share), "of the budget, at most",
-           summary.worst_share <= 1 ? KeyFigure::Mood::good : KeyFigure::Mood::bad}};
-}
-
-std::vector<KeyFigure> key_figures(const Material& material) {
-  std::vector<KeyFigure> keys;
-  if (material.summary) keys = loop_keys(*material.summary);
+/// The model in a line.
+std::string summary_text(const Material& material) {
   const auto file = static_cast<double>(material.model.header->file_bytes);
-  keys.push_back({readable_count(material.model.node_count), "surface nodes"});
-  keys.push_back({readable_bytes(file), "model file"});
-  keys.push_back({readable(static_cast<double>(dense_bytes(material.model)) / file, 3) + "×", "smaller than dense"});
-  const layout::Level& finest = *material.model.level[material.model.levels - 1].counts;
-  keys.push_back({readable_percent(finest.field_rms_error), "RMS error of the field"});
-  keys.push_back({readable_percent(finest.patch_force_error), "worst error of a patch's forces"});
-  return keys;
+  std::string text =
+      fmt::format("{} surface nodes · {}, {}× smaller than dense", readable_count(material.model.node_count),
+                  readable_bytes(file), readable(static_cast<double>(dense_bytes(material.model)) / file, 3));
+  if (material.build && !material.build->scene.empty()) text += " · scene " + material.build->scene;
+  return text;
 }
 
 /// How often each refusal occurred, in words; empty if none did.
@@ -114,15 +105,15 @@ std::string held_text(const std::vector<TraceCycle>& trace) {
   return text.empty() ? text : text + ".";
 }
 
-void add_loop(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
-  if (!material.trace) return;
-  for (Figure& figure : std::vector{force_figure(*material.trace), work_figure(*material.trace),
-                                    levels_figure(*material.trace, material.model.levels)}) {
-    page.figure(figure);
-    figures.push_back(std::move(figure));
-  }
-  const std::string held = held_text(*material.trace);
-  if (!held.empty()) page.paragraph(held);
+/// Adds figures of one panel to the page, and to all figures.
+void add_figures(std::vector<Figure> group, HtmlPage& page, std::vector<Figure>& figures) {
+  page.figures(group);
+  for (Figure& figure : group) figures.push_back(std::move(figure));
+}
+
+void add_figure(Figure figure, HtmlPage& page, std::vector<Figure>& figures) {
+  page.figure(figure);
+  figures.push_back(std::move(figure));
 }
 
 /// The deformed body if there is a snapshot; the meshes always.
@@ -135,37 +126,62 @@ std::vector<Figure> body_pictures(const Material& material) {
   return {body_figure(finest, drawn, frame, cycle), mesh_figure(material.surface, frame)};
 }
 
-void add_figure(Figure figure, HtmlPage& page, std::vector<Figure>& figures) {
-  page.figure(figure);
-  figures.push_back(std::move(figure));
+void add_run(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  if (!material.trace) return;
+  page.heading("The run");
+  add_figures({force_figure(*material.trace), work_figure(*material.trace),
+               levels_figure(*material.trace, material.model.levels)},
+              page, figures);
+  const std::string held = held_text(*material.trace);
+  if (!held.empty()) page.paragraph(held);
 }
 
-void add_model(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
-  if (material.build && has_frontier(*material.build)) add_figure(frontier_figure(*material.build), page, figures);
-  if (material.build && has_level_frontiers(*material.build)) {
-    add_figure(level_frontiers_figure(*material.build), page, figures);
-  }
-  page.heading("Constraint levels");
+void add_errors(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  page.begin_fold("Errors, level by level");
   page.table(
       level_table(material.model, material.summary),
-      "Errors of a level's compliance against the exact one; blocks and bytes of scales and couplings from level "
-      "0 up to it; patch force: worst relative error of the nodal forces that hold a sampled 64-node patch.");
+      "Compression error of a level's compliance against the exact one; blocks and bytes of scales and couplings from "
+      "level 0 up to it; patch force: worst relative error of the nodal forces that hold a sampled 64-node patch.");
   const auto errors = level_errors(material.model);
   if (has_level_errors(errors)) add_figure(level_errors_figure(errors), page, figures);
   if (has_patterns(material.model)) add_figure(patterns_figure(material.model), page, figures);
-  add_figure(bytes_figure(bytes_by_kind(material.model)), page, figures);
+  const Table mesh = mesh_error_table(material.model);
+  if (!mesh.rows.empty()) {
+    page.table(
+        mesh,
+        "Mesh error: the forces of pressed patches, of linear tetrahedra over those of quadratic elements on the "
+        "same tetrahedra, less 1; by place and direction, the worst first.");
+  }
+  page.end_fold();
+}
+
+void add_frontiers(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  const bool frontier = material.build && has_frontier(*material.build);
+  const bool by_level = material.build && has_level_frontiers(*material.build);
+  if (!frontier && !by_level) return;
+  page.begin_fold("Other thresholds: size and speed against error");
+  if (frontier) add_figure(frontier_figure(*material.build), page, figures);
+  if (by_level) add_figure(level_frontiers_figure(*material.build), page, figures);
+  page.end_fold();
+}
+
+void add_size(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  page.begin_fold("The model in numbers");
+  page.facts(model_facts(material.model, material.surface));
+  std::vector<Figure> bars{bytes_figure(bytes_by_kind(material.model))};
+  if (material.build && !material.build->stages.empty()) bars.push_back(stages_figure(material.build->stages));
+  add_figures(std::move(bars), page, figures);
+  page.end_fold();
 }
 
 /// Provenance in the model, completed by the record of the build.
-void add_build(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
-  if (material.build && !material.build->stages.empty()) {
-    add_figure(stages_figure(material.build->stages), page, figures);
-  }
+void add_provenance(const Material& material, HtmlPage& page) {
   auto groups = facts_of_json({material.model.provenance.data(), material.model.provenance.size()}, "provenance");
   if (material.build) merge_facts(groups, material.build->groups);
   if (groups.empty()) return;
-  page.heading("How it was built");
+  page.begin_fold("How it was built");
   page.facts(groups);
+  page.end_fold();
 }
 
 std::vector<MissingInput> missing_inputs(const Material& material, const std::filesystem::path& model) {
@@ -191,24 +207,19 @@ std::vector<MissingInput> missing_inputs(const Material& material, const std::fi
 
 }  // namespace
 
-Report make_report(const ModelView& model, const ReportInputs& inputs) {
-  const Material material = read_material(model, inputs);
+Report make_report(const ModelFile& model, const ReportInputs& inputs) {
+  const Material material = read_material(model.view, inputs);
   Report report;
-  std::string subtitle = "Model and loop report";
-  if (material.build && !material.build->scene.empty()) subtitle += " · scene " + material.build->scene;
-  HtmlPage page(inputs.model.filename().string(), subtitle);
-  page.key_figures(key_figures(material));
-  auto pictures = body_pictures(material);
-  if (material.snapshot) {
-    add_figure(std::move(pictures.front()), page, report.figures);
-    pictures.erase(pictures.begin());
-  }
-  add_loop(material, page, report.figures);
-  add_figure(std::move(pictures.front()), page, report.figures);
-  page.heading("The model");
-  page.facts(model_facts(model, material.surface));
-  add_model(material, page, report.figures);
-  add_build(material, page, report.figures);
+  HtmlPage page(inputs.model.filename().string(), summary_text(material));
+  page.verdict(verdict_of(model, material.build, material.summary));
+  page.heading("The body");
+  add_figures(body_pictures(material), page, report.figures);
+  add_run(material, page, report.figures);
+  page.heading("Details");
+  add_errors(material, page, report.figures);
+  add_frontiers(material, page, report.figures);
+  add_size(material, page, report.figures);
+  if (inputs.provenance) add_provenance(material, page);
   report.missing = missing_inputs(material, inputs.model);
   page.missing(report.missing);
   report.html = page.str();
@@ -221,7 +232,8 @@ std::filesystem::path figure_path(const std::filesystem::path& folder, const Fig
 
 void write_figures(const std::filesystem::path& folder, const std::vector<Figure>& figures) {
   std::filesystem::create_directories(folder);
-  for (const Figure& figure : figures) write_text_file(figure_path(folder, figure), standalone_svg(figure.svg));
+  for (const Figure& figure : figures)
+    write_text_file(figure_path(folder, figure), standalone_svg(figure.panels, figure.columns));
 }
 
 }  // namespace greenloop::offline

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "formats/view.hpp"
+#include "formats/write/model_file.hpp"
 #include "offline/report/figure.hpp"
 #include "offline/report/html_page.hpp"
 
@@ -17,6 +17,7 @@ struct ReportInputs {
   std::optional<std::filesystem::path> trace;     ///< of greenloop-loop --trace
   std::optional<std::filesystem::path> snapshot;  ///< of greenloop-loop --snapshot
   std::optional<std::filesystem::path> build;     ///< of greenloop build
+  bool provenance = false;                        ///< shown as well
 };
 
 /// A finished report.
@@ -29,7 +30,7 @@ struct Report {
 /// Draws and writes the whole report of a verified model; what an absent input would have shown is listed with the
 /// command that makes it. Throws std::runtime_error naming file, field and value if an input is wrong. Work: linear in
 /// the inputs, plus rendering; a few seconds. The same inputs give the same bytes.
-[[nodiscard]] Report make_report(const ModelView& model, const ReportInputs& inputs);
+[[nodiscard]] Report make_report(const ModelFile& model, const ReportInputs& inputs);
 
 /// Where write_figures puts one.
 [[nodiscard]] std::filesystem::path figure_path(const std::filesystem::path& folder, const Figure& figure);

@@ -22,7 +22,7 @@ namespace {
 
 struct Options {
   std::string model, output, trace, snapshot, build, figures;
-  bool json = false;
+  bool provenance = false, json = false;
 };
 
 std::optional<std::filesystem::path> given(const std::string& path) {
@@ -73,10 +73,11 @@ void run(const Options& options) {
   require_writable(files);
   if (!options.figures.empty()) require_writable_folder(options.figures);
   const ModelFile file = open_model_file(options.model);
-  const Report report = make_report(file.view, {.model = options.model,
-                                                .trace = given(options.trace),
-                                                .snapshot = given(options.snapshot),
-                                                .build = given(options.build)});
+  const Report report = make_report(file, {.model = options.model,
+                                           .trace = given(options.trace),
+                                           .snapshot = given(options.snapshot),
+                                           .build = given(options.build),
+                                           .provenance = options.provenance});
   write_report(options, files, report);
   options.json ? print_json(output, report) : print_text(output, report);
 }
@@ -94,6 +95,7 @@ void add_report(CLI::App& parent, int& exit_code) {
                       "Displacements at the largest force, by greenloop-loop --snapshot");
   command->add_option("--build", options->build, "Record of the build, by greenloop build");
   command->add_option("--figures", options->figures, "Folder for each figure as its own SVG file");
+  command->add_flag("--provenance", options->provenance, "Show how the model was built as well");
   command->add_flag("--json", options->json, "Print what was written as JSON");
   command->callback([options, &exit_code] {
     run(*options);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "formats/output/printable.hpp"
@@ -85,8 +86,9 @@ double text_width(std::string_view text, double size) {
   return 0.58 * size * static_cast<double>(characters);
 }
 
-SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::string_view description)
-    : width_(width), height_(height) {
+SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::string_view description,
+                     double text_size)
+    : width_(width), height_(height), text_size_(text_size) {
   head_ = fmt::format(
       R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0} {1}" width="{0}" height="{1}" role="img" )"
       R"(font-family="system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue',Arial,sans-serif">)"
@@ -130,8 +132,8 @@ void SvgCanvas::text(Point at, std::string_view content, const TextStyle& style)
           : fmt::format(" stroke=\"{}\" stroke-width=\"4\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
                         style.halo);
   body_ += fmt::format("<text x=\"{}\" y=\"{}\" fill=\"{}\" font-size=\"{}\" text-anchor=\"{}\"{}{}{}>{}</text>\n",
-                       pixels(at.x), pixels(at.y), style.paint, style.size, anchor_name(style.anchor), weight, halo,
-                       turn, escape_markup(content));
+                       pixels(at.x), pixels(at.y), style.paint, style.size > 0 ? style.size : text_size_,
+                       anchor_name(style.anchor), weight, halo, turn, escape_markup(content));
 }
 
 void SvgCanvas::image(const Rectangle& area, std::string_view data_uri) {
@@ -152,11 +154,24 @@ void SvgCanvas::vertical_gradient(const Rectangle& area, const std::string& id,
 
 std::string SvgCanvas::str() const { return head_ + body_ + "</svg>\n"; }
 
-std::string standalone_svg(const std::string& element) {
-  const std::size_t content = element.find("</desc>") + std::string_view("</desc>").size();
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" +
-         with_light_colours(element.substr(0, content) + "<rect width=\"100%\" height=\"100%\" fill=\"var(--page)\"/>" +
-                            element.substr(content));
+std::string standalone_svg(const std::vector<SvgCanvas>& panels, std::size_t columns) {
+  std::string content;
+  double width = 0, top = 0;
+  for (std::size_t begin = 0; begin < panels.size(); begin += columns) {
+    double left = 0, height = 0;
+    for (std::size_t i = begin; i < std::min(begin + columns, panels.size()); ++i) {
+      content +=
+          fmt::format("<g transform=\"translate({} {})\">\n{}</g>\n", pixels(left), pixels(top), panels[i].str());
+      left += panels[i].width();
+      height = std::max(height, panels[i].height());
+    }
+    width = std::max(width, left);
+    top += height;
+  }
+  return with_light_colours(fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" "
+      "width=\"{0}\" height=\"{1}\">\n<rect width=\"100%\" height=\"100%\" fill=\"var(--page)\"/>\n{2}</svg>\n",
+      pixels(width), pixels(top), content));
 }
 
 }  // namespace greenloop::offline

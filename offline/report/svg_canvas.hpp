@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,7 +36,7 @@ enum class Anchor { start, middle, end };
 
 struct TextStyle {
   std::string paint = "var(--ink)";
-  double size = 12;
+  double size = 0;  ///< pixels; 0: the canvas's
   Anchor anchor = Anchor::start;
   bool bold = false;
   double turn = 0;        ///< degrees clockwise about the anchor
@@ -48,8 +49,8 @@ struct TextStyle {
 /// Writes one SVG drawing; pixels, y downwards. Paints are CSS colours, mostly theme variables (theme.hpp).
 class SvgCanvas {
  public:
-  /// `title` and `description` are read out by screen readers.
-  SvgCanvas(double width, double height, std::string_view title, std::string_view description);
+  /// `title` and `description` are read out by screen readers; `text_size` is that of texts which state none.
+  SvgCanvas(double width, double height, std::string_view title, std::string_view description, double text_size = 12);
 
   void line(Point a, Point b, const Stroke& stroke);
   void polyline(const std::vector<Point>& points, const Stroke& stroke);
@@ -67,15 +68,18 @@ class SvgCanvas {
 
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] double height() const { return height_; }
+  [[nodiscard]] double text_size() const { return text_size_; }
 
  private:
   double width_;
   double height_;
+  double text_size_;
   std::string head_;
   std::string body_;
 };
 
-/// A drawing made for a page as a file of its own: XML declaration, white ground, light colours.
-[[nodiscard]] std::string standalone_svg(const std::string& element);
+/// Drawings made for a page as a file of their own, `columns` side by side: XML declaration, white ground, light
+/// colours.
+[[nodiscard]] std::string standalone_svg(const std::vector<SvgCanvas>& panels, std::size_t columns);
 
 }  // namespace greenloop::offline

@@ -34,7 +34,7 @@ TEST_CASE("a file of its own knows no CSS variables") {
   for (const ThemeColour& colour : theme_colours) {
     canvas.rectangle({0, 0, 1, 1}, "var(--" + std::string(colour.name) + ")");
   }
-  const std::string file = standalone_svg(canvas.str());
+  const std::string file = standalone_svg({canvas}, 1);
   CHECK(file.starts_with("<?xml"));
   CHECK(file.find("var(") == std::string::npos);
   CHECK(file.find("#d55e00") != std::string::npos);

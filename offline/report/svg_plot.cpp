@@ -4,12 +4,11 @@
 #include <cmath>
 
 #include "offline/report/downsampling.hpp"
+#include "offline/report/figure.hpp"
 #include "offline/report/theme.hpp"
 
 namespace greenloop::offline {
 namespace {
-
-constexpr double tick_size = 11.5;
 
 std::string label_with_unit(const std::string& quantity, const std::string& unit) {
   return unit.empty() ? quantity : quantity + " [" + unit + "]";
@@ -23,6 +22,21 @@ std::string prefixed(const SiPrefix& prefix, const std::string& unit) {
                             : prefix.symbol == "G" ? "10⁹ "
                                                    : "";
   return power + unit;
+}
+
+constexpr double legend_sample = 1.67;  // of a text's size
+
+/// Where the entries stand from the legend's first, in rows no wider than `width`; y is that of the row.
+std::vector<Point> legend_places(const std::vector<LegendEntry>& entries, double width, double em) {
+  std::vector<Point> places;
+  Point next;
+  for (const LegendEntry& entry : entries) {
+    const double needed = (legend_sample + 0.5) * em + text_width(entry.text, em);
+    if (next.x > 0 && next.x + needed > width) next = {0, next.y + 1.5 * em};
+    places.push_back(next);
+    next.x += needed + 1.5 * em;
+  }
+  return places;
 }
 
 /// The prefix to show `largest` with; words are never divided.
@@ -63,23 +77,26 @@ SvgPlot::SvgPlot(SvgCanvas& canvas, const Rectangle& area, const PlotAxis& x, co
 }
 
 void SvgPlot::draw_frame(const PlotAxis& x, const PlotAxis& y) {
+  const double em = canvas_.text_size(), tick_size = 0.96 * em;
   const Stroke grid{paint::grid, 1}, rule{paint::rule, 1};
   double widest = 0;
-  for (const double tick : x_.ticks(static_cast<int>(area_.width / 80))) {
+  for (const double tick : x_.ticks(static_cast<int>(area_.width / (6.7 * em)))) {
     canvas_.line({x_(tick), area_.y}, {x_(tick), area_.bottom()}, grid);
     canvas_.line({x_(tick), area_.bottom()}, {x_(tick), area_.bottom() + 4}, rule);
-    canvas_.text({x_(tick), area_.bottom() + 17}, readable(tick / x.unit),
+    canvas_.text({x_(tick), area_.bottom() + 1.42 * em}, readable(tick / x.unit),
                  {.paint = paint::muted, .size = tick_size, .anchor = Anchor::middle});
   }
-  for (const double tick : y_.ticks(std::max(static_cast<int>(area_.height / 40), 2))) {
+  for (const double tick : y_.ticks(std::max(static_cast<int>(area_.height / (2.6 * em)), 2))) {
     const std::string text = readable(tick / y.unit);
     widest = std::max(widest, text_width(text, tick_size));
     canvas_.line({area_.x, y_(tick)}, {area_.right(), y_(tick)}, grid);
-    canvas_.text({area_.x - 7, y_(tick) + 4}, text, {.paint = paint::muted, .size = tick_size, .anchor = Anchor::end});
+    canvas_.text({area_.x - 7, y_(tick) + em / 3}, text,
+                 {.paint = paint::muted, .size = tick_size, .anchor = Anchor::end});
   }
   canvas_.line({area_.x, area_.bottom()}, {area_.right(), area_.bottom()}, {paint::rule, 1.2});
-  canvas_.text({area_.x + area_.width / 2, area_.bottom() + 36}, x.label, {.anchor = Anchor::middle});
-  canvas_.text({area_.x - 20 - widest, area_.y + area_.height / 2}, y.label, {.anchor = Anchor::middle, .turn = -90});
+  canvas_.text({area_.x + area_.width / 2, area_.bottom() + 3 * em}, x.label, {.anchor = Anchor::middle});
+  canvas_.text({area_.x - 7 - 1.1 * em - widest, area_.y + area_.height / 2}, y.label,
+               {.anchor = Anchor::middle, .turn = -90});
 }
 
 std::vector<Point> SvgPlot::placed(const std::vector<Point>& data) const {
@@ -121,38 +138,43 @@ void SvgPlot::crosses(const std::vector<Point>& data, const std::string& paint) 
 }
 
 void SvgPlot::legend(const std::vector<LegendEntry>& entries) {
-  constexpr double size = 12, sample = 20, gap = 18;
-  double x = area_.x;
-  const double y = area_.y - 12;
-  for (const LegendEntry& entry : entries) {
+  const double em = canvas_.text_size(), sample = legend_sample * em;
+  const std::vector<Point> places = legend_places(entries, area_.width, em);
+  const double first = area_.y - em - (places.empty() ? 0 : places.back().y);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const LegendEntry& entry = entries[i];
+    const double x = area_.x + places[i].x, y = first + places[i].y;
     if (entry.marker) {
-      canvas_.circle({x + sample / 2, y - 4}, 4, entry.stroke.paint);
+      canvas_.circle({x + sample / 2, y - em / 3}, 4, entry.stroke.paint);
     } else {
-      canvas_.line({x, y - 4}, {x + sample, y - 4}, entry.stroke);
+      canvas_.line({x, y - em / 3}, {x + sample, y - em / 3}, entry.stroke);
     }
-    canvas_.text({x + sample + 6, y}, entry.text, {.size = size});
-    x += sample + 6 + text_width(entry.text, size) + gap;
+    canvas_.text({x + sample + em / 2, y}, entry.text);
   }
 }
 
+PanelFrame panel_frame(bool heading, const std::vector<LegendEntry>& legend, double plot_height) {
+  constexpr double em = panel_text, left = 5.4 * em, right = 0.9 * em;
+  const double width = panel_width - left - right;
+  const auto places = legend_places(legend, width, em);
+  const double rows = places.empty() ? 0 : places.back().y + 1.6 * em;
+  const double top = (heading ? 1.9 : 0.4) * em + rows + 0.6 * em;
+  return {top + plot_height + 3.6 * em, {left, top, width, plot_height}};
+}
+
 void horizontal_bars(SvgCanvas& canvas, const Rectangle& area, const std::vector<Bar>& bars) {
-  double largest = 0, value_room = 0;
+  const double em = canvas.text_size(),
+               pitch = area.height / static_cast<double>(std::max<std::size_t>(bars.size(), 1));
+  double largest = 0;
+  for (const Bar& bar : bars) largest = std::max(largest, bar.value);
+  double top = area.y;
   for (const Bar& bar : bars) {
-    largest = std::max(largest, bar.value);
-    value_room = std::max(value_room, text_width(bar.value_text, 12) + 10);
+    const double length = largest > 0 ? bar.value / largest * area.width : 0;
+    canvas.text({area.x, top + 1.1 * em}, bar.label);
+    canvas.text({area.right(), top + 1.1 * em}, bar.value_text, {.paint = paint::muted, .anchor = Anchor::end});
+    canvas.rectangle({area.x, top + 1.5 * em, std::max(length, bar.value > 0 ? 1.0 : 0.0), 0.6 * em}, bar.fill);
+    top += pitch;
   }
-  const double pitch = area.height / static_cast<double>(std::max<std::size_t>(bars.size(), 1));
-  const double thickness = std::min(0.64 * pitch, 18.0);
-  double middle = area.y + pitch / 2;
-  for (const Bar& bar : bars) {
-    const double length = largest > 0 ? bar.value / largest * (area.width - value_room) : 0;
-    canvas.text({area.x - 10, middle + 4}, bar.label, {.anchor = Anchor::end});
-    canvas.rectangle({area.x, middle - thickness / 2, std::max(length, bar.value > 0 ? 1.0 : 0.0), thickness},
-                     bar.fill);
-    canvas.text({area.x + length + 7, middle + 4}, bar.value_text, {.paint = paint::muted});
-    middle += pitch;
-  }
-  canvas.line({area.x, area.y}, {area.x, area.bottom()}, {paint::rule, 1.2});
 }
 
 }  // namespace greenloop::offline

@@ -33,7 +33,7 @@ struct LegendEntry {
 };
 
 /// Axes with a grid within a part of a canvas, and data on them. The frame, ticks and labels are drawn at construction,
-/// left of and below `area`; the legend stands in a row above it, clear of the data.
+/// left of and below `area`; the legend stands in rows above it, clear of the data. Texts have the canvas's size.
 class SvgPlot {
  public:
   SvgPlot(SvgCanvas& canvas, const Rectangle& area, const PlotAxis& x, const PlotAxis& y);
@@ -61,6 +61,16 @@ class SvgPlot {
   Scale y_;
 };
 
+/// A panel of the report with one plot.
+struct PanelFrame {
+  double height = 0;  ///< of the canvas, which is panel_width wide
+  Rectangle area;     ///< of the plot
+};
+
+/// Leaves room for a line of heading above the plot if there is one, for the legend in as many rows as it takes, and
+/// for ticks and labels.
+[[nodiscard]] PanelFrame panel_frame(bool heading, const std::vector<LegendEntry>& legend, double plot_height = 200);
+
 /// One bar of a bar chart.
 struct Bar {
   std::string label;
@@ -69,7 +79,7 @@ struct Bar {
   std::string fill;
 };
 
-/// Horizontal bars, one per row of `area`, labelled on the left (outside `area`) and with their value at their end.
+/// Horizontal bars, one per row of `area`, under their labels and values.
 void horizontal_bars(SvgCanvas& canvas, const Rectangle& area, const std::vector<Bar>& bars);
 
 }  // namespace greenloop::offline

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "offline/report/figure.hpp"
+
 namespace greenloop::offline {
 namespace {
 
@@ -65,20 +67,40 @@ TEST_CASE("crosses are thinned to one per pixel column") {
   CHECK(occurrences(canvas.str(), "#123456") == 200);
 }
 
-TEST_CASE("bars are as long as their values, and the longest leaves room for its text") {
+TEST_CASE("bars are as long as their values, and the longest fills the area") {
   SvgCanvas canvas(400, 100, "t", "d");
   horizontal_bars(canvas, {100, 0, 200, 60},
                   {{"a", 2, "2", "#111111"}, {"b", 1, "1", "#222222"}, {"c", 0, "0", "#333333"}});
   const std::string drawing = canvas.str();
-  const double room = text_width("2", 12) + 10;
   const auto bar_width = [&](const std::string& fill) {
     const std::size_t end = drawing.find("fill=\"" + fill);
     const std::size_t at = drawing.rfind("width=\"", end);
     return std::stod(drawing.substr(at + 7));
   };
-  CHECK(bar_width("#111111") == doctest::Approx(200 - room).epsilon(0.01));
-  CHECK(bar_width("#222222") == doctest::Approx((200 - room) / 2).epsilon(0.01));
+  CHECK(bar_width("#111111") == 200);
+  CHECK(bar_width("#222222") == 100);
   CHECK(bar_width("#333333") == 0);
+}
+
+TEST_CASE("a legend that is too long for a row takes another, and the plot makes room for it") {
+  const std::vector<LegendEntry> one{{"a", {"#111111"}}},
+      many{{"a", {"#111111"}}, {"worst column", {"#222222"}}, {"worst patch force", {"#333333"}}};
+  const PanelFrame low = panel_frame(false, one), high = panel_frame(false, many);
+  CHECK(high.area.y > low.area.y + panel_text);
+  CHECK(high.area.height == low.area.height);
+  SvgCanvas canvas(panel_width, high.height, "t", "d", panel_text);
+  SvgPlot plot(canvas, high.area, {.label = "x"}, {.label = "y"});
+  plot.legend(many);
+  const std::string drawing = canvas.str();
+  const auto place = [&](const char* text, const char* axis) {
+    const std::size_t at = drawing.rfind(axis, drawing.find(text));
+    return std::stod(drawing.substr(at + 4));
+  };
+  CHECK(place(">a<", " y=\"") == place(">worst column<", " y=\""));
+  CHECK(place(">worst patch force<", " y=\"") > place(">a<", " y=\"") + panel_text);
+  CHECK(place(">worst patch force<", " y=\"") < high.area.y);
+  CHECK(place(">a<", " y=\"") > panel_text);
+  CHECK(place(">worst patch force<", " x=\"") + text_width("worst patch force", panel_text) < panel_width);
 }
 
 }  // namespace greenloop::offline

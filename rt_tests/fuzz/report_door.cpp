@@ -68,7 +68,7 @@ class ReportDoor final : public Door {
   static void draw(const std::vector<offline::TraceCycle>& trace) {
     for (const offline::Figure& figure :
          {offline::force_figure(trace), offline::work_figure(trace), offline::levels_figure(trace, 3)}) {
-      require_right(figure.svg.size() < most_figure_bytes, "a figure is larger than its trace explains");
+      require_right(figure.svg().size() < most_figure_bytes, "a figure is larger than its trace explains");
     }
   }
 

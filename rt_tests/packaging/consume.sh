@@ -6,15 +6,17 @@ source_dir=$1 build=$2 via=$3 version=$4 model=$5
 work=$build/packaging/$via-$version
 rm -rf "$work" && mkdir -p "$work"
 
-# the examples of README.md and docs/surface.md are what the consumers compile
+# the examples of README.md (C++), docs/loop.md (C) and docs/surface.md are what the consumers compile
 example() {  # example LANGUAGE DOCUMENT: its code in that language
   awk "/^\`\`\`$1\$/ {inside = 1; next} /^\`\`\`\$/ {inside = 0} inside" "$source_dir/$2"
 }
+loop_example_cpp=README.md loop_example_c=docs/loop.md
 for language in cpp c; do
   example $language docs/surface.md >"$work/surface_example.$language"
   test -s "$work/surface_example.$language" || { echo "docs/surface.md has no $language block"; exit 1; }
-  example $language README.md >"$work/readme_example.$language"
-  test -s "$work/readme_example.$language" || { echo "README.md has no $language block"; exit 1; }
+  page=loop_example_$language
+  example $language "${!page}" >"$work/readme_example.$language"
+  test -s "$work/readme_example.$language" || { echo "${!page} has no $language block"; exit 1; }
   # the same with room for the fields of small models alone
   sed -E 's/field\[(4 \* )?4096\]/field[\116]/' "$work/readme_example.$language" >"$work/readme_example_small.$language"
   grep -qE 'field\[(4 \* )?16\]' "$work/readme_example_small.$language"

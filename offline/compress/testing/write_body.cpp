@@ -1,4 +1,4 @@
-// Writes the bodies that docs/results.md measures and no collection has: generated, closed, with subdivision
+// Writes the bodies that docs/results/ measures and no collection has: generated, closed, with subdivision
 // connectivity.
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-/* Runs the README's C example for a few cycles on the model named on the command line and prints every force. */
+/* Runs the C example of docs/loop.md for a few cycles on the model named on the command line and prints every force. */
 #include <runtime/greenloop.h>
 #include <stdio.h>
 #include <stdlib.h>
