@@ -1,0 +1,151 @@
+#include "offline/pipeline/model_quality.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "offline/scene/scene.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Value>
+Json known(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json provenance_of(const ModelView& view) {
+  return Json::parse(view.provenance.begin(), view.provenance.end(), nullptr, false);
+}
+
+std::optional<AccuracyGoal> asked_of(const Json& provenance) {
+  if (!provenance.is_object() || !provenance.contains("scene_text") || !provenance["scene_text"].is_string()) return {};
+  try {
+    return parse_scene(provenance["scene_text"].get<std::string>(), "scene_text").accuracy;
+  } catch (const std::exception&) {
+    return {};  // of another version
+  }
+}
+
+// of the patterns that field_rough bounds
+Json rough_error(const LevelView& finest) {
+  constexpr std::uint32_t most_accurate_contacts = 64;
+  std::optional<double> worst;
+  for (const layout::PatternRecord& record : finest.patterns) {
+    const bool rough = layout::is_rough(static_cast<layout::PatternKind>(record.kind));
+    if (rough && record.contacts <= most_accurate_contacts) {
+      worst = std::max(worst.value_or(0), double{record.field_error[2]});
+    }
+  }
+  return known(worst);
+}
+
+// `goal`: null if nobody knows
+Json pair(const std::optional<AccuracyGoal>& asked, double AccuracyGoal::*goal, const Json& reached) {
+  return {{"asked", asked ? Json((*asked).*goal) : Json(nullptr)}, {"reached", reached}};
+}
+
+Json compression_errors(const LevelView& finest, const std::optional<AccuracyGoal>& asked) {
+  const layout::Level& level = *finest.counts;
+  const auto of_patterns = [&](double error) { return finest.patterns.empty() ? Json(nullptr) : Json(error); };
+  return {{"rms", pair(asked, &AccuracyGoal::rms, level.rms_error)},
+          {"worst_column", pair(asked, &AccuracyGoal::worst_column, level.worst_column_error)},
+          {"patch_force", pair(asked, &AccuracyGoal::patch_force, level.patch_force_error)},
+          {"field", pair(asked, &AccuracyGoal::field, of_patterns(level.field_error))},
+          {"field_peak", pair(asked, &AccuracyGoal::field_peak, of_patterns(level.field_peak))},
+          {"field_rough", pair(asked, &AccuracyGoal::field_rough, rough_error(finest))}};
+}
+
+Json mesh_error(const Json& provenance, const std::optional<AccuracyGoal>& asked) {
+  const auto force = Json::json_pointer("/mesh_error/force");
+  const bool known = provenance.is_object() && provenance.contains(force) && provenance[force].is_number();
+  return pair(asked, &AccuracyGoal::patch_force, known ? provenance[force] : Json(nullptr));
+}
+
+bool is_judged(const Json& error) { return error["asked"].is_number() && error["reached"].is_number(); }
+
+bool holds(const Json& error) {
+  constexpr double of_single_precision = 1 + 1e-6;
+  return error["reached"].get<double>() <= of_single_precision * error["asked"].get<double>();
+}
+
+std::string percent(const Json& value) {
+  return value.is_number() ? fmt::format("{:.3g} %", 100 * value.get<double>()) : "not known";
+}
+
+using Named = std::vector<std::pair<std::string, Json>>;
+
+constexpr std::array names{"rms", "worst_column", "patch_force", "field", "field_peak", "field_rough"};
+
+Named judged_errors(const Json& quality) {
+  Named errors;
+  for (const std::string name : names) {
+    const Json& error = quality["compression_error"][name];
+    if (is_judged(error)) errors.emplace_back("compression error (" + name + ")", error);
+  }
+  if (is_judged(quality["mesh_error"])) errors.emplace_back("mesh error", quality["mesh_error"]);
+  return errors;
+}
+
+void judge(Json& quality) {
+  const Named errors = judged_errors(quality);
+  std::vector<std::string> violated;
+  for (const auto& [name, error] : errors) {
+    if (!holds(error)) {
+      violated.push_back(
+          fmt::format("the {} is {} where {} is asked", name, percent(error["reached"]), percent(error["asked"])));
+    }
+  }
+  quality["verdict"] = errors.empty() ? "NOT JUDGED" : violated.empty() ? "HELD" : "VIOLATED";
+  const char* const rest = violated.size() < errors.size() ? "; all other errors are within what is asked" : "";
+  quality["sentence"] = errors.empty()     ? "the scene that the model was built from is not known"
+                        : violated.empty() ? "all errors are within what is asked"
+                                           : fmt::format("{}{}", fmt::join(violated, ", "), rest);
+}
+
+std::string us_text(const Json& us) {
+  return us.is_number() ? fmt::format("{:.4g} us", us.get<double>()) : "not known";
+}
+
+}  // namespace
+
+Json quality_of(const ModelView& view, const StepCost& cost) {
+  const Json provenance = provenance_of(view);
+  const auto asked = asked_of(provenance);
+  Json quality = {{"verdict", ""},
+                  {"sentence", ""},
+                  {"compression_error", compression_errors(view.level[view.levels - 1], asked)},
+                  {"mesh_error", mesh_error(provenance, asked)},
+                  {"step_us", {{"asked", known(cost.asked_us)}, {"reached", known(cost.us)}, {"by", cost.speed}}},
+                  {"arena_bytes", known(cost.arena_bytes)}};
+  judge(quality);
+  return quality;
+}
+
+void print_quality(const Json& quality, std::ostream& out) {
+  const auto row = [&](std::string_view name, const std::string& asked, const std::string& reached) {
+    fmt::print(out, "  {:<36}{:>12}{:>14}\n", name, asked, reached);
+  };
+  fmt::print(out, "{}: {}\n", quality["verdict"].get<std::string>(), quality["sentence"].get<std::string>());
+  row("", "asked", "reached");
+  for (const std::string name : names) {
+    const Json& error = quality["compression_error"][name];
+    row("compression error, " + name, percent(error["asked"]), percent(error["reached"]));
+  }
+  row("mesh error, patch_force", percent(quality["mesh_error"]["asked"]), percent(quality["mesh_error"]["reached"]));
+  const Json& step = quality["step_us"];
+  const std::string by = step["by"].get<std::string>();
+  row("a step" + (by.empty() ? "" : ", " + by), us_text(step["asked"]), us_text(step["reached"]));
+  const Json& arena = quality["arena_bytes"];
+  row("RAM of a body", "", arena.is_number() ? fmt::format("{:.2f} MB", arena.get<double>() / 1e6) : "not known");
+}
+
+}  // namespace greenloop::offline
