@@ -84,7 +84,7 @@ std::string levels_across(const Scene& scene, double across) {
   const int levels =
       scene.remesh.levels + static_cast<int>(std::ceil(std::log2(enough_across / std::max(across, 0.1))));
   if (levels > most_levels) return "no number of remesh.levels would do; make it thicker";
-  return fmt::format("remesh.levels = {} would do", levels);
+  return fmt::format("remesh.levels = {} should do", levels);
 }
 
 struct ThinPart {
@@ -106,8 +106,8 @@ ThinPart thin_part(const SemiRegularMesh& surface, const std::vector<Chord>& cho
 /// Before the surface is filled.
 ThinPart estimated_thin_part(const SemiRegularMesh& surface) {
   const std::vector<Chord> chords = inward_chords(surface);
-  std::vector<double> across;
-  for (const Chord& chord : chords) across.push_back(chord.elements());
+  std::vector<double> across(chords.size());
+  std::transform(chords.begin(), chords.end(), across.begin(), [](const Chord& chord) { return chord.elements(); });
   return thin_part(surface, chords, across);
 }
 
