@@ -24,7 +24,7 @@ struct BodySizes {
   double store_bytes = 0;        ///< of all columns
   double factor_bytes = 0;       ///< RAM to factorise the stiffness and to solve
   double compression_bytes = 0;  ///< RAM to compress
-  double seconds = 0;            ///< to solve and to compress, within a factor of three
+  double seconds = 0;            ///< to solve and to compress, mostly within a factor of three
 
   [[nodiscard]] double memory_bytes() const;
   [[nodiscard]] bool large() const;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -108,8 +109,8 @@ void print(const Tried& tried, bool json) {
 int main(int argc, char** argv) {
   CLI::App app("Random changes of right files, tried by all code that reads them, compiled with sanitizers.",
                "greenloop-fuzz");
-  std::vector<std::string> names;
-  for (const KnownDoor& known : doors) names.emplace_back(known.name);
+  std::vector<std::string> names(doors.size());
+  std::transform(doors.begin(), doors.end(), names.begin(), [](const KnownDoor& known) { return known.name; });
   unsigned seconds = 1;
   bool json = false;
   app.add_option("DOOR", door_name, "what reads")->required()->check(CLI::IsMember(names));
