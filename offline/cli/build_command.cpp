@@ -4,10 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <sstream>
 
 #include "formats/output/json_text.hpp"
 #include "formats/output/streams.hpp"
 #include "offline/pipeline/build_model_file.hpp"
+#include "offline/pipeline/model_quality.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -36,8 +38,11 @@ void print_outcome(const BuildArguments& arguments, const BuildOutcome& outcome)
     print_result(model.string() + " is up to date\n");
     return;
   }
-  print_result(fmt::format("{}: {} bytes, {:.3g} times as small as the dense matrix\n", model.string(), outcome.bytes,
-                           static_cast<double>(outcome.dense_bytes) / static_cast<double>(outcome.bytes)));
+  print_result(
+      fmt::format("{}: {} bytes; the dense matrix has {}\n", model.string(), outcome.bytes, outcome.dense_bytes));
+  std::ostringstream quality;
+  print_quality(outcome.record["quality"], quality);
+  print_result(quality.str());
   print_budget(outcome.record);
 }
 
@@ -63,6 +68,7 @@ void add_build(CLI::App& parent, int& exit_code) {
                       "HDF5 store of the exact Green's functions [as the scene says, else beside the model]");
   command->add_flag("--overwrite-store", request.overwrite_store,
                     "Replace a store that is damaged or belongs to another scene");
+  command->add_flag("--allow-large", request.allow_large, "Even if the store or the memory take more than 5 GB");
   command->add_flag("--force", request.force, "Compress and write again even if the model is up to date");
   command->add_flag("--json", arguments->json, "Print the record of the build as JSON, no progress");
   command->callback([arguments, &exit_code] { exit_code = run_build(*arguments); });

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -19,6 +20,7 @@
 #include "offline/cli/inspect_budget.hpp"
 #include "offline/cli/inspect_patterns.hpp"
 #include "offline/compress/measure/field_size.hpp"
+#include "offline/pipeline/model_quality.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -124,13 +126,27 @@ Json units_of(const ModelView& view) {
           {"step_work", "work units"}};
 }
 
+Json quality_here(const ModelView& view, const Json& budget) {
+  const auto number = [&](const char* key) {
+    return budget[key].is_number() ? std::optional(budget[key].get<double>()) : std::nullopt;
+  };
+  const bool is_known = budget["arena_bytes"].is_number();
+  return quality_of(view,
+                    {.arena_bytes = is_known ? std::optional(budget["arena_bytes"].get<std::uint64_t>()) : std::nullopt,
+                     .us = number("us"),
+                     .asked_us = number("share_us"),
+                     .speed = "on this machine"});
+}
+
 Json inspection_of(const ModelFile& model) {
   const ModelView& view = model.view;
   const layout::Info& info = *view.info;
   const layout::Level& finest = *view.level[view.levels - 1].counts;
-  const Json field = field_size_of(view);
+  const Json field = field_size_of(view), budget = budget_of(model), quality = quality_here(view, budget);
   const std::uint64_t block_bytes = std::uint64_t{info.components} * info.components * sizeof(float);
   return {
+      {"verdict", quality["verdict"]},
+      {"quality", quality},
       {"version", fmt::format("{}.{}", view.header->major, view.header->minor)},
       {"problem", problem_name(view.problem)},
       {"nodes", view.node_count},
@@ -160,7 +176,7 @@ Json inspection_of(const ModelFile& model) {
       {"material", material_of(view)},
       {"box", {{"min", info.box_min}, {"max", info.box_max}}},
       {"scene", {{"rate", info.rate}, {"max_contacts", info.max_contacts}, {"step_work", info.step_work}}},
-      {"budget", budget_of(model)},
+      {"budget", budget},
       {"units", units_of(view)},
       {"constraint_levels", levels_of(view)},
       {"patterns", patterns_of(view)},
@@ -184,8 +200,8 @@ std::string bytes_text(const Json& value) {
 }
 
 std::string field_text(const Json& found) {
-  std::string errors = fmt::format("{} RMS, {} in the worst column", percent(found["field_rms_error"]),
-                                   percent(found["field_column_error"]));
+  std::string errors = fmt::format("compression error {} RMS, {} in the worst column",
+                                   percent(found["field_rms_error"]), percent(found["field_column_error"]));
   if (found["field_blocks"].is_null()) return errors;
   return fmt::format("{}; summed of {} blocks, at most {} by a force on one node", errors, found["field_blocks"].dump(),
                      found["longest_field_column"].dump());
@@ -212,6 +228,8 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
   const auto& material = found["material"];
   const auto& scene = found["scene"];
   fmt::print(out, "{}  (format {})\n", file.string(), found["version"].get<std::string>());
+  print_quality(found["quality"], out);
+  fmt::print(out, "\n");
   row("problem", found["problem"].get<std::string>());
   row("nodes", fmt::format("{}, {} of them in the domain", found["nodes"].dump(), found["domain_nodes"].dump()));
   row("levels", fmt::format("{} of {}", found["levels"].dump(), found["complete_levels"].dump()));
@@ -232,15 +250,14 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
   row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),
                            scene["max_contacts"].dump(), scene["step_work"].dump()));
   for (const auto& [name, value] : budget_rows(found["budget"])) row(name, value);
-  fmt::print(out, "\n  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", "level", "columns", "kept blocks", "dense",
-             "RMS error", "worst column", "patch force");
+  fmt::print(out, "\n  compression error, level by level\n  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", "level",
+             "columns", "kept blocks", "dense", "RMS", "worst column", "patch force");
   for (const auto& level : found["constraint_levels"]) {
     fmt::print(out, "  {:<6}{:>9}{:>13}{:>13}{:>13}{:>14}{:>13}\n", level["level"].dump(), level["columns"].dump(),
                level["kept_blocks"].dump(), level["dense_blocks"].dump(), percent(level["rms_error"]),
                percent(level["worst_column_error"]), percent(level["worst_patch_force_error"]));
   }
   print_patterns(found["patterns"], out);
-  fmt::print(out, "\n  provenance: {}\n", json_text(found["provenance"]));
 }
 
 }  // namespace
@@ -251,6 +268,7 @@ int run_inspect(const InspectArguments& arguments, std::ostream& out) {
     out << json_text(found) << '\n';
   } else {
     print_table(arguments.file, found, out);
+    if (arguments.provenance) fmt::print(out, "\n  provenance: {}\n", json_text(found["provenance"]));
   }
   return 0;
 }
@@ -262,7 +280,8 @@ void add_inspect(CLI::App& parent, int& exit_code) {
                             "are run for a quarter of a second of processor time");
   const auto arguments = std::make_shared<InspectArguments>();
   command->add_option("model", arguments->file, "Model file (.gloop)")->required();
-  command->add_flag("--json", arguments->json, "Print JSON, with every section");
+  command->add_flag("--provenance", arguments->provenance, "Print what the model was made from, too");
+  command->add_flag("--json", arguments->json, "Print JSON, with provenance and every section");
   command->callback([arguments, &exit_code] {
     std::ostringstream out;
     exit_code = run_inspect(*arguments, out);

@@ -69,7 +69,7 @@ Json patterns_of(const ModelView& view) {
 void print_patterns(const Json& patterns, std::ostream& out) {
   if (patterns.empty()) return;
   const Json& level = patterns.back()["level"];
-  fmt::print(out, "\n  what people do, resolved at level {}: the worst of each kind\n", level.dump());
+  fmt::print(out, "\n  what people do, resolved at level {}: the worst compression error of each kind\n", level.dump());
   fmt::print(out, "  {:<13}{:<18}{:>10}{:>13}{:>13}{:>13}\n", "kind", "contacts", "field", "worst node", "node forces",
              "total force");
   for (const KindRow& row : rows_of(patterns, level)) {

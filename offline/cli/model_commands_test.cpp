@@ -151,7 +151,8 @@ TEST_CASE("inspect: what people do, of every level that was measured; the worst 
 
   std::ostringstream out;
   CHECK(run_inspect({folder / "sphere.gloop", false}, out) == 0);
-  CHECK(out.str().find("what people do, resolved at level 2: the worst of each kind") != std::string::npos);
+  CHECK(out.str().find("what people do, resolved at level 2: the worst compression error of each kind") !=
+        std::string::npos);
   CHECK(out.str().find("  patch        4, 16 ") != std::string::npos);
   CHECK(out.str().find(" -\n") != std::string::npos);
 }
@@ -192,7 +193,8 @@ TEST_CASE("inspect: the table for people says the same") {
   std::ostringstream out;
   CHECK(run_inspect({folder / "sphere.gloop", false}, out) == 0);
   for (const char* part : {"66, 41 of them in the domain", "3 of 3", "times fewer than the dense matrix (60.5 kB)",
-                           "Young's modulus 100000.0 Pa", "worst column", "synthetic sphere", "1000000 units a step, ",
+                           "Young's modulus 100000.0 Pa", "worst column", "compression error, level by level",
+                           "NOT JUDGED: the scene", "mesh error, patch_force", "1000000 units a step, ",
                            "100 % of a period at 1000 Hz is 1000 us", "units per us, by "}) {
     CAPTURE(part);
     CHECK(out.str().find(part) != std::string::npos);
@@ -220,6 +222,7 @@ TEST_CASE("verify: exit code 0 only for a valid file, and the first fault in wor
   std::ostringstream good, bad, absent;
   CHECK(run_verify({folder / "sphere.gloop", false, true}, good) == 0);
   CHECK(Json::parse(good.str())["ok"] == true);
+  CHECK(Json::parse(good.str())["verdict"] == "HELD");
   CHECK(Json::parse(good.str())["rule"] == "ok");
 
   ModelMutant mutant(SyntheticOptions{});
@@ -229,6 +232,7 @@ TEST_CASE("verify: exit code 0 only for a valid file, and the first fault in wor
   CHECK(run_verify({folder / "bad.gloop", false, true}, bad) == 1);
   const Json verdict = Json::parse(bad.str());
   CHECK(verdict["ok"] == false);
+  CHECK(verdict["verdict"] == "VIOLATED");
   CHECK(verdict["rule"] == "out_of_range");
   CHECK(verdict["section"] == "Nodes(1)");
   CHECK(verdict["field"] == "area");

@@ -99,7 +99,9 @@ Json verdict_of(const std::filesystem::path& file, bool certificate) {
 }  // namespace
 
 int run_verify(const VerifyArguments& arguments, std::ostream& out) {
-  const Json verdict = verdict_of(arguments.file, arguments.certificate);
+  Json verdict = verdict_of(arguments.file, arguments.certificate);
+  const bool holds = verdict["ok"].get<bool>();
+  verdict["verdict"] = holds ? "HELD" : "VIOLATED";
   out << (arguments.json ? json_text(verdict) : verdict["message"].get<std::string>()) << '\n';
   if (!arguments.json && verdict.contains("body") && verdict["body"].is_object()) {
     const Json& body = verdict["body"];
@@ -107,7 +109,7 @@ int run_verify(const VerifyArguments& arguments, std::ostream& out) {
                        body["contacts"].get<std::uint64_t>(), body["cached_factors"].get<std::uint64_t>(),
                        body["bytes"].get<double>() / 1e6, body["worst_work"].get<std::uint64_t>());
   }
-  return verdict["ok"].get<bool>() ? 0 : 1;
+  return holds ? 0 : 1;
 }
 
 void add_verify(CLI::App& parent, int& exit_code) {

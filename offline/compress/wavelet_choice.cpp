@@ -8,21 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "formats/mesh/coarse_mesh.hpp"
 #include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline {
 namespace {
 
 constexpr double comparison_share = 0.2;  // of the progress
-
-// the mesh of levels 0 .. level
-SemiRegularMesh coarse_mesh(const SemiRegularMesh& mesh, std::size_t level) {
-  const auto end = static_cast<std::ptrdiff_t>(mesh.vertex_end[level]);
-  return {.positions = {mesh.positions.begin(), mesh.positions.begin() + end},
-          .vertex_end = {mesh.vertex_end.begin(), mesh.vertex_end.begin() + static_cast<std::ptrdiff_t>(level) + 1},
-          .parents = {mesh.parents.begin(), mesh.parents.begin() + end},
-          .base_triangles = mesh.base_triangles};
-}
 
 // A body's exact compliance between the nodes of a coarser mesh: the displacements there by the forces there.
 class SampledBody {

@@ -14,6 +14,7 @@ struct BuildRequest {
   std::filesystem::path store;   ///< exact Green's functions, HDF5; resumed if it is the scene's. Empty: as the scene
                                  ///< says, else beside the model
   bool overwrite_store = false;  ///< replace a store of another scene that holds columns
+  bool allow_large = false;      ///< even if store or memory take more than most_bytes_unasked
   bool force = false;            ///< build even if the model is up to date
 };
 

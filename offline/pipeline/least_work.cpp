@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 
+#include "formats/mesh/coarse_mesh.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/writer.hpp"
 #include "offline/compress/encode/model_tables.hpp"
 #include "offline/compress/wavelet/surface_wavelet.hpp"
+#include "offline/pipeline/body_sizes.hpp"
 #include "runtime/elastostatic.hpp"
 
 namespace greenloop::offline {
@@ -66,6 +69,29 @@ std::uint64_t least_work_bound(const SemiRegularMesh& mesh, const std::vector<st
   return least_work(encode(model));
 }
 
+std::string what_would_do(const StepBudget& budget, const SemiRegularMesh& mesh,
+                          const std::vector<std::uint32_t>& flags, const std::vector<double>& area,
+                          std::uint32_t coarsest_constraint_level) {
+  const auto work = static_cast<std::uint64_t>(budget.asked_work().value_or(most_work));
+  const auto contacts = static_cast<std::uint32_t>(budget.contacts);
+  const auto level = finest_level_that(mesh, flags, [&](int coarser, std::span<const std::uint32_t> its_flags) {
+    const auto nodes = static_cast<std::ptrdiff_t>(its_flags.size());
+    const auto coarsest = std::min(coarsest_constraint_level, static_cast<std::uint32_t>(coarser));
+    return least_work_bound(coarse_mesh(mesh, static_cast<std::size_t>(coarser)), {its_flags.begin(), its_flags.end()},
+                            {area.begin(), area.begin() + nodes}, contacts, coarsest) <= work;
+  });
+  std::uint32_t fit = 0;
+  for (std::uint32_t unfit = contacts; unfit - fit > 1;) {
+    const std::uint32_t tried = std::midpoint(fit, unfit);
+    const bool fits = least_work_bound(mesh, flags, area, tried, coarsest_constraint_level) <= work;
+    (fits ? fit : unfit) = tried;
+  }
+  if (fit == 0 && !level) return "not even a single contact would fit, on whatever remesh.levels";
+  if (fit == 0) return levels_text(level);
+  const std::string fewer = fmt::format("contacts = {} would do", fit);
+  return level ? fmt::format("remesh.levels = {} or {}", *level, fewer) : fewer;
+}
+
 std::uint64_t least_work(std::span<const std::byte> model) {
   const AlignedBytes bytes(model);
   const auto opened = Model::open(bytes.span());
@@ -75,14 +101,16 @@ std::uint64_t least_work(std::span<const std::byte> model) {
   return Elastostatic::required(opened.model, Elastostatic::intended(opened.model).limits).least_work;
 }
 
-void require_work(const Scene& scene, const std::filesystem::path& file, std::uint64_t least, LeastOf models) {
+void require_work(const Scene& scene, const std::filesystem::path& file, std::uint64_t least, LeastOf models,
+                  const std::string& instead) {
   const auto work = scene.budget.asked_work();
   if (!work || static_cast<std::uint64_t>(*work) >= least) {
     return;
   }
   const char* other = models == LeastOf::this_wavelet ? "; another [compression] wavelet may need less" : "";
-  throw SceneError({fmt::format("{}: {}; {} contacts need at least {}, at the coarsest level; {}{}", file.string(),
-                                asked(scene.budget), scene.budget.contacts, least, mending(scene.budget), other)});
+  throw SceneError({fmt::format("{}: {}; {} contacts need at least {}, at the coarsest level; {}{}{}{}", file.string(),
+                                asked(scene.budget), scene.budget.contacts, least, mending(scene.budget), other,
+                                instead.empty() ? "" : ": ", instead)});
 }
 
 }  // namespace greenloop::offline

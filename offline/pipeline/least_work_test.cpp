@@ -111,6 +111,20 @@ class BallBuild {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+TEST_CASE("an impossible budget is told how many contacts would do") {
+  const SemiRegularMesh ball = testing::ellipsoid(1, {1, 1, 1});
+  const std::vector<std::uint32_t> flags(ball.positions.size(), layout::node_domain | layout::node_touchable);
+  const std::vector<double> area(ball.positions.size(), 1.0);
+  const auto least = [&](std::uint32_t nodes) { return least_work_bound(ball, flags, area, nodes, 0); };
+  REQUIRE(least(5) > least(4));
+  StepBudget budget;
+  budget.work = static_cast<std::int64_t>(least(4));
+  CHECK(contains(what_would_do(budget, ball, flags, area, 0), "contacts = 4 would do"));
+  budget.work = 1;
+  CHECK(what_would_do(budget, ball, flags, area, 0) ==
+        "not even a single contact would fit, on whatever remesh.levels");
+}
+
 TEST_CASE("a build refuses a budget before it solves, or else before it writes, and keeps what it solved") {
   BallBuild ball;
   CHECK(contains(ball.refusal("work = 1\n"), "ball.toml: budget.work: 1 units a step; 16 contacts need at least "));

@@ -11,7 +11,7 @@ namespace greenloop::offline {
 namespace {
 
 constexpr int bar_width = 30;
-constexpr auto redraw_interval = std::chrono::milliseconds(100);
+constexpr std::chrono::milliseconds redraw_interval(100), log_interval(30'000);
 
 double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::steady_clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
@@ -35,14 +35,14 @@ void ProgressBar::begin(std::string_view stage) {
   running_ = true;
   first_fraction_ = -1;
   started_ = drawn_ = Clock::now();
-  draw(0, {});
+  if (terminal_) draw(0, {});
 }
 
 void ProgressBar::update(double fraction, std::string_view detail) {
   if (first_fraction_ < 0) {
     first_fraction_ = fraction;
   }
-  if (Clock::now() - drawn_ >= redraw_interval) {
+  if (Clock::now() - drawn_ >= (terminal_ ? redraw_interval : log_interval)) {
     draw(std::clamp(fraction, 0.0, 1.0), detail);
   }
 }
@@ -63,16 +63,19 @@ void ProgressBar::warn(const std::string& what) {
 }
 
 void ProgressBar::draw(double fraction, std::string_view detail) {
-  if (quiet_ || !terminal_) {
-    return;
-  }
+  if (quiet_) return;
   drawn_ = Clock::now();
   const int filled = static_cast<int>(fraction * bar_width);
   const double covered = fraction - std::max(first_fraction_, 0.0);
   const double remaining = covered > 0 ? seconds_between(started_, drawn_) * (1 - fraction) / covered : -1;
+  const std::string left = remaining >= 0 ? fmt::format(", {} left", duration_text(remaining)) : "";
+  if (!terminal_) {
+    say(fmt::format("{:<12} {:3.0f} %{} {}\n", stage_, 100 * fraction, left, detail));
+    return;
+  }
   say_raw("\r\033[K");
   say(fmt::format("{:<12} [{:#<{}}{: <{}}] {:3.0f} %{} {}", stage_, "", filled, "", bar_width - filled, 100 * fraction,
-                  remaining >= 0 ? fmt::format(", {} left", duration_text(remaining)) : "", detail));
+                  left, detail));
 }
 
 }  // namespace greenloop::offline

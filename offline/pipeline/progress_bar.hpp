@@ -14,7 +14,7 @@ struct FinishedStage {
 };
 
 /// Tells people on standard error how far a long computation is: a bar with the remaining time on a terminal, one line
-/// a stage elsewhere, nothing when quiet. Not thread-safe; offline only.
+/// a stage elsewhere, and one every half minute meanwhile, nothing when quiet. Not thread-safe; offline only.
 class ProgressBar {
  public:
   explicit ProgressBar(bool quiet);

@@ -6,16 +6,12 @@
 #include <string>
 #include <system_error>
 
+#include "offline/pipeline/body_sizes.hpp"
+
 namespace greenloop::offline {
-namespace {
 
-std::string size_text(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
-}
-
-}  // namespace
-
-void require_store_room(const std::filesystem::path& store, std::size_t rows, std::size_t columns) {
+void require_store_room(const std::filesystem::path& store, std::size_t rows, std::size_t columns,
+                        const LevelsThatFit& levels) {
   constexpr double block = 9 * sizeof(double);
   std::error_code error;
   const auto disk = std::filesystem::space(std::filesystem::absolute(store).parent_path(), error);
@@ -25,8 +21,8 @@ void require_store_room(const std::filesystem::path& store, std::size_t rows, st
   if (needed <= free) return;
   throw std::runtime_error(
       fmt::format("{}: {} columns of Green's functions to solve need {}, its disk has {} free; make room there, name a "
-                  "file on a larger disk with --store, or take fewer [remesh] levels",
-                  store.string(), columns, size_text(needed), size_text(free)));
+                  "file on a larger disk with --store, or take fewer [remesh] levels{}",
+                  store.string(), columns, bytes_text(needed), bytes_text(free), levels ? ": " + levels(free) : ""));
 }
 
 }  // namespace greenloop::offline

@@ -59,7 +59,7 @@ TEST_CASE("store room: a build whose store does not fit ends before its body is 
   const BuildRequest request{
       .scene = folder / "ball.toml", .model = folder / "ball.gloop", .store = "/proc/greenloop_room.h5"};
   check_says(refusal([&] { build_model_file(request, progress); }),
-             {"/proc/greenloop_room.h5", " columns of Green's functions to solve need ", "0.0 MB free", "--store"});
+             {"/proc/greenloop_room.h5", " columns of Green's functions to solve need ", "0.0 kB free", "--store"});
   const auto& stages = progress.stages();
   CHECK(std::any_of(stages.begin(), stages.end(), [](const FinishedStage& stage) { return stage.name == "remesh"; }));
   CHECK(std::none_of(stages.begin(), stages.end(),

@@ -59,6 +59,9 @@ struct AccuracyGoal {
 /// Work units per microsecond of the target if the scene does not say how fast that is: stated, not measured.
 inline constexpr double nominal_units_per_us = 3000;
 
+/// Most midpoint splits of a base mesh.
+inline constexpr int most_levels = 7;
+
 /// Most work units per step that a scene may ask for.
 inline constexpr std::int64_t most_work = 1'000'000'000'000;
 

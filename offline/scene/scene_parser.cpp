@@ -1,4 +1,5 @@
 // From text to Scene, with every problem collected on the way.
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <fstream>
@@ -67,7 +68,7 @@ void read_remesh(const Table& scene, bool tetrahedra, Remesh& remesh) {
     return;
   }
   set_if(remesh.base_vertices, table->integer("base_vertices", 4, 10000));
-  set_if(remesh.levels, table->integer("levels", 0, 7));
+  set_if(remesh.levels, table->integer("levels", 0, most_levels));
   if (tetrahedra && table->has("base_vertices")) {
     table->refuse("base_vertices", "does not go with [volume], whose boundary vertices are kept; remove it");
   }
@@ -189,7 +190,7 @@ void read_constraints(const Table& scene, int levels, int& coarsest) {
   if (!table) {
     return;
   }
-  if (const auto value = table->integer("coarsest", 0, 7)) {
+  if (const auto value = table->integer("coarsest", 0, most_levels)) {
     coarsest = static_cast<int>(*value);
     if (coarsest > levels) {
       table->refuse("coarsest", std::to_string(coarsest) + " is finer than the finest level; remesh.levels is " +
@@ -262,12 +263,36 @@ void read_store(const Table& scene, const std::filesystem::path& file, Scene& re
   }
 }
 
+std::string line_of(std::string_view text, std::size_t number) {
+  for (; number > 1 && !text.empty(); --number) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  return std::string(text.substr(0, text.find('\n')));
+}
+
+std::string trimmed(const std::string& text) {
+  constexpr std::string_view blanks = " \t\r";
+  const auto begin = text.find_first_not_of(blanks);
+  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
+}
+
+/// How to mend a line whose value lacks its quotes; empty if that is not what is wrong with it.
+std::string lacking_quotes(const std::string& line) {
+  const auto equals = line.find('=');
+  if (equals == std::string::npos) return {};
+  const std::string value = trimmed(line.substr(equals + 1, line.find('#', equals) - equals - 1));
+  const bool has_letters =
+      std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+  if (!has_letters || value.find_first_of("\"'[]{}") != std::string::npos) return {};
+  std::string hint = "; words, and numbers with a unit, stand in quotes: ";
+  return hint.append(trimmed(line.substr(0, equals))).append(" = \"").append(value).append("\"");
+}
+
 toml::table parse_toml(std::string_view text, const std::filesystem::path& file) {
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
     Problems problems(file.string());
-    problems.add(error.source().begin, "", std::string(error.description()));
+    const auto& where = error.source().begin;
+    problems.add(where, "", std::string(error.description()) + lacking_quotes(line_of(text, where.line)));
     problems.throw_if_any();
     throw;
   }

@@ -302,6 +302,24 @@ TEST_CASE("refused: a scene file that is not there") {
                        SceneError);
 }
 
+TEST_CASE("refused: a value without its quotes, with what to write") {
+  const auto message = [](const std::string& text) {
+    try {
+      static_cast<void>(parse_scene(text, "s.toml"));
+    } catch (const SceneError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(message("[surface]\nfile = pad.off\nunit = \"mm\"\n") ==
+        "s.toml:2:8: Error while parsing value: could not determine value type; words, and numbers with a unit, stand "
+        "in quotes: file = \"pad.off\"");
+  CHECK(message("[material]\nyoung = 20 kPa  # soft\r\n").ends_with("stand in quotes: young = \"20 kPa\""));
+  const std::string other = message("[surface]\nfile = \"pad.off\nunit = 3\n");
+  CHECK(other.starts_with("s.toml:2:"));
+  CHECK(other.find("stand in quotes") == std::string::npos);
+}
+
 TEST_CASE("refused: a size for a mesh without extent") {
   const auto scene = parse_scene(with("unit = \"cm\"", "size = \"2 m\""), "s.toml");
   CHECK_THROWS_AS(static_cast<void>(scene.mesh.scale(Eigen::AlignedBox3d())), SceneError);

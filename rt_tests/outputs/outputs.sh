@@ -120,16 +120,7 @@ for command in "greenloop inspect $escape.gloop" "greenloop verify $escape.gloop
   LC_ALL=C grep -qP '[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]' out err && fail "$command prints control bytes"
 done
 
-# one exit status for each kind of end, one version
-for program in greenloop greenloop-loop greenloop-bench greenloop-stress greenloop-calibrate greenloop-replay \
-  greenloop-columns greenloop-figures; do
-  [ -x "$programs/$program" ] || continue
-  expect 2 "$program with an unknown option" "$program" --no-such-option
-  expect 0 "$program --version" "$program" --version
-  cp out "version.$program"
-  same "version.$program" version.greenloop "the version of $program"
-  expect 0 "$program --help" "$program" --help
-done
+# one exit status for each kind of end (programs.sh tries them all)
 expect 2 "no command" greenloop
 expect 2 "an unknown command" greenloop frobnicate
 expect 2 "a number that is none" greenloop-loop c.gloop --rate fast

@@ -29,7 +29,8 @@ void print(const greenloop::Replay& replay) {
 }
 
 nlohmann::json json(const greenloop::Replay& replay) {
-  return {{"first", replay.first},
+  return {{"verdict", replay.differs ? "VIOLATED" : "HELD"},
+          {"first", replay.first},
           {"steps", replay.steps},
           {"same", !replay.differs},
           {"differs", replay.differs ? nlohmann::json(*replay.differs) : nlohmann::json()},

@@ -20,17 +20,6 @@ std::string remedy(const GreenStore& store, const SolveReport& report) {
                "if that does not help";
 }
 
-void require_solvable(const GreenStore& store) {
-  const auto& contents = store.contents();
-  store.require_components(3);
-  if (contents.volume.vertices.empty()) {
-    throw std::runtime_error(store.path().string() +
-                             ": /volume: there is no volume to solve; only a store with tetrahedra can be completed");
-  }
-  require_no_rigid_motion(contents.volume, contents.volume_fixed);
-  require_independent(contents.interpolation, contents.column_node, contents.volume_fixed);
-}
-
 void solve_missing(GreenStore& store, SolveReport& report, const FillProgressCallback& progress) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -44,8 +33,18 @@ void solve_missing(GreenStore& store, SolveReport& report, const FillProgressCal
 
 }  // namespace
 
+void require_solvable(const GreenStoreContents& contents) {
+  require_no_rigid_motion(contents.volume, contents.volume_fixed);
+  require_independent(contents.interpolation, contents.column_node, contents.volume_fixed);
+}
+
 SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback& progress) {
-  require_solvable(store);
+  store.require_components(3);
+  if (store.contents().volume.vertices.empty()) {
+    throw std::runtime_error(store.path().string() +
+                             ": /volume: there is no volume to solve; only a store with tetrahedra can be completed");
+  }
+  require_solvable(store.contents());
   SolveReport report;
   report.unknowns = 3LL * FreeVertices(store.contents().volume_fixed).count;
   if (!store.missing_columns().empty()) solve_missing(store, report, progress);

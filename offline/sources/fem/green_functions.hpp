@@ -16,6 +16,9 @@ struct SolveReport {
   double largest_asymmetry = 0.0;   ///< see reciprocity.hpp
 };
 
+/// Throws std::runtime_error unless the contents have tetrahedra that cannot move rigidly and carry every column.
+void require_solvable(const GreenStoreContents& contents);
+
 /// Solves every column the store lacks, U = B K^-1 B^T (theory.md, section 1, in force form), from the volume, the
 /// material, the interpolation and the fixed vertices in the store, and writes them block by block, so that a killed
 /// run is resumed by opening the store and calling this again: the columns' bits do not depend on where it was
