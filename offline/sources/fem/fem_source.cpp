@@ -1,12 +1,26 @@
 #include "offline/sources/fem/fem_source.hpp"
 
+#include <algorithm>
 #include <vector>
+
+#include "offline/sources/fem/quadratic_elements.hpp"
 
 namespace greenloop::offline {
 
 FemProblem fem_problem(const GreenStoreContents& contents) {
-  return {contents.volume,   contents.volume_fixed, contents.interpolation, {contents.young, contents.poisson},
-          contents.row_node, contents.column_node};
+  return {.volume = contents.volume,
+          .fixed = contents.volume_fixed,
+          .interpolation = contents.interpolation,
+          .material = {contents.young, contents.poisson},
+          .row_nodes = contents.row_node,
+          .column_nodes = contents.column_node,
+          .elements = contents.elements};
+}
+
+Eigen::SparseMatrix<double> assemble_stiffness(const FemProblem& problem, const FreeVertices& free) {
+  if (problem.elements == Elements::linear) return assemble_stiffness(problem.volume, problem.material, free);
+  const MeshEdges edges = list_edges(problem.volume);
+  return assemble_stiffness(problem.volume, edges, problem.material, free, inner_edges(problem.volume, edges));
 }
 
 Eigen::SparseMatrix<double> unit_patterns(Eigen::Index surface_nodes, std::span<const int> nodes) {
@@ -17,11 +31,21 @@ Eigen::SparseMatrix<double> unit_patterns(Eigen::Index surface_nodes, std::span<
   return patterns;
 }
 
+std::int64_t unknowns(const FemProblem& problem) {
+  std::int64_t points = FreeVertices(problem.fixed).count;
+  if (problem.elements == Elements::quadratic) {
+    const auto inner = inner_edges(problem.volume, list_edges(problem.volume));
+    points += std::count(inner.begin(), inner.end(), 1);
+  }
+  return 3 * points;
+}
+
 FemSource::FemSource(const FemProblem& problem)
     : problem_(problem),
       rows_{.surface_nodes = problem.row_nodes},
       free_(problem.fixed),
-      factors_(assemble_stiffness(problem.volume, problem.material, free_), 3) {}
+      unknowns_(greenloop::offline::unknowns(problem)),
+      factors_(assemble_stiffness(problem, free_), 3) {}
 
 Eigen::MatrixXd FemSource::displacement(const Eigen::SparseMatrix<double>& patterns) {
   factors_.solve(volume_forces(patterns), volume_displacement_);
@@ -49,7 +73,7 @@ Eigen::SparseMatrix<double> FemSource::volume_forces(const Eigen::SparseMatrix<d
       }
     }
   }
-  Eigen::SparseMatrix<double> forces(Eigen::Index{3} * free_.count, 3 * patterns.cols());
+  Eigen::SparseMatrix<double> forces(unknowns_, 3 * patterns.cols());
   forces.setFromTriplets(entries.begin(), entries.end());
   return forces;
 }

@@ -15,7 +15,7 @@
 
 namespace greenloop::offline {
 
-/// A body of linear tetrahedra of one material and the surface that hangs on it.
+/// A body of tetrahedra of one material and the surface that hangs on it.
 struct FemProblem {
   const TetrahedralMesh& volume;           ///< m
   const std::vector<std::uint8_t>& fixed;  ///< per vertex, nonzero = fixed
@@ -23,10 +23,18 @@ struct FemProblem {
   Material material;
   const std::vector<int>& row_nodes;     ///< of the surface, strictly increasing
   const std::vector<int>& column_nodes;  ///< likewise
+  Elements elements = Elements::linear;
 };
 
 /// The one that a store describes, which must outlive it.
 [[nodiscard]] FemProblem fem_problem(const GreenStoreContents& contents);
+
+/// Lower triangle of the problem's stiffness matrix, N/m: first the free vertices, then with quadratic elements the
+/// edges inside the body, which no surface node hangs on.
+[[nodiscard]] Eigen::SparseMatrix<double> assemble_stiffness(const FemProblem& problem, const FreeVertices& free);
+
+/// Degrees of freedom of that matrix.
+[[nodiscard]] std::int64_t unknowns(const FemProblem& problem);
 
 /// Unit forces at surface nodes, one pattern each: `surface_nodes` x nodes.size().
 [[nodiscard]] Eigen::SparseMatrix<double> unit_patterns(Eigen::Index surface_nodes, std::span<const int> nodes);
@@ -44,7 +52,7 @@ class FemSource final : public ColumnSource {
   [[nodiscard]] Eigen::MatrixXd displacement(const Eigen::SparseMatrix<double>& patterns);
 
   [[nodiscard]] std::int64_t factor_entries() const { return factors_.factor_entries(); }
-  [[nodiscard]] std::int64_t unknowns() const { return 3LL * free_.count; }
+  [[nodiscard]] std::int64_t unknowns() const { return unknowns_; }
 
   [[nodiscard]] int components() const override { return 3; }
   [[nodiscard]] std::string_view unit() const override { return "m/N"; }
@@ -62,6 +70,7 @@ class FemSource final : public ColumnSource {
   FemProblem problem_;
   RowSet rows_;
   FreeVertices free_;
+  Eigen::Index unknowns_ = 0;
   Factorization factors_;
   Eigen::MatrixXd volume_displacement_;
 };

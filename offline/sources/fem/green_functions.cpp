@@ -47,7 +47,7 @@ void solve_missing(GreenStore& store, SolveReport& report, const FillProgressCal
 SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback& progress) {
   require_solvable(store);
   SolveReport report;
-  report.unknowns = 3LL * FreeVertices(store.contents().volume_fixed).count;
+  report.unknowns = unknowns(fem_problem(store.contents()));
   if (!store.missing_columns().empty()) solve_missing(store, report, progress);
   report.largest_asymmetry = largest_asymmetry(store);
   if (!(report.largest_asymmetry <= most_asymmetry)) {

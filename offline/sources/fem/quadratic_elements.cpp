@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
-#include "offline/sources/fem/elasticity.hpp"
+#include "offline/volume/tetrahedra_quality.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -44,6 +46,46 @@ struct Element {
   }
 };
 
+using ElementStiffness = Eigen::Matrix<double, 30, 30>;  // of the four corners, then of the six edges, by axis
+
+ElementStiffness element_stiffness(const Element& element, double lambda, double mu) {
+  ElementStiffness stiffness = ElementStiffness::Zero();
+  for (int q = 0; q < 4; ++q) {
+    const Gradients gradients = element.at(q);
+    for (int a = 0; a < 10; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        const Eigen::Vector3d ga = gradients.col(a), gb = gradients.col(b);
+        stiffness.block<3, 3>(3 * a, 3 * b) +=
+            0.25 * element.volume *
+            (lambda * ga * gb.transpose() + mu * gb * ga.transpose() + mu * ga.dot(gb) * Eigen::Matrix3d::Identity());
+      }
+    }
+  }
+  return stiffness.selfadjointView<Eigen::Lower>();
+}
+
+void scatter(const ElementStiffness& element, const std::array<int, 10>& number,
+             std::vector<Eigen::Triplet<double>>& entries) {
+  for (int a = 0; a < 10; ++a) {
+    for (int b = 0; b < 10; ++b) {
+      const int row = number[a], column = number[b];
+      if (row < 0 || column < 0 || row < column) continue;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j <= (row == column ? i : 2); ++j) {
+          entries.emplace_back(3 * row + i, 3 * column + j, element(3 * a + i, 3 * b + j));
+        }
+      }
+    }
+  }
+}
+
+// numbers of the edges that are marked, from `first` on; -1 of the others
+std::vector<int> edge_numbers(const std::vector<std::uint8_t>& marked, int first) {
+  std::vector<int> numbers;
+  for (const std::uint8_t mark : marked) numbers.push_back(mark != 0 ? first++ : -1);
+  return numbers;
+}
+
 }  // namespace
 
 double QuadraticField::dot(const QuadraticField& other) const {
@@ -76,12 +118,43 @@ MeshEdges list_edges(const TetrahedralMesh& mesh) {
   return edges;
 }
 
-QuadraticStiffness::QuadraticStiffness(const TetrahedralMesh& mesh, const MeshEdges& edges, const Material& material)
-    : mesh_(mesh), edges_(edges) {
-  require_valid(material);
-  lambda_ = material.young * material.poisson / ((1.0 + material.poisson) * (1.0 - 2.0 * material.poisson));
-  mu_ = material.young / (2.0 * (1.0 + material.poisson));
+std::vector<std::uint8_t> inner_edges(const TetrahedralMesh& mesh, const MeshEdges& edges) {
+  std::vector<std::uint8_t> inner(edges.ends.size(), 1);
+  for (const auto& triangle : boundary_triangles(mesh)) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = triangle[k], b = triangle[(k + 1) % 3];
+      const std::array<int, 2> ends = {std::min(a, b), std::max(a, b)};
+      inner[std::lower_bound(edges.ends.begin(), edges.ends.end(), ends) - edges.ends.begin()] = 0;
+    }
+  }
+  return inner;
 }
+
+Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const MeshEdges& edges,
+                                               const Material& material, const FreeVertices& free,
+                                               const std::vector<std::uint8_t>& free_edges) {
+  const Lame lame(material);
+  const std::vector<int> edge_number = edge_numbers(free_edges, free.count);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const Element element(mesh, mesh.tetrahedra[t]);
+    if (!(element.volume > 0)) {
+      throw std::invalid_argument("stiffness: tetrahedron " + std::to_string(t) +
+                                  " has no positive volume; repair the tetrahedral mesh");
+    }
+    std::array<int, 10> number{};
+    for (int a = 0; a < 4; ++a) number[a] = free.number[mesh.tetrahedra[t][a]];
+    for (int e = 0; e < 6; ++e) number[4 + e] = edge_number[edges.of_tetrahedron[t][e]];
+    scatter(element_stiffness(element, lame.lambda, lame.mu), number, entries);
+  }
+  const int unknowns = free.count + static_cast<int>(std::count(free_edges.begin(), free_edges.end(), 1));
+  Eigen::SparseMatrix<double> stiffness(Eigen::Index{3} * unknowns, Eigen::Index{3} * unknowns);
+  stiffness.setFromTriplets(entries.begin(), entries.end());
+  return stiffness;
+}
+
+QuadraticStiffness::QuadraticStiffness(const TetrahedralMesh& mesh, const MeshEdges& edges, const Material& material)
+    : mesh_(mesh), edges_(edges), lame_(material) {}
 
 QuadraticField QuadraticStiffness::zero() const {
   return {Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(mesh_.vertices.size())),
@@ -100,8 +173,8 @@ QuadraticField QuadraticStiffness::force(const QuadraticField& displacement) con
     for (int q = 0; q < 4; ++q) {
       const Gradients gradients = element.at(q);
       const Eigen::Matrix3d slope = moved * gradients.transpose();
-      Eigen::Matrix3d stress = mu_ * (slope + slope.transpose());
-      stress.diagonal().array() += lambda_ * slope.trace();
+      Eigen::Matrix3d stress = lame_.mu * (slope + slope.transpose());
+      stress.diagonal().array() += lame_.lambda * slope.trace();
       held.noalias() += 0.25 * element.volume * stress * gradients;
     }
     for (int a = 0; a < 4; ++a) force.vertex.col(vertices[a]) += held.col(a);
@@ -120,7 +193,7 @@ std::vector<Eigen::Matrix3d> QuadraticStiffness::edge_blocks() const {
         const Eigen::Vector3d g = gradients.col(4 + e);
         blocks[edges_.of_tetrahedron[t][e]] +=
             0.25 * element.volume *
-            ((lambda_ + mu_) * g * g.transpose() + mu_ * g.squaredNorm() * Eigen::Matrix3d::Identity());
+            ((lame_.lambda + lame_.mu) * g * g.transpose() + lame_.mu * g.squaredNorm() * Eigen::Matrix3d::Identity());
       }
     }
   }

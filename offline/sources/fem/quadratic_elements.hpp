@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "formats/mesh/tetrahedral_mesh.hpp"
 #include "formats/store/material.hpp"
+#include "offline/sources/fem/elasticity.hpp"
 
 namespace greenloop::offline {
 
@@ -30,6 +32,16 @@ struct MeshEdges {
 /// Work O(n log n).
 [[nodiscard]] MeshEdges list_edges(const TetrahedralMesh& mesh);
 
+/// Of each edge whether it lies inside the body: edges of no triangle of the boundary.
+[[nodiscard]] std::vector<std::uint8_t> inner_edges(const TetrahedralMesh& mesh, const MeshEdges& edges);
+
+/// Stiffness matrix of quadratic tetrahedra in hierarchical form, N/m, lower triangle only: degrees of freedom of the
+/// free vertices first, then those of the edges that are marked; all others are held. Linear work, deterministic; 9 KB
+/// an element while it is made. Throws std::invalid_argument on a tetrahedron without positive volume.
+[[nodiscard]] Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const MeshEdges& edges,
+                                                             const Material& material, const FreeVertices& free,
+                                                             const std::vector<std::uint8_t>& free_edges);
+
 /// Linear elasticity on quadratic tetrahedra with straight edges, element by element: the stiffness matrix is nowhere.
 /// Refers to the mesh and the edges.
 class QuadraticStiffness {
@@ -48,7 +60,7 @@ class QuadraticStiffness {
  private:
   const TetrahedralMesh& mesh_;
   const MeshEdges& edges_;
-  double lambda_, mu_;  // Pa
+  Lame lame_;
 };
 
 }  // namespace greenloop::offline
