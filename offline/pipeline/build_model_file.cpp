@@ -158,7 +158,7 @@ MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar&
   const MeshError error = estimate_mesh_error(fem_problem(contents), touched_nodes(contents),
                                               [&](double fraction) { progress.update(fraction); });
   const std::string found =
-      fmt::format("forces of pressed patches up to {}{:.3g} % too large, against quadratic elements",
+      fmt::format("forces of pressed patches up to {}{:.3g} % too large, extrapolated from quadratic elements",
                   error.settled ? "" : "more than ", 100 * error.force());
   progress.end(found);
   if (error.force() > scene.accuracy.patch_force) {

@@ -76,6 +76,7 @@ json mesh_error_record(const MeshError& error) {
                        {"axis", std::string(1, "xyz"[patch.axis])},
                        {"linear", rounded(patch.linear_force)},
                        {"quadratic", rounded(patch.quadratic_force)},
+                       {"limit", rounded(patch.limit_force)},
                        {"error", rounded(patch.error())}});
   }
   return {{"force", rounded(error.force())}, {"settled", error.settled}, {"patches", std::move(patches)}};

@@ -23,6 +23,11 @@ struct QuadraticField {
   void add(double factor, const QuadraticField& other);
 };
 
+/// What of a displacement is known: nonzero = held.
+struct Held {
+  std::vector<std::uint8_t> vertices, edges;
+};
+
 /// Edges of a mesh, each once.
 struct MeshEdges {
   std::vector<std::array<int, 2>> ends;            ///< vertices, the lower first, sorted
