@@ -165,8 +165,9 @@ MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar&
     const Eigen::Vector3d& at = error.patches.front().center;
     progress.warn(fmt::format(
         "mesh error: {}, the worst at ({:.3g}, {:.3g}, {:.3g}) m; accuracy.patch_force = {} asks for less, and what is "
-        "measured of the compression is apart from it. More levels, or a lower Poisson's ratio, lessen it",
-        found, at.x(), at.y(), at.z(), scene.accuracy.patch_force));
+        "measured of the compression is apart from it. {}More levels lessen it",
+        found, at.x(), at.y(), at.z(), scene.accuracy.patch_force,
+        scene.elements == Elements::linear ? "[solve] elements = \"quadratic\" lessens it most. " : ""));
   }
   return error;
 }
@@ -237,9 +238,10 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   }
 
   require_build_files(request, scene);
-  if (scene.material.poisson > locking_poisson) {
+  if (scene.elements == Elements::linear && scene.material.poisson > locking_poisson) {
     progress.warn(
-        fmt::format("material.poisson = {}: linear tetrahedra lock above {}", scene.material.poisson, locking_poisson));
+        fmt::format("material.poisson = {}: linear tetrahedra lock above {}; [solve] elements = \"quadratic\"",
+                    scene.material.poisson, locking_poisson));
   }
   auto store = open_or_create_store(request, scene, column_fingerprint(scene, mesh), progress);
   const SolveReport solved = solve_missing_columns(store, progress);

@@ -74,6 +74,7 @@ json mesh_error_record(const MeshError& error) {
   for (const PressedPatch& patch : error.patches) {
     patches.push_back({{"center", {patch.center.x(), patch.center.y(), patch.center.z()}},
                        {"axis", std::string(1, "xyz"[patch.axis])},
+                       {"own", rounded(patch.own_force)},
                        {"linear", rounded(patch.linear_force)},
                        {"quadratic", rounded(patch.quadratic_force)},
                        {"limit", rounded(patch.limit_force)},

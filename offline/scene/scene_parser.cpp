@@ -94,7 +94,7 @@ void read_solve(const Table& scene, Elements& elements) {
     return;
   }
   if (*name != "linear" && *name != "quadratic") {
-    table->refuse("elements", "\"" + *name + "\" are no elements; there are \"linear\", \"quadratic\"");
+    table->refuse("elements", '"' + *name + "\" are no elements; there are \"linear\", \"quadratic\"");
   }
   elements = *name == "quadratic" ? Elements::quadratic : Elements::linear;
 }

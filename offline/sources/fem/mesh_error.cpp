@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <set>
 #include <utility>
@@ -229,6 +230,44 @@ std::vector<Candidate> rank_patches(QuadraticBody& body, const MeshErrorProgress
   return candidates;
 }
 
+// forces that displace patches by one, with quadratic elements as a source solves them
+class QuadraticSource {
+ public:
+  QuadraticSource(const FemProblem& problem, const std::vector<Candidate>& patches)
+      : vertices_(vertices_of(patches)),
+        every_vertex_(select_first_vertices(static_cast<int>(problem.volume.vertices.size()),
+                                            static_cast<int>(problem.volume.vertices.size()))),
+        source_({problem.volume, problem.fixed, every_vertex_, problem.material, vertices_, vertices_,
+                 Elements::quadratic}) {}
+
+  [[nodiscard]] std::array<double, 3> forces(const std::vector<int>& patch) {
+    std::vector<int> columns;
+    for (const int vertex : patch) {
+      columns.push_back(
+          static_cast<int>(std::lower_bound(vertices_.begin(), vertices_.end(), vertex) - vertices_.begin()));
+    }
+    const MatrixXd displacement = source_.read(columns);
+    MatrixXd compliance(displacement.cols(), displacement.cols());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      compliance.middleRows<3>(3 * static_cast<Index>(i)) = displacement.middleRows<3>(Index{3} * columns[i]);
+    }
+    const MatrixXd whole = Eigen::Matrix3d::Identity().replicate(static_cast<Index>(columns.size()), 1);
+    const Vector3d force = (whole.transpose() * compliance.llt().solve(whole)).diagonal();
+    return {force.x(), force.y(), force.z()};
+  }
+
+ private:
+  static std::vector<int> vertices_of(const std::vector<Candidate>& patches) {
+    std::set<int> all;
+    for (const auto& patch : patches) all.insert(patch.vertices.begin(), patch.vertices.end());
+    return {all.begin(), all.end()};
+  }
+
+  std::vector<int> vertices_;
+  Interpolation every_vertex_;
+  FemSource source_;
+};
+
 }  // namespace
 
 MeshError estimate_mesh_error(const FemProblem& problem, std::span<const int> touched,
@@ -237,17 +276,24 @@ MeshError estimate_mesh_error(const FemProblem& problem, std::span<const int> to
   MeshError error;
   std::vector<Candidate> worst = rank_patches(body, progress);
   worst.resize(std::min(worst.size(), solved_patches));
+  std::optional<QuadraticSource> own;
+  if (problem.elements == Elements::quadratic && !worst.empty()) own.emplace(problem, worst);
   for (std::size_t k = 0; k < worst.size(); ++k) {
     const std::vector<int>& patch = worst[k].vertices;
     const auto around = tetrahedra_around(problem.volume, patch);
+    const auto own_forces = own ? own->forces(patch) : std::array<double, 3>{};
     HeldBody whole(problem.volume, body.edges, problem.material, held_with(body, patch));
     for (int axis = 0; axis < 3; ++axis) {
       if (progress) progress(0.5 + static_cast<double>(3 * k + axis) / static_cast<double>(6 * worst.size()));
       QuadraticField displacement = body.stiffness.zero();
       for (const int vertex : patch) displacement.vertex(axis, vertex) = 1;
       const HeldForces forces = held_forces(whole, displacement, around);
-      error.patches.push_back(
-          {problem.volume.vertices[patch.front()], axis, forces.linear, forces.quadratic, forces.extrapolated});
+      error.patches.push_back({.center = problem.volume.vertices[patch.front()],
+                               .axis = axis,
+                               .own_force = own ? own_forces[axis] : forces.linear,
+                               .linear_force = forces.linear,
+                               .quadratic_force = forces.quadratic,
+                               .limit_force = forces.extrapolated});
       error.settled = error.settled && forces.settled;
     }
   }

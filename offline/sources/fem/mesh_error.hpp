@@ -12,12 +12,13 @@ namespace greenloop::offline {
 struct PressedPatch {
   Eigen::Vector3d center;  ///< m
   int axis = 0;
-  double linear_force = 0;     ///< N per m of displacement, with linear elements
+  double own_force = 0;        ///< N per m of displacement, with the elements of the problem
+  double linear_force = 0;     ///< with linear elements
   double quadratic_force = 0;  ///< with quadratic ones on the same tetrahedra
   double limit_force = 0;      ///< what finer ones would go towards (held_forces)
 
-  /// By how much linear elements are too stiff.
-  [[nodiscard]] double error() const { return linear_force / limit_force - 1; }
+  /// By how much the elements of the problem are too stiff.
+  [[nodiscard]] double error() const { return own_force / limit_force - 1; }
 };
 
 /// What the mesh itself costs, which no compression can show: it compares with the same mesh.

@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "offline/volume/tetrahedra_quality.hpp"
-
 namespace greenloop::offline {
 namespace {
 
@@ -79,13 +77,6 @@ void scatter(const ElementStiffness& element, const std::array<int, 10>& number,
   }
 }
 
-// numbers of the edges that are marked, from `first` on; -1 of the others
-std::vector<int> edge_numbers(const std::vector<std::uint8_t>& marked, int first) {
-  std::vector<int> numbers;
-  for (const std::uint8_t mark : marked) numbers.push_back(mark != 0 ? first++ : -1);
-  return numbers;
-}
-
 }  // namespace
 
 double QuadraticField::dot(const QuadraticField& other) const {
@@ -97,44 +88,33 @@ void QuadraticField::add(double factor, const QuadraticField& other) {
   edge += factor * other.edge;
 }
 
+int MeshEdges::between(int a, int b) const {
+  const std::array<int, 2> wanted = {std::min(a, b), std::max(a, b)};
+  return static_cast<int>(std::lower_bound(ends.begin(), ends.end(), wanted) - ends.begin());
+}
+
 MeshEdges list_edges(const TetrahedralMesh& mesh) {
   MeshEdges edges;
-  const auto edge_of = [](const std::array<int, 4>& tetrahedron, const std::array<int, 2>& corners) {
-    const int a = tetrahedron[corners[0]], b = tetrahedron[corners[1]];
-    return std::array<int, 2>{std::min(a, b), std::max(a, b)};
-  };
   for (const auto& tetrahedron : mesh.tetrahedra) {
-    for (const auto& corners : edge_corners) edges.ends.push_back(edge_of(tetrahedron, corners));
+    for (const auto& [i, j] : edge_corners) {
+      const int a = tetrahedron[i], b = tetrahedron[j];
+      edges.ends.push_back({std::min(a, b), std::max(a, b)});
+    }
   }
   std::sort(edges.ends.begin(), edges.ends.end());
   edges.ends.erase(std::unique(edges.ends.begin(), edges.ends.end()), edges.ends.end());
   for (const auto& tetrahedron : mesh.tetrahedra) {
     auto& of_this = edges.of_tetrahedron.emplace_back();
     for (std::size_t e = 0; e < edge_corners.size(); ++e) {
-      const auto at = std::lower_bound(edges.ends.begin(), edges.ends.end(), edge_of(tetrahedron, edge_corners[e]));
-      of_this[e] = static_cast<int>(at - edges.ends.begin());
+      of_this[e] = edges.between(tetrahedron[edge_corners[e][0]], tetrahedron[edge_corners[e][1]]);
     }
   }
   return edges;
 }
 
-std::vector<std::uint8_t> inner_edges(const TetrahedralMesh& mesh, const MeshEdges& edges) {
-  std::vector<std::uint8_t> inner(edges.ends.size(), 1);
-  for (const auto& triangle : boundary_triangles(mesh)) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = triangle[k], b = triangle[(k + 1) % 3];
-      const std::array<int, 2> ends = {std::min(a, b), std::max(a, b)};
-      inner[std::lower_bound(edges.ends.begin(), edges.ends.end(), ends) - edges.ends.begin()] = 0;
-    }
-  }
-  return inner;
-}
-
 Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const MeshEdges& edges,
-                                               const Material& material, const FreeVertices& free,
-                                               const std::vector<std::uint8_t>& free_edges) {
+                                               const Material& material, const FreePoints& free) {
   const Lame lame(material);
-  const std::vector<int> edge_number = edge_numbers(free_edges, free.count);
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const Element element(mesh, mesh.tetrahedra[t]);
@@ -143,12 +123,12 @@ Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, cons
                                   " has no positive volume; repair the tetrahedral mesh");
     }
     std::array<int, 10> number{};
-    for (int a = 0; a < 4; ++a) number[a] = free.number[mesh.tetrahedra[t][a]];
-    for (int e = 0; e < 6; ++e) number[4 + e] = edge_number[edges.of_tetrahedron[t][e]];
+    for (int a = 0; a < 4; ++a) number[a] = free.vertex[mesh.tetrahedra[t][a]];
+    for (int e = 0; e < 6; ++e) number[4 + e] = free.edge[edges.of_tetrahedron[t][e]];
     scatter(element_stiffness(element, lame.lambda, lame.mu), number, entries);
   }
-  const int unknowns = free.count + static_cast<int>(std::count(free_edges.begin(), free_edges.end(), 1));
-  Eigen::SparseMatrix<double> stiffness(Eigen::Index{3} * unknowns, Eigen::Index{3} * unknowns);
+  const Eigen::Index unknowns = Eigen::Index{3} * free.count;
+  Eigen::SparseMatrix<double> stiffness(unknowns, unknowns);
   stiffness.setFromTriplets(entries.begin(), entries.end());
   return stiffness;
 }

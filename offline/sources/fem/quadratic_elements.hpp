@@ -32,20 +32,25 @@ struct Held {
 struct MeshEdges {
   std::vector<std::array<int, 2>> ends;            ///< vertices, the lower first, sorted
   std::vector<std::array<int, 6>> of_tetrahedron;  ///< edges between its vertices 01 02 03 12 13 23
+
+  /// The edge between two vertices, which must be one. Work O(log n).
+  [[nodiscard]] int between(int a, int b) const;
 };
 
 /// Work O(n log n).
 [[nodiscard]] MeshEdges list_edges(const TetrahedralMesh& mesh);
 
-/// Of each edge whether it lies inside the body: edges of no triangle of the boundary.
-[[nodiscard]] std::vector<std::uint8_t> inner_edges(const TetrahedralMesh& mesh, const MeshEdges& edges);
+/// Numbers of the vertices and edges that are free, -1 of those that are held.
+struct FreePoints {
+  std::vector<int> vertex, edge;
+  int count = 0;
+};
 
-/// Stiffness matrix of quadratic tetrahedra in hierarchical form, N/m, lower triangle only: degrees of freedom of the
-/// free vertices first, then those of the edges that are marked; all others are held. Linear work, deterministic; 9 KB
-/// an element while it is made. Throws std::invalid_argument on a tetrahedron without positive volume.
+/// Stiffness matrix of quadratic tetrahedra in hierarchical form over the free points, N/m: lower triangle only,
+/// 3 count x 3 count, three degrees of freedom a point. Linear work, deterministic; 9 KB an element while it is made.
+/// Throws std::invalid_argument on a tetrahedron without positive volume, or a material out of range.
 [[nodiscard]] Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const MeshEdges& edges,
-                                                             const Material& material, const FreeVertices& free,
-                                                             const std::vector<std::uint8_t>& free_edges);
+                                                             const Material& material, const FreePoints& free);
 
 /// Linear elasticity on quadratic tetrahedra with straight edges, element by element: the stiffness matrix is nowhere.
 /// Refers to the mesh and the edges.
