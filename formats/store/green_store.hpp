@@ -10,6 +10,7 @@
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/store/elements.hpp"
 
 namespace greenloop {
 
@@ -27,10 +28,11 @@ struct GreenStoreContents {
   std::vector<std::uint8_t> volume_fixed;                      ///< v, nonzero = fixed
   Eigen::SparseMatrix<double, Eigen::RowMajor> interpolation;  ///< n x v weights: surface from volume displacement
 
-  double young = 0.0;       ///< Pa; 0 of a scalar problem
-  double poisson = 0.0;     ///< dimensionless; 0 of a scalar problem
-  std::string provenance;   ///< JSON text
-  std::string fingerprint;  ///< hexadecimal hash of all that determines the columns
+  double young = 0.0;                    ///< Pa; 0 of a scalar problem
+  double poisson = 0.0;                  ///< dimensionless; 0 of a scalar problem
+  Elements elements = Elements::linear;  ///< what the volume is solved with
+  std::string provenance;                ///< JSON text
+  std::string fingerprint;               ///< hexadecimal hash of all that determines the columns
 };
 
 /// Green's functions in force form, U = displacement [m] per unit nodal force [N], or of a scalar problem its answer

@@ -18,6 +18,8 @@ namespace {
 constexpr std::uint32_t all_flags =
     layout::node_domain | layout::node_touchable | layout::node_fixed | layout::node_read;
 
+constexpr const char* kQuadratic = "quadratic";
+
 [[noreturn]] void reject(const std::string& what) { throw std::invalid_argument("Green's function store: " + what); }
 
 void require_count(const std::string& field, std::size_t found, std::size_t expected) {
@@ -128,12 +130,16 @@ void write_material(Hdf5File& file, const GreenStoreContents& contents) {
   file.write_number("/", "young", contents.young);
   file.write_text("/", "young_unit", "Pa");
   file.write_number("/", "poisson", contents.poisson);
+  if (contents.elements == Elements::quadratic) file.write_text("/", "elements", kQuadratic);
 }
 
 void read_material(const Hdf5File& file, GreenStoreContents& contents) {
   contents.young = file.read_number("/", "young");
   if (file.read_text("/", "young_unit") != "Pa") file.fail("/", "young_unit must be 'Pa'");
   contents.poisson = file.read_number("/", "poisson");
+  if (!file.has_attribute("/", "elements")) return;
+  if (file.read_text("/", "elements") != kQuadratic) file.fail("/", "elements must be 'quadratic', or absent");
+  contents.elements = Elements::quadratic;
 }
 
 std::vector<double> flat(const std::vector<Eigen::Vector3d>& points) {
@@ -379,6 +385,7 @@ std::uint32_t checksum(const GreenStoreContents& contents) {
     add(std::span(matrix.valuePtr(), entries));
   }
   add(std::vector<double>{contents.young, contents.poisson});
+  if (contents.elements == Elements::quadratic) add(std::string(kQuadratic));
   for (const std::string* text : {&contents.unit, &contents.provenance, &contents.fingerprint}) add(*text);
   return crc;
 }

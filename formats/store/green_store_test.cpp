@@ -46,6 +46,7 @@ TEST_CASE("a store gives back what was put into it") {
   CHECK((found.interpolation - contents.interpolation).norm() == 0.0);
   CHECK(found.young == contents.young);
   CHECK(found.poisson == contents.poisson);
+  CHECK(found.elements == Elements::linear);
   CHECK(found.provenance == contents.provenance);
   CHECK(found.fingerprint == contents.fingerprint);
   CHECK(store.missing_columns() == std::vector<int>{0, 1, 3, 6});
@@ -54,6 +55,22 @@ TEST_CASE("a store gives back what was put into it") {
   CHECK(store.read_block(3, 4, 5, 1) == column_values(5, 17).middleRows(9, 12));
   CHECK_THROWS_WITH((void)store.read_columns(2, 2), doctest::Contains("column 3 is not solved yet"));
   CHECK_THROWS_WITH((void)store.read_columns(6, 2), doctest::Contains("outside"));
+}
+
+TEST_CASE("a store says what elements its columns are of, and takes no others") {
+  const TemporaryFile file("elements.h5");
+  auto contents = small_contents(3);
+  contents.elements = Elements::quadratic;
+  GreenStore::create(file.path, contents).close();
+  CHECK(GreenStore::open(file.path, Access::kReadOnly).contents().elements == Elements::quadratic);
+  GreenStore::create(file.path, small_contents(3)).close();
+  {
+    auto hdf5 = Hdf5File::open(file.path, true);
+    hdf5.write_text("/", "elements", "cubic");
+    hdf5.close();
+  }
+  CHECK_THROWS_WITH((void)GreenStore::open(file.path, Access::kReadOnly),
+                    doctest::Contains("elements must be 'quadratic', or absent"));
 }
 
 TEST_CASE("a scalar store gives back what was put into it: a number a node, in its own unit, without a material") {

@@ -217,7 +217,7 @@ std::string certificate_text(const Json& found) {
 // what the mesh itself costs, as the build estimated it
 std::string mesh_error_text(const Json& error) {
   if (!error.is_object() || !error.contains("force") || !error["force"].is_number()) return "not estimated";
-  return fmt::format("forces of pressed patches up to {} too large, against quadratic elements on the same tetrahedra",
+  return fmt::format("forces of pressed patches up to {} too large, extrapolated from quadratic elements",
                      percent(error["force"]));
 }
 

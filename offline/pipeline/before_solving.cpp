@@ -120,9 +120,10 @@ void say_sizes(const BodySizes& sizes, ProgressBar& progress) {
 
 void require_buildable(const BuildRequest& request, const Scene& scene, const BodyGeometry& body,
                        ProgressBar& progress) {
-  const BodySizes sizes = estimate_sizes(body.flags, body.volume ? body.volume->mesh.vertices.size() : 0);
+  const BodySizes sizes =
+      estimate_sizes(body.flags, body.volume ? body.volume->mesh.vertices.size() : 0, scene.elements);
   say_sizes(sizes, progress);
-  if (!request.allow_large) require_moderate(sizes, request.scene, body.surface, body.flags);
+  if (!request.allow_large) require_moderate(sizes, request.scene, scene.elements, body.surface, body.flags);
   require_possible_work(scene, request.scene, body.surface, body.flags, body.area, progress);
   require_room(request, sizes.columns, body.surface, body.flags);
   require_carried(scene, body);
@@ -135,11 +136,11 @@ void require_buildable(const BuildRequest& request, const Scene& scene, const Bo
 void require_buildable(const BuildRequest& request, const Scene& scene, const GreenStore& store,
                        ProgressBar& progress) {
   const GreenStoreContents& body = store.contents();
-  BodySizes sizes = estimate_sizes(body.flags, body.volume.vertices.size());
+  BodySizes sizes = estimate_sizes(body.flags, body.volume.vertices.size(), scene.elements);
   say_sizes(sizes, progress);
   const std::size_t missing = store.missing_columns().size();
   if (missing == 0) sizes.store_bytes = sizes.factor_bytes = 0;
-  if (!request.allow_large) require_moderate(sizes, request.scene, body.surface, body.flags);
+  if (!request.allow_large) require_moderate(sizes, request.scene, scene.elements, body.surface, body.flags);
   require_possible_work(scene, request.scene, body.surface, body.flags, body.area, progress);
   require_room(request, missing, body.surface, body.flags);
 }
@@ -158,7 +159,7 @@ nlohmann::json say_thickness(const Scene& scene, const GreenStoreContents& conte
 }
 
 nlohmann::json sizes_record(const GreenStoreContents& contents) {
-  return sizes_record(estimate_sizes(contents.flags, contents.volume.vertices.size()));
+  return sizes_record(estimate_sizes(contents.flags, contents.volume.vertices.size(), contents.elements));
 }
 
 }  // namespace greenloop::offline

@@ -71,14 +71,15 @@ TEST_CASE("a large body is refused with its sizes and the levels that would do")
   const BodySizes sizes = estimate_sizes(flags, 0);
   REQUIRE(sizes.store_bytes == 7.2e9);
   try {
-    require_moderate(sizes, "big.toml", mesh, flags);
+    require_moderate(sizes, "big.toml", greenloop::Elements::linear, mesh, flags);
     FAIL("accepted");
   } catch (const SceneError& error) {
     const std::string message = error.what();
     CHECK(contains(message, "big.toml: remesh.levels: 10000 columns make a store of 7.2 GB"));
     CHECK(contains(message, "--allow-large; remesh.levels = 2 would do"));
   }
-  CHECK_NOTHROW(require_moderate(estimate_sizes(std::span(flags).first(2500), 0), "big.toml", mesh, flags));
+  CHECK_NOTHROW(require_moderate(estimate_sizes(std::span(flags).first(2500), 0), "big.toml",
+                                 greenloop::Elements::linear, mesh, flags));
 }
 
 TEST_CASE("tetrahedra that cannot carry the nodes are refused before there is a store, with the levels that they can") {

@@ -52,12 +52,13 @@ GreenStoreContents describe_columns(BodyGeometry body) {
 }
 
 /// What finite elements make them of.
-void add_finite_elements(const Material& material, Volume volume, GreenStoreContents& contents) {
+void add_finite_elements(const Scene& scene, Volume volume, GreenStoreContents& contents) {
   contents.volume = std::move(volume.mesh);
   contents.volume_fixed = std::move(volume.fixed);
   contents.interpolation.swap(volume.interpolation);
-  contents.young = material.young;
-  contents.poisson = material.poisson;
+  contents.young = scene.material.young;
+  contents.poisson = scene.material.poisson;
+  contents.elements = scene.elements;
 }
 
 }  // namespace
@@ -99,7 +100,7 @@ GreenStoreContents describe_problem(const Scene& scene, BodyGeometry body, const
   }
   Volume volume = std::move(*body.volume);
   GreenStoreContents contents = describe_columns(std::move(body));
-  add_finite_elements(scene.material, std::move(volume), contents);
+  add_finite_elements(scene, std::move(volume), contents);
   contents.provenance = json_text(record, -1);
   contents.fingerprint = fingerprint;
   return contents;

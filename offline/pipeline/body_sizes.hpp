@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/mesh/semi_regular_mesh.hpp"
+#include "formats/store/elements.hpp"
 
 namespace greenloop::offline {
 
@@ -32,7 +33,8 @@ struct BodySizes {
 
 /// `flags`: layout::NodeFlag per node, domain marked. `volume_vertices`: of the tetrahedra; 0: half as many again as
 /// nodes, which is what filling mostly makes.
-[[nodiscard]] BodySizes estimate_sizes(std::span<const std::uint32_t> flags, std::size_t volume_vertices);
+[[nodiscard]] BodySizes estimate_sizes(std::span<const std::uint32_t> flags, std::size_t volume_vertices,
+                                       Elements elements = Elements::linear);
 
 /// The finest level below the finest whose nodes do: what `does` says of its number and the flags of its nodes.
 template <class Does>
@@ -55,7 +57,7 @@ template <class Does>
 [[nodiscard]] std::string bytes_text(double bytes);
 
 /// Throws SceneError, naming the scene, sizes and how many levels would do, if the body is large.
-void require_moderate(const BodySizes& sizes, const std::filesystem::path& scene, const SemiRegularMesh& mesh,
-                      std::span<const std::uint32_t> flags);
+void require_moderate(const BodySizes& sizes, const std::filesystem::path& scene, Elements elements,
+                      const SemiRegularMesh& mesh, std::span<const std::uint32_t> flags);
 
 }  // namespace greenloop::offline

@@ -140,8 +140,9 @@ std::vector<int> touched_nodes(const GreenStoreContents& contents) {
   return touched;
 }
 
-/// How many levels would do for a contact of one size: linear tetrahedra about halve their error with the edges.
-std::string finer_mesh(const Scene& scene, double error) {
+/// What lessens the mesh error of a contact of one size. Elements of half the length have about half of it.
+std::string better_mesh(const Scene& scene, double error) {
+  if (scene.elements == Elements::linear) return "[solve] elements = \"quadratic\" lessens it most";
   if (scene.mesh.tetrahedra) return "tetrahedra half as long about halve it";
   const int levels = scene.remesh.levels + static_cast<int>(std::ceil(std::log2(error / scene.accuracy.patch_force)));
   const char* const halving = "each further level about halves it";
@@ -155,16 +156,15 @@ MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar&
   MeshError error = estimate_mesh_error(fem_problem(contents), touched_nodes(contents),
                                         [&](double fraction) { progress.update(fraction); });
   const std::string found =
-      fmt::format("forces of pressed patches up to {}{:.3g} % too large, against quadratic elements",
+      fmt::format("forces of pressed patches up to {}{:.3g} % too large, extrapolated from quadratic elements",
                   error.settled ? "" : "more than ", 100 * error.force());
   progress.end(found);
   if (error.force() > scene.accuracy.patch_force) {
     const Eigen::Vector3d& at = error.patches.front().center;
     progress.warn(fmt::format(
         "mesh error: {}, the worst at ({:.3g}, {:.3g}, {:.3g}) m; accuracy.patch_force = {} asks for less, and the "
-        "compression error is apart from it. For contacts of the same size in metres {}; a lower Poisson's ratio "
-        "lessens it too",
-        found, at.x(), at.y(), at.z(), scene.accuracy.patch_force, finer_mesh(scene, error.force())));
+        "compression error is apart from it. For contacts of the same size in metres {}",
+        found, at.x(), at.y(), at.z(), scene.accuracy.patch_force, better_mesh(scene, error.force())));
   }
   return error;
 }
@@ -248,10 +248,10 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   }
 
   require_build_files(request, scene);
-  if (scene.material.poisson > locking_poisson) {
+  if (scene.elements == Elements::linear && scene.material.poisson > locking_poisson) {
     progress.warn(fmt::format(
         "material.poisson = {}: linear tetrahedra lock above {}: too stiff by about 10 % at 0.49 and 43 % at "
-        "0.499 even where nothing is thin, by several times where it is; the mesh error will say",
+        "0.499 even where nothing is thin, by several times where it is; [solve] elements = \"quadratic\" does not",
         scene.material.poisson, locking_poisson));
   }
   auto store = open_or_create_store(request, scene, column_fingerprint(scene, mesh), progress);

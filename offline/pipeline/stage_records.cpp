@@ -74,8 +74,10 @@ json mesh_error_record(const MeshError& error) {
   for (const PressedPatch& patch : error.patches) {
     patches.push_back({{"center", {patch.center.x(), patch.center.y(), patch.center.z()}},
                        {"axis", std::string(1, "xyz"[patch.axis])},
+                       {"own", rounded(patch.own_force)},
                        {"linear", rounded(patch.linear_force)},
                        {"quadratic", rounded(patch.quadratic_force)},
+                       {"limit", rounded(patch.limit_force)},
                        {"error", rounded(patch.error())}});
   }
   return {{"force", rounded(error.force())}, {"settled", error.settled}, {"patches", std::move(patches)}};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "formats/layout.hpp"
+#include "formats/store/elements.hpp"
 #include "formats/store/material.hpp"
 #include "offline/scene/region.hpp"
 
@@ -88,10 +89,11 @@ struct Scene {
   MeshSource mesh;
   Remesh remesh;
   Material material;
-  std::vector<Region> fixed;     ///< at least one
-  std::vector<Region> touched;   ///< none: everything that is not fixed
-  std::vector<Region> read;      ///< none: everything that is not fixed
-  int coarsest_constraints = 0;  ///< coarsest level offered for contacts, 0..remesh.levels
+  Elements elements = Elements::linear;  ///< of the tetrahedra
+  std::vector<Region> fixed;             ///< at least one
+  std::vector<Region> touched;           ///< none: everything that is not fixed
+  std::vector<Region> read;              ///< none: everything that is not fixed
+  int coarsest_constraints = 0;          ///< coarsest level offered for contacts, 0..remesh.levels
   AccuracyGoal accuracy;
   std::optional<layout::Wavelet> wavelet;  ///< none: the best, by measurement
   bool ready = false;                      ///< put what a loop would make at its start into the model

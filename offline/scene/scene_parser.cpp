@@ -88,6 +88,18 @@ void read_material(const Table& scene, Material& material) {
   set_if(material.poisson, table->number("poisson", {-1, 0.5, true, true}));
 }
 
+void read_solve(const Table& scene, Elements& elements) {
+  const auto table = section(scene, "solve", {"elements"});
+  const auto name = table ? table->string("elements") : std::nullopt;
+  if (!name) {
+    return;
+  }
+  if (*name != "linear" && *name != "quadratic") {
+    table->refuse("elements", '"' + *name + "\" are no elements; there are \"linear\", \"quadratic\"");
+  }
+  elements = *name == "quadratic" ? Elements::quadratic : Elements::linear;
+}
+
 std::optional<Region> read_half_space(const Table& table, bool below) {
   const auto level = table.number(below ? "below" : "above", fraction);
   table.require("axis", "axis = \"y\"");
@@ -304,13 +316,14 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   const auto toml = parse_toml(text, file);
   Problems problems(file.string());
   const Table table(toml, "",
-                    {"surface", "volume", "remesh", "material", "fixed", "touched", "read", "constraints", "accuracy",
-                     "compression", "budget", "store"},
+                    {"surface", "volume", "remesh", "material", "solve", "fixed", "touched", "read", "constraints",
+                     "accuracy", "compression", "budget", "store"},
                     problems);
   Scene scene;
   read_mesh(table, file, scene.mesh);
   read_remesh(table, scene.mesh.tetrahedra, scene.remesh);
   read_material(table, scene.material);
+  read_solve(table, scene.elements);
   if (!table.has("fixed")) {
     problems.add({}, "fixed",
                  "missing; something has to hold the body: write for example [[fixed]] below = 0.1, axis = \"y\"");

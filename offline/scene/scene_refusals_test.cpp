@@ -232,6 +232,11 @@ TEST_CASE("refused: a vertex map that is no flag, and one of a volume") {
                 {"volume.keep_vertex_map: does not go with [volume]"});
 }
 
+TEST_CASE("refused: elements that there are not") {
+  check_refused(smallest + "\n[solve]\nelements = \"cubic\"\n",
+                {"solve.elements: \"cubic\" are no elements; there are \"linear\", \"quadratic\""});
+}
+
 TEST_CASE("refused: a weld that is no length, and one of a volume") {
   check_refused(with("unit =", "weld = 0.1\nunit ="), {":3:8: surface.weld: 0.1 has no unit"});
   check_refused(with("unit =", "weld = \"automatic\"\nunit ="), {":3:8: surface.weld: "});

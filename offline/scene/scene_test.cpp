@@ -187,6 +187,17 @@ TEST_CASE("a vertex map is kept if the scene says so, and only then part of the 
   CHECK(canonical_text(declines) == canonical_text(parse_scene(smallest, "s.toml")));
 }
 
+TEST_CASE("quadratic elements if the scene says so; then they belong to what the columns follow from") {
+  const Scene plain = parse_scene(smallest, "s.toml");
+  CHECK(plain.elements == greenloop::Elements::linear);
+  CHECK(canonical_text(parse_scene(smallest + "\n[solve]\nelements = \"linear\"\n", "s.toml")) ==
+        canonical_text(plain));
+  const Scene asks = parse_scene(smallest + "\n[solve]\nelements = \"quadratic\"\n", "s.toml");
+  CHECK(asks.elements == greenloop::Elements::quadratic);
+  CHECK(body_text(asks) != body_text(plain));
+  CHECK(parse_scene(canonical_text(asks), "s.toml").elements == greenloop::Elements::quadratic);
+}
+
 TEST_CASE("a model is made ready if the scene says so, and only then is it part of the canonical text") {
   CHECK(!parse_scene(smallest, "s.toml").ready);
   const Scene asks = parse_scene(smallest + "\n[compression]\nready = true\n", "s.toml");

@@ -80,6 +80,10 @@ std::string material_text(const Material& material) {
   return "\n[material]\nyoung = " + quantity(material.young, "Pa") + "\npoisson = " + number(material.poisson) + "\n";
 }
 
+std::string solve_text(Elements elements) {
+  return elements == Elements::quadratic ? "\n[solve]\nelements = \"quadratic\"\n" : "";
+}
+
 // goals for fields that are not set, by zero, are left out
 std::string accuracy_text(const AccuracyGoal& accuracy) {
   const auto goal = [](const std::string& key, double value) {
@@ -105,8 +109,8 @@ std::string budget_text(const StepBudget& budget) {
 }
 
 std::string tables_of_body(const Scene& scene) {
-  return remesh_text(scene) + material_text(scene.material) + regions_text("fixed", scene.fixed) +
-         regions_text("touched", scene.touched) + regions_text("read", scene.read);
+  return remesh_text(scene) + material_text(scene.material) + solve_text(scene.elements) +
+         regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) + regions_text("read", scene.read);
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "offline/sources/fem/elasticity.hpp"
 #include "offline/sources/fem/factorization.hpp"
+#include "offline/sources/fem/fem_source.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 
 #ifdef GREENLOOP_HAS_CHOLMOD
@@ -37,8 +37,9 @@ BackSubstitution time_back_substitution(const GreenStore& store) {
     throw std::runtime_error(store.path().string() +
                              ": holds no volume, so there is no stiffness matrix to solve with");
   }
-  const auto stiffness = offline::assemble_stiffness(contents.volume, {contents.young, contents.poisson},
-                                                     offline::FreeVertices(contents.volume_fixed));
+  const offline::FemProblem problem = offline::fem_problem(contents);
+  const offline::MeshEdges edges = offline::list_edges(problem.volume);
+  const auto stiffness = offline::assemble_stiffness(problem, edges, offline::free_points(problem, edges));
   const Eigen::VectorXd force = Eigen::VectorXd::Ones(stiffness.rows());
   BackSubstitution result;
   double checksum = 0;

@@ -9,13 +9,6 @@
 namespace greenloop::offline {
 namespace {
 
-struct Lame {
-  double lambda, mu;
-  explicit Lame(const Material& m)
-      : lambda(m.young * m.poisson / ((1.0 + m.poisson) * (1.0 - 2.0 * m.poisson))),
-        mu(m.young / (2.0 * (1.0 + m.poisson))) {}
-};
-
 Eigen::Matrix<double, 3, 4> corners_of(const TetrahedralMesh& mesh, const std::array<int, 4>& tetrahedron) {
   Eigen::Matrix<double, 3, 4> corners;
   for (int a = 0; a < 4; ++a) corners.col(a) = mesh.vertices[tetrahedron[a]];
@@ -51,6 +44,12 @@ void require_valid(const Material& material) {
     throw std::invalid_argument("material: Poisson's ratio is " + std::to_string(material.poisson) +
                                 ", it must lie between -1 and 0.5, both excluded");
   }
+}
+
+Lame::Lame(const Material& m)
+    : lambda(m.young * m.poisson / ((1.0 + m.poisson) * (1.0 - 2.0 * m.poisson))),
+      mu(m.young / (2.0 * (1.0 + m.poisson))) {
+  require_valid(m);
 }
 
 Eigen::Matrix<double, 12, 12> element_stiffness(const Eigen::Matrix<double, 3, 4>& corners, const Material& material) {

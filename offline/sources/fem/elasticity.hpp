@@ -12,6 +12,14 @@ namespace greenloop::offline {
 /// Throws std::invalid_argument naming the value out of range.
 void require_valid(const Material& material);
 
+/// Lame's constants, Pa.
+struct Lame {
+  double lambda, mu;
+
+  /// Throws std::invalid_argument naming the value out of range.
+  explicit Lame(const Material& material);
+};
+
 /// Stiffness of one linear tetrahedron, N/m; degree of freedom 3a + i is vertex a's displacement along axis i.
 /// `corners` holds the four vertices as columns, m, positively oriented.
 [[nodiscard]] Eigen::Matrix<double, 12, 12> element_stiffness(const Eigen::Matrix<double, 3, 4>& corners,

@@ -5,8 +5,13 @@
 namespace greenloop::offline {
 
 FemProblem fem_problem(const GreenStoreContents& contents) {
-  return {contents.volume,   contents.volume_fixed, contents.interpolation, {contents.young, contents.poisson},
-          contents.row_node, contents.column_node};
+  return {.volume = contents.volume,
+          .fixed = contents.volume_fixed,
+          .interpolation = contents.interpolation,
+          .material = {contents.young, contents.poisson},
+          .row_nodes = contents.row_node,
+          .column_nodes = contents.column_node,
+          .elements = contents.elements};
 }
 
 Eigen::SparseMatrix<double> unit_patterns(Eigen::Index surface_nodes, std::span<const int> nodes) {
@@ -17,11 +22,18 @@ Eigen::SparseMatrix<double> unit_patterns(Eigen::Index surface_nodes, std::span<
   return patterns;
 }
 
-FemSource::FemSource(const FemProblem& problem)
+std::int64_t unknowns(const FemProblem& problem) {
+  return 3LL * free_points(problem, list_edges(problem.volume)).count;
+}
+
+FemSource::FemSource(const FemProblem& problem, const MeshEdges& edges)
+    : FemSource(problem, edges, free_points(problem, edges)) {}
+
+FemSource::FemSource(const FemProblem& problem, const MeshEdges& edges, const FreePoints& free)
     : problem_(problem),
       rows_{.surface_nodes = problem.row_nodes},
-      free_(problem.fixed),
-      factors_(assemble_stiffness(problem.volume, problem.material, free_), 3) {}
+      interpolation_(nodes_from_points(problem, edges, free)),
+      factors_(assemble_stiffness(problem, edges, free), 3) {}
 
 Eigen::MatrixXd FemSource::displacement(const Eigen::SparseMatrix<double>& patterns) {
   factors_.solve(volume_forces(patterns), volume_displacement_);
@@ -40,16 +52,14 @@ Eigen::SparseMatrix<double> FemSource::volume_forces(const Eigen::SparseMatrix<d
   std::vector<Eigen::Triplet<double>> entries;
   for (int c = 0; c < patterns.outerSize(); ++c) {
     for (Eigen::SparseMatrix<double>::InnerIterator node(patterns, c); node; ++node) {
-      for (Interpolation::InnerIterator it(problem_.interpolation, node.row()); it; ++it) {
-        const int number = free_.number[it.col()];
-        if (number < 0) continue;
+      for (Interpolation::InnerIterator it(interpolation_, node.row()); it; ++it) {
         for (int axis = 0; axis < 3; ++axis) {
-          entries.emplace_back(3 * number + axis, 3 * c + axis, node.value() * it.value());
+          entries.emplace_back(3 * it.col() + axis, 3 * c + axis, node.value() * it.value());
         }
       }
     }
   }
-  Eigen::SparseMatrix<double> forces(Eigen::Index{3} * free_.count, 3 * patterns.cols());
+  Eigen::SparseMatrix<double> forces(unknowns(), 3 * patterns.cols());
   forces.setFromTriplets(entries.begin(), entries.end());
   return forces;
 }
@@ -57,9 +67,8 @@ Eigen::SparseMatrix<double> FemSource::volume_forces(const Eigen::SparseMatrix<d
 void FemSource::gather(Eigen::Index column, Eigen::MatrixXd& displacement) const {
   for (std::size_t r = 0; r < rows_.surface_nodes.size(); ++r) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (Interpolation::InnerIterator it(problem_.interpolation, rows_.surface_nodes[r]); it; ++it) {
-      const Eigen::Index number = free_.number[it.col()];
-      if (number >= 0) sum += it.value() * volume_displacement_.col(column).segment<3>(3 * number);
+    for (Interpolation::InnerIterator it(interpolation_, rows_.surface_nodes[r]); it; ++it) {
+      sum += it.value() * volume_displacement_.col(column).segment<3>(Eigen::Index{3} * it.col());
     }
     displacement.col(column).segment<3>(3 * static_cast<Eigen::Index>(r)) = sum;
   }

@@ -9,24 +9,16 @@
 
 #include "formats/store/green_store.hpp"
 #include "offline/sources/column_source.hpp"
-#include "offline/sources/fem/elasticity.hpp"
+#include "offline/sources/fem/discretization.hpp"
 #include "offline/sources/fem/factorization.hpp"
-#include "offline/volume/boundary_interpolation.hpp"
 
 namespace greenloop::offline {
 
-/// A body of linear tetrahedra of one material and the surface that hangs on it.
-struct FemProblem {
-  const TetrahedralMesh& volume;           ///< m
-  const std::vector<std::uint8_t>& fixed;  ///< per vertex, nonzero = fixed
-  const Interpolation& interpolation;      ///< surface nodes from vertices
-  Material material;
-  const std::vector<int>& row_nodes;     ///< of the surface, strictly increasing
-  const std::vector<int>& column_nodes;  ///< likewise
-};
-
 /// The one that a store describes, which must outlive it.
 [[nodiscard]] FemProblem fem_problem(const GreenStoreContents& contents);
+
+/// Degrees of freedom of its stiffness matrix.
+[[nodiscard]] std::int64_t unknowns(const FemProblem& problem);
 
 /// Unit forces at surface nodes, one pattern each: `surface_nodes` x nodes.size().
 [[nodiscard]] Eigen::SparseMatrix<double> unit_patterns(Eigen::Index surface_nodes, std::span<const int> nodes);
@@ -37,14 +29,14 @@ class FemSource final : public ColumnSource {
  public:
   /// Factorises the stiffness; what the problem refers to must outlive this. Throws std::runtime_error when the body is
   /// not supported or memory runs out.
-  explicit FemSource(const FemProblem& problem);
+  explicit FemSource(const FemProblem& problem) : FemSource(problem, list_edges(problem.volume)) {}
 
   /// What forces of `patterns` (n x k; a column weighs the surface nodes) do: 3R x 3k, m/N. Row 3r + i is axis i at row
   /// node r, column 3c + j is pattern c along axis j. Work: 12 factor entries per pattern.
   [[nodiscard]] Eigen::MatrixXd displacement(const Eigen::SparseMatrix<double>& patterns);
 
   [[nodiscard]] std::int64_t factor_entries() const { return factors_.factor_entries(); }
-  [[nodiscard]] std::int64_t unknowns() const { return 3LL * free_.count; }
+  [[nodiscard]] std::int64_t unknowns() const { return 3 * interpolation_.cols(); }
 
   [[nodiscard]] int components() const override { return 3; }
   [[nodiscard]] std::string_view unit() const override { return "m/N"; }
@@ -56,12 +48,14 @@ class FemSource final : public ColumnSource {
   [[nodiscard]] Eigen::MatrixXd read(std::span<const int> columns) override;
 
  private:
+  FemSource(const FemProblem& problem, const MeshEdges& edges);
+  FemSource(const FemProblem& problem, const MeshEdges& edges, const FreePoints& free);
   [[nodiscard]] Eigen::SparseMatrix<double> volume_forces(const Eigen::SparseMatrix<double>& patterns) const;
   void gather(Eigen::Index column, Eigen::MatrixXd& displacement) const;
 
   FemProblem problem_;
   RowSet rows_;
-  FreeVertices free_;
+  Interpolation interpolation_;  // surface nodes from free points
   Factorization factors_;
   Eigen::MatrixXd volume_displacement_;
 };

@@ -46,7 +46,7 @@ SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback&
   }
   require_solvable(store.contents());
   SolveReport report;
-  report.unknowns = 3LL * FreeVertices(store.contents().volume_fixed).count;
+  report.unknowns = unknowns(fem_problem(store.contents()));
   if (!store.missing_columns().empty()) solve_missing(store, report, progress);
   report.largest_asymmetry = largest_asymmetry(store);
   if (!(report.largest_asymmetry <= most_asymmetry)) {

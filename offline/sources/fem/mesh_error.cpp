@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <set>
 #include <utility>
 
-#include "offline/sources/fem/quadratic_elements.hpp"
+#include "offline/sources/fem/held_body.hpp"
 
 namespace greenloop::offline {
 namespace {
 
 constexpr std::size_t patch_vertices = 64, spread_patches = 16, solved_patches = 3;
-constexpr int most_iterations = 400;
 
 using Eigen::Index;
 using Eigen::Matrix3Xd;
@@ -100,7 +100,7 @@ std::vector<int> patch_around(const FemProblem& problem, const Skin& skin, int c
 class HeldPatch {
  public:
   HeldPatch(std::vector<int> vertices, const FreeVertices& free, Factorization& factors)
-      : vertices_(std::move(vertices)), free_(free), factors_(factors) {
+      : vertices_(std::move(vertices)), free_(free) {
     std::vector<Eigen::Triplet<double>> unit;
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -123,13 +123,6 @@ class HeldPatch {
     return column_ * compliance_.solve(held);
   }
 
-  // the displacement by a force, with the patch held in place
-  [[nodiscard]] VectorXd solve(const VectorXd& force) const {
-    MatrixXd moved;
-    factors_.solve(force.sparseView(), moved);
-    return moved - column_ * compliance_.solve(at_patch(moved));
-  }
-
  private:
   [[nodiscard]] MatrixXd at_patch(const MatrixXd& all) const {
     MatrixXd here(3 * static_cast<Index>(vertices_.size()), all.cols());
@@ -141,7 +134,6 @@ class HeldPatch {
 
   std::vector<int> vertices_;
   const FreeVertices& free_;
-  Factorization& factors_;
   MatrixXd column_;  // displacements by unit forces on the patch
   Eigen::LLT<MatrixXd> compliance_;
 };
@@ -175,33 +167,29 @@ struct QuadraticBody {
     }
     return all;
   }
-  [[nodiscard]] VectorXd of_free(const Matrix3Xd& by_vertex) const {
-    VectorXd free_ones(Index{3} * free.count);
-    for (std::size_t v = 0; v < free.number.size(); ++v) {
-      if (free.number[v] >= 0) free_ones.segment<3>(Index{3} * free.number[v]) = by_vertex.col(static_cast<Index>(v));
-    }
-    return free_ones;
-  }
 };
 
-// edges that are held: those of the skin between two vertices of the patch, and between fixed vertices
-std::vector<std::uint8_t> held_edges(const QuadraticBody& body, const std::vector<int>& patch) {
-  std::vector<std::uint8_t> in_patch(body.free.number.size(), 0), held = body.fixed_edge;
-  for (const int vertex : patch) in_patch[vertex] = 1;
-  for (std::size_t e = 0; e < held.size(); ++e) {
+// the patch, what is fixed, and edges between them: of the skin between two vertices of the patch, all between fixed
+// ones
+Held held_with(const QuadraticBody& body, const std::vector<int>& patch) {
+  Held held{body.problem.fixed, body.fixed_edge};
+  std::vector<std::uint8_t> in_patch(body.free.number.size(), 0);
+  for (const int vertex : patch) in_patch[vertex] = held.vertices[vertex] = 1;
+  for (std::size_t e = 0; e < held.edges.size(); ++e) {
     const auto& [a, b] = body.edges.ends[e];
-    if (in_patch[a] != 0 && in_patch[b] != 0 && body.skin.edges.contains({a, b})) held[e] = 1;
+    if (in_patch[a] != 0 && in_patch[b] != 0 && body.skin.edges.contains({a, b})) held.edges[e] = 1;
   }
   return held;
 }
 
-// what each edge by itself would answer to a force
-Matrix3Xd relax_edges(const QuadraticBody& body, const std::vector<std::uint8_t>& held, const Matrix3Xd& force) {
-  Matrix3Xd moved = Matrix3Xd::Zero(3, force.cols());
-  for (Index e = 0; e < force.cols(); ++e) {
-    if (held[e] == 0) moved.col(e) = body.edge_block[e].solve(force.col(e));
+// energy that the edges would release which are not held, each by itself
+double released_one_by_one(const QuadraticBody& body, const Held& held, const Matrix3Xd& force) {
+  double released = 0;
+  for (std::size_t e = 0; e < held.edges.size(); ++e) {
+    const Vector3d pull = force.col(static_cast<Index>(e));
+    if (held.edges[e] == 0) released += pull.dot(body.edge_block[e].solve(pull));
   }
-  return moved;
+  return released;
 }
 
 // a patch that might be solved again
@@ -210,19 +198,15 @@ struct Candidate {
   double released = 0;        // largest share of the energy that edges release which move one by one
 };
 
-QuadraticField linear_solution(const QuadraticBody& body, const HeldPatch& patch, int axis) {
-  QuadraticField displacement = body.stiffness.zero();
-  displacement.vertex = body.by_vertex(patch.displaced(axis));
-  return displacement;
-}
-
 double released_by_edges(const QuadraticBody& body, const HeldPatch& patch) {
-  const auto held = held_edges(body, patch.vertices());
+  const Held held = held_with(body, patch.vertices());
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const QuadraticField moved = linear_solution(body, patch, axis), force = body.stiffness.force(moved);
+    QuadraticField moved = body.stiffness.zero();
+    moved.vertex = body.by_vertex(patch.displaced(axis));
+    const QuadraticField force = body.stiffness.force(moved);
     const double energy = moved.vertex.cwiseProduct(force.vertex).sum();
-    largest = std::max(largest, force.edge.cwiseProduct(relax_edges(body, held, force.edge)).sum() / energy);
+    largest = std::max(largest, released_one_by_one(body, held, force.edge) / energy);
   }
   return largest;
 }
@@ -246,39 +230,43 @@ std::vector<Candidate> rank_patches(QuadraticBody& body, const MeshErrorProgress
   return candidates;
 }
 
-// conjugate gradients from the linear solution; the energy falls in every iteration by what is exactly known
-PressedPatch solve_again(const QuadraticBody& body, const HeldPatch& patch, int axis, bool& settled) {
-  const auto held = held_edges(body, patch.vertices());
-  const QuadraticField moved = linear_solution(body, patch, axis);
-  QuadraticField residual = body.stiffness.force(moved);
-  const double linear = moved.dot(residual);
-  const auto precondition = [&](const QuadraticField& force) {
-    return QuadraticField{body.by_vertex(patch.solve(body.of_free(force.vertex))), relax_edges(body, held, force.edge)};
-  };
-  QuadraticField direction = precondition(residual);
-  double product = residual.dot(direction), released = 0, recently = 0;
-  constexpr int recent = 10;
-  std::vector<double> decrease;
-  while (true) {
-    const QuadraticField force = body.stiffness.force(direction);
-    const double step = product / direction.dot(force);
-    residual.add(-step, force);
-    decrease.push_back(step * product);
-    released += decrease.back();
-    recently += decrease.back() - (decrease.size() > recent ? decrease[decrease.size() - recent - 1] : 0);
-    if (decrease.size() > recent && recently < 0.02 * released) break;
-    if (decrease.size() >= most_iterations) {
-      settled = false;
-      break;
+// forces that displace patches by one, with quadratic elements as a source solves them
+class QuadraticSource {
+ public:
+  QuadraticSource(const FemProblem& problem, const std::vector<Candidate>& patches)
+      : vertices_(vertices_of(patches)),
+        every_vertex_(select_first_vertices(static_cast<int>(problem.volume.vertices.size()),
+                                            static_cast<int>(problem.volume.vertices.size()))),
+        source_({problem.volume, problem.fixed, every_vertex_, problem.material, vertices_, vertices_,
+                 Elements::quadratic}) {}
+
+  [[nodiscard]] std::array<double, 3> forces(const std::vector<int>& patch) {
+    std::vector<int> columns;
+    for (const int vertex : patch) {
+      columns.push_back(
+          static_cast<int>(std::lower_bound(vertices_.begin(), vertices_.end(), vertex) - vertices_.begin()));
     }
-    const QuadraticField next = precondition(residual);
-    const double next_product = residual.dot(next);
-    direction.vertex = next.vertex + next_product / product * direction.vertex;
-    direction.edge = next.edge + next_product / product * direction.edge;
-    product = next_product;
+    const MatrixXd displacement = source_.read(columns);
+    MatrixXd compliance(displacement.cols(), displacement.cols());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      compliance.middleRows<3>(3 * static_cast<Index>(i)) = displacement.middleRows<3>(Index{3} * columns[i]);
+    }
+    const MatrixXd whole = Eigen::Matrix3d::Identity().replicate(static_cast<Index>(columns.size()), 1);
+    const Vector3d force = (whole.transpose() * compliance.llt().solve(whole)).diagonal();
+    return {force.x(), force.y(), force.z()};
   }
-  return {body.problem.volume.vertices[patch.vertices().front()], axis, linear, linear - released};
-}
+
+ private:
+  static std::vector<int> vertices_of(const std::vector<Candidate>& patches) {
+    std::set<int> all;
+    for (const auto& patch : patches) all.insert(patch.vertices.begin(), patch.vertices.end());
+    return {all.begin(), all.end()};
+  }
+
+  std::vector<int> vertices_;
+  Interpolation every_vertex_;
+  FemSource source_;
+};
 
 }  // namespace
 
@@ -288,11 +276,25 @@ MeshError estimate_mesh_error(const FemProblem& problem, std::span<const int> to
   MeshError error;
   std::vector<Candidate> worst = rank_patches(body, progress);
   worst.resize(std::min(worst.size(), solved_patches));
+  std::optional<QuadraticSource> own;
+  if (problem.elements == Elements::quadratic && !worst.empty()) own.emplace(problem, worst);
   for (std::size_t k = 0; k < worst.size(); ++k) {
-    const HeldPatch patch(worst[k].vertices, body.free, body.factors);
+    const std::vector<int>& patch = worst[k].vertices;
+    const auto around = tetrahedra_around(problem.volume, patch);
+    const auto own_forces = own ? own->forces(patch) : std::array<double, 3>{};
+    HeldBody whole(problem.volume, body.edges, problem.material, held_with(body, patch));
     for (int axis = 0; axis < 3; ++axis) {
       if (progress) progress(0.5 + static_cast<double>(3 * k + axis) / static_cast<double>(6 * worst.size()));
-      error.patches.push_back(solve_again(body, patch, axis, error.settled));
+      QuadraticField displacement = body.stiffness.zero();
+      for (const int vertex : patch) displacement.vertex(axis, vertex) = 1;
+      const HeldForces forces = held_forces(whole, displacement, around);
+      error.patches.push_back({.center = problem.volume.vertices[patch.front()],
+                               .axis = axis,
+                               .own_force = own ? own_forces[axis] : forces.linear,
+                               .linear_force = forces.linear,
+                               .quadratic_force = forces.quadratic,
+                               .limit_force = forces.extrapolated});
+      error.settled = error.settled && forces.settled;
     }
   }
   std::sort(error.patches.begin(), error.patches.end(),

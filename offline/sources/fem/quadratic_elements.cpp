@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
-
-#include "offline/sources/fem/elasticity.hpp"
+#include <stdexcept>
+#include <string>
 
 namespace greenloop::offline {
 namespace {
@@ -44,6 +44,39 @@ struct Element {
   }
 };
 
+using ElementStiffness = Eigen::Matrix<double, 30, 30>;  // of the four corners, then of the six edges, by axis
+
+ElementStiffness element_stiffness(const Element& element, double lambda, double mu) {
+  ElementStiffness stiffness = ElementStiffness::Zero();
+  for (int q = 0; q < 4; ++q) {
+    const Gradients gradients = element.at(q);
+    for (int a = 0; a < 10; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        const Eigen::Vector3d ga = gradients.col(a), gb = gradients.col(b);
+        stiffness.block<3, 3>(3 * a, 3 * b) +=
+            0.25 * element.volume *
+            (lambda * ga * gb.transpose() + mu * gb * ga.transpose() + mu * ga.dot(gb) * Eigen::Matrix3d::Identity());
+      }
+    }
+  }
+  return stiffness.selfadjointView<Eigen::Lower>();
+}
+
+void scatter(const ElementStiffness& element, const std::array<int, 10>& number,
+             std::vector<Eigen::Triplet<double>>& entries) {
+  for (int a = 0; a < 10; ++a) {
+    for (int b = 0; b < 10; ++b) {
+      const int row = number[a], column = number[b];
+      if (row < 0 || column < 0 || row < column) continue;
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j <= (row == column ? i : 2); ++j) {
+          entries.emplace_back(3 * row + i, 3 * column + j, element(3 * a + i, 3 * b + j));
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 double QuadraticField::dot(const QuadraticField& other) const {
@@ -55,33 +88,53 @@ void QuadraticField::add(double factor, const QuadraticField& other) {
   edge += factor * other.edge;
 }
 
+int MeshEdges::between(int a, int b) const {
+  const std::array<int, 2> wanted = {std::min(a, b), std::max(a, b)};
+  return static_cast<int>(std::lower_bound(ends.begin(), ends.end(), wanted) - ends.begin());
+}
+
 MeshEdges list_edges(const TetrahedralMesh& mesh) {
   MeshEdges edges;
-  const auto edge_of = [](const std::array<int, 4>& tetrahedron, const std::array<int, 2>& corners) {
-    const int a = tetrahedron[corners[0]], b = tetrahedron[corners[1]];
-    return std::array<int, 2>{std::min(a, b), std::max(a, b)};
-  };
   for (const auto& tetrahedron : mesh.tetrahedra) {
-    for (const auto& corners : edge_corners) edges.ends.push_back(edge_of(tetrahedron, corners));
+    for (const auto& [i, j] : edge_corners) {
+      const int a = tetrahedron[i], b = tetrahedron[j];
+      edges.ends.push_back({std::min(a, b), std::max(a, b)});
+    }
   }
   std::sort(edges.ends.begin(), edges.ends.end());
   edges.ends.erase(std::unique(edges.ends.begin(), edges.ends.end()), edges.ends.end());
   for (const auto& tetrahedron : mesh.tetrahedra) {
     auto& of_this = edges.of_tetrahedron.emplace_back();
     for (std::size_t e = 0; e < edge_corners.size(); ++e) {
-      const auto at = std::lower_bound(edges.ends.begin(), edges.ends.end(), edge_of(tetrahedron, edge_corners[e]));
-      of_this[e] = static_cast<int>(at - edges.ends.begin());
+      of_this[e] = edges.between(tetrahedron[edge_corners[e][0]], tetrahedron[edge_corners[e][1]]);
     }
   }
   return edges;
 }
 
-QuadraticStiffness::QuadraticStiffness(const TetrahedralMesh& mesh, const MeshEdges& edges, const Material& material)
-    : mesh_(mesh), edges_(edges) {
-  require_valid(material);
-  lambda_ = material.young * material.poisson / ((1.0 + material.poisson) * (1.0 - 2.0 * material.poisson));
-  mu_ = material.young / (2.0 * (1.0 + material.poisson));
+Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const MeshEdges& edges,
+                                               const Material& material, const FreePoints& free) {
+  const Lame lame(material);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const Element element(mesh, mesh.tetrahedra[t]);
+    if (!(element.volume > 0)) {
+      throw std::invalid_argument("stiffness: tetrahedron " + std::to_string(t) +
+                                  " has no positive volume; repair the tetrahedral mesh");
+    }
+    std::array<int, 10> number{};
+    for (int a = 0; a < 4; ++a) number[a] = free.vertex[mesh.tetrahedra[t][a]];
+    for (int e = 0; e < 6; ++e) number[4 + e] = free.edge[edges.of_tetrahedron[t][e]];
+    scatter(element_stiffness(element, lame.lambda, lame.mu), number, entries);
+  }
+  const Eigen::Index unknowns = Eigen::Index{3} * free.count;
+  Eigen::SparseMatrix<double> stiffness(unknowns, unknowns);
+  stiffness.setFromTriplets(entries.begin(), entries.end());
+  return stiffness;
 }
+
+QuadraticStiffness::QuadraticStiffness(const TetrahedralMesh& mesh, const MeshEdges& edges, const Material& material)
+    : mesh_(mesh), edges_(edges), lame_(material) {}
 
 QuadraticField QuadraticStiffness::zero() const {
   return {Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(mesh_.vertices.size())),
@@ -100,8 +153,8 @@ QuadraticField QuadraticStiffness::force(const QuadraticField& displacement) con
     for (int q = 0; q < 4; ++q) {
       const Gradients gradients = element.at(q);
       const Eigen::Matrix3d slope = moved * gradients.transpose();
-      Eigen::Matrix3d stress = mu_ * (slope + slope.transpose());
-      stress.diagonal().array() += lambda_ * slope.trace();
+      Eigen::Matrix3d stress = lame_.mu * (slope + slope.transpose());
+      stress.diagonal().array() += lame_.lambda * slope.trace();
       held.noalias() += 0.25 * element.volume * stress * gradients;
     }
     for (int a = 0; a < 4; ++a) force.vertex.col(vertices[a]) += held.col(a);
@@ -120,7 +173,7 @@ std::vector<Eigen::Matrix3d> QuadraticStiffness::edge_blocks() const {
         const Eigen::Vector3d g = gradients.col(4 + e);
         blocks[edges_.of_tetrahedron[t][e]] +=
             0.25 * element.volume *
-            ((lambda_ + mu_) * g * g.transpose() + mu_ * g.squaredNorm() * Eigen::Matrix3d::Identity());
+            ((lame_.lambda + lame_.mu) * g * g.transpose() + lame_.mu * g.squaredNorm() * Eigen::Matrix3d::Identity());
       }
     }
   }
