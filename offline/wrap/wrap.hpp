@@ -14,7 +14,7 @@ struct WrapOptions {
   bool largest_piece = false;    ///< keep the largest of several pieces, however large the others are
 };
 
-/// As many lattice points, at most; 60 bytes each, 1 GB together.
+/// As many lattice points, at most; 40 bytes each, 700 MB together.
 inline constexpr std::size_t most_lattice_points = std::size_t{1} << 24;
 
 /// Distances between two surfaces, in the mesh's unit.
