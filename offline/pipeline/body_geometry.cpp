@@ -53,15 +53,14 @@ TriangleMesh read_skin(const Scene& scene, std::optional<TetrahedralMesh>& volum
   return extract_boundary(*volume).surface;
 }
 
-/// Runs `work` on the skin of a scene; where a wrap would help, what it finds wrong says so.
+/// Runs `work` on the skin of a scene; what it finds wrong is told with `offer`, if a wrap is still to be had.
 template <class Work>
-auto offering_a_wrap(const Scene& scene, const Work& work) {
+auto offering_a_wrap(const Scene& scene, const std::string& offer, const Work& work) {
   try {
     return work();
   } catch (const std::runtime_error& error) {
     if (scene.mesh.tetrahedra || scene.mesh.wrap) throw;
-    throw std::runtime_error(std::string(error.what()) +
-                             "\nA closed surface can be put around it: set [surface] wrap = \"auto\"");
+    throw std::runtime_error(std::string(error.what()) + "\n" + offer + ": set [surface] wrap = \"auto\"");
   }
 }
 
@@ -87,8 +86,10 @@ PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& v
     prepared = naming_the_file(scene, [&] { return wrap_skin(scene, skin, wrapped); });
   } else {
     const Weld weld = scene.mesh.weld ? Weld(*scene.mesh.weld / unit) : std::nullopt;
-    prepared =
-        naming_the_file(scene, [&] { return offering_a_wrap(scene, [&] { return prepare_surface(skin, weld); }); });
+    prepared = naming_the_file(scene, [&] {
+      return offering_a_wrap(scene, "A closed surface can be put around it",
+                             [&] { return prepare_surface(skin, weld); });
+    });
     scale(prepared.mesh.vertices, unit);
   }
   prepared.repairs.insert(prepared.repairs.begin(), notes.begin(), notes.end());
@@ -181,7 +182,7 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   options.base_vertices = scene.remesh.base_vertices;
   options.levels = scene.remesh.levels;
   auto remeshed = naming_the_file(scene, [&] {
-    return offering_a_wrap(scene, [&] {
+    return offering_a_wrap(scene, "An evenly meshed surface around it may do", [&] {
       return remesh(prepared.mesh, options,
                     [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
     });

@@ -1,6 +1,7 @@
 #include "offline/wrap/deviation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace greenloop::offline {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "formats/mesh/triangle_mesh.hpp"
