@@ -70,10 +70,20 @@ double median_edge(const TriangleMesh& mesh) {
   return *middle;
 }
 
+double area_of(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    area += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm() / 2;
+  }
+  return area;
+}
+
 double automatic_length(const TriangleMesh& mesh, const Vector3d& sides) {
   const double longest = sides.maxCoeff();
   const double flattest = sides.minCoeff() > 0 ? sides.minCoeff() / 4 : longest;
-  return std::clamp(std::min(median_edge(mesh) / 2, flattest), longest / 160, longest / 64);
+  const double coarsest = longest / 64;
+  const double finest = std::max(longest / 160, std::sqrt(area_of(mesh) / 25'000));  // some 60,000 triangles
+  return std::clamp(std::min(median_edge(mesh) / 2, flattest), std::min(finest, coarsest), coarsest);
 }
 
 /// A lattice around the body, and where its origin lies.
