@@ -82,7 +82,7 @@ double automatic_length(const TriangleMesh& mesh, const Vector3d& sides) {
   const double longest = sides.maxCoeff();
   const double flattest = sides.minCoeff() > 0 ? sides.minCoeff() / 4 : longest;
   const double coarsest = longest / 64;
-  const double finest = std::max(longest / 160, std::sqrt(area_of(mesh) / 25'000));  // some 60,000 triangles
+  const double finest = std::max(longest / 160, std::sqrt(area_of(mesh) / 25'000));  // some 70,000 triangles
   return std::clamp(std::min(median_edge(mesh) / 2, flattest), std::min(finest, coarsest), coarsest);
 }
 

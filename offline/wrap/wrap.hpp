@@ -59,7 +59,7 @@ struct Wrapped {
 ///
 /// The length is at most an eighth of the longest side of the bounding box. If none is given: half the median edge, or
 /// a quarter of the shortest side if that is less, between 1/160 and 1/64 of the longest side, and no less than what
-/// makes some 60,000 triangles.
+/// makes some 70,000 triangles.
 ///
 /// Throws std::runtime_error, naming the number, if the length is too short for most_lattice_points or too long, if no
 /// face has an area, if the length resolves nothing, and if there is more than one piece of at least a twentieth of the
