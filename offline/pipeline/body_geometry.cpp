@@ -18,6 +18,7 @@
 #include "offline/surface/surface_preparation.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/tetrahedralize.hpp"
+#include "offline/wrap/wrap.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -46,21 +47,52 @@ auto naming_the_file(const Scene& scene, const Work& work) {
   }
 }
 
-/// The skin in metres, checked and repaired before it is scaled: defects are reported in the file's own coordinates.
-PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& volume) {
-  TriangleMesh surface;
-  MeshNotes notes;
-  if (scene.mesh.tetrahedra) {
-    volume = read_volume(scene.mesh.path, notes);
-    surface = naming_the_file(scene, [&] { return extract_boundary(*volume).surface; });
-  } else {
-    surface = read_surface(scene.mesh.path, notes);
+TriangleMesh read_skin(const Scene& scene, std::optional<TetrahedralMesh>& volume, MeshNotes& notes) {
+  if (!scene.mesh.tetrahedra) return read_surface(scene.mesh.path, notes);
+  volume = read_volume(scene.mesh.path, notes);
+  return extract_boundary(*volume).surface;
+}
+
+/// Runs `work` on the skin of a scene; what it finds wrong is told with `offer`, if a wrap is still to be had.
+template <class Work>
+auto offering_a_wrap(const Scene& scene, const std::string& offer, const Work& work) {
+  try {
+    return work();
+  } catch (const std::runtime_error& error) {
+    if (scene.mesh.tetrahedra || scene.mesh.wrap) throw;
+    throw std::runtime_error(std::string(error.what()) + "\n" + offer + ": set [surface] wrap = \"auto\"");
   }
-  const double unit = scene.mesh.scale(bounding_box(volume ? volume->vertices : surface.vertices));
-  const Weld weld = scene.mesh.weld ? Weld(*scene.mesh.weld / unit) : std::nullopt;
-  auto prepared = naming_the_file(scene, [&] { return prepare_surface(surface, weld); });
+}
+
+/// The surface around `skin`, in metres, as its own reader's would be.
+PreparedSurface wrap_skin(const Scene& scene, const TriangleMesh& skin, std::optional<WrapReport>& report) {
+  auto wrapped = wrap(skin, {scene.mesh.wrap->length, scene.mesh.wrap->largest_piece});
+  report = wrapped.report;
+  auto prepared = prepare_surface(wrapped.mesh);
+  const auto changes = describe_wrap(wrapped.report, "m");
+  prepared.repairs.insert(prepared.repairs.begin(), changes.begin(), changes.end());
+  return prepared;
+}
+
+/// The skin in metres, checked and repaired before it is scaled: defects are reported in the file's own coordinates.
+PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& volume,
+                           std::optional<WrapReport>& wrapped) {
+  MeshNotes notes;
+  TriangleMesh skin = naming_the_file(scene, [&] { return read_skin(scene, volume, notes); });
+  const double unit = scene.mesh.scale(bounding_box(volume ? volume->vertices : skin.vertices));
+  PreparedSurface prepared;
+  if (scene.mesh.wrap) {
+    scale(skin.vertices, unit);
+    prepared = naming_the_file(scene, [&] { return wrap_skin(scene, skin, wrapped); });
+  } else {
+    const Weld weld = scene.mesh.weld ? Weld(*scene.mesh.weld / unit) : std::nullopt;
+    prepared = naming_the_file(scene, [&] {
+      return offering_a_wrap(scene, "A closed surface can be put around it",
+                             [&] { return prepare_surface(skin, weld); });
+    });
+    scale(prepared.mesh.vertices, unit);
+  }
   prepared.repairs.insert(prepared.repairs.begin(), notes.begin(), notes.end());
-  scale(prepared.mesh.vertices, unit);
   if (volume) {
     scale(volume->vertices, unit);
   }
@@ -136,7 +168,8 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
 
   progress.begin("surface");
   std::optional<TetrahedralMesh> tetrahedra;
-  const auto prepared = read_input(scene, tetrahedra);
+  std::optional<WrapReport> wrapped;
+  const auto prepared = read_input(scene, tetrahedra, wrapped);
   const Eigen::AlignedBox3d box = bounding_box(prepared.mesh.vertices);
   const Eigen::Vector3d sides = box.sizes();
   progress.end(fmt::format("{} vertices, {} triangles, {:.3g} x {:.3g} x {:.3g} m, {}", prepared.report.vertex_count,
@@ -149,10 +182,12 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   options.base_vertices = scene.remesh.base_vertices;
   options.levels = scene.remesh.levels;
   auto remeshed = naming_the_file(scene, [&] {
-    return remesh(prepared.mesh, options,
-                  [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
+    return offering_a_wrap(scene, "An evenly meshed surface around it may do", [&] {
+      return remesh(prepared.mesh, options,
+                    [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
+    });
   });
-  body.report = {scene.mesh.name, prepared.report, prepared.repairs, remeshed.quality};
+  body.report = {scene.mesh.name, prepared.report, prepared.repairs, wrapped, remeshed.quality};
   progress.end(
       fmt::format("{} vertices on {} levels over {}, smallest angle {:.1f} degrees, Hausdorff {:.2f} % of the diagonal",
                   remeshed.mesh.positions.size(), remeshed.quality.levels + 1, remeshed.quality.base_vertices,

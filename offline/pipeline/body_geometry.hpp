@@ -15,6 +15,7 @@
 #include "offline/surface/surface_report.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/tetrahedra_quality.hpp"
+#include "offline/wrap/wrap.hpp"
 
 namespace greenloop::offline {
 
@@ -30,6 +31,7 @@ struct GeometryReport {
   std::string file;                  ///< of the mesh, as the scene names it
   SurfaceReport surface;             ///< what was remeshed
   std::vector<std::string> repairs;  ///< of the mesh, and what its reader passed over, one sentence each
+  std::optional<WrapReport> wrap;    ///< if the scene asks for one; m
   RemeshQuality remesh;
 };
 

@@ -27,26 +27,51 @@ json trial_record(const Tried& of, std::uint64_t step_work) {
           {"step_work", step_work}};
 }
 
+json deviation_record(const Deviation& deviation) { return {{"max", deviation.greatest}, {"rms", deviation.rms}}; }
+
+json wrap_record(const WrapReport& report) {
+  json record = {{"length", report.length},
+                 {"lattice_points", report.lattice_points},
+                 {"boundary_loops", report.boundary_loops},
+                 {"misoriented_edges", report.misoriented_edges},
+                 {"useless_faces", report.useless_faces},
+                 {"pieces_dropped", report.pieces_dropped},
+                 {"dropped_share", report.dropped_share},
+                 {"inner_share", report.inner_share},
+                 {"sheet_share", report.sheet_share},
+                 {"thin_share", report.thin_share},
+                 {"filled_shells", report.filled_shells},
+                 {"from_original", deviation_record(report.from_original)},
+                 {"to_original", deviation_record(report.to_original)},
+                 {"volume", report.volume}};
+  if (report.crossing_pairs) record["crossing_pairs"] = *report.crossing_pairs;
+  if (report.volume_before) record["volume_before"] = *report.volume_before;
+  if (report.plate_thickness) record["plate_thickness"] = *report.plate_thickness;
+  return record;
+}
+
 }  // namespace
 
 json geometry_record(const GeometryReport& report) {
   const RemeshQuality& remesh = report.remesh;
-  return {{"surface",
-           {{"file", report.file},
-            {"vertices", report.surface.vertex_count},
-            {"triangles", report.surface.triangle_count},
-            {"genus", report.surface.genus()},
-            {"repairs", report.repairs}}},
-          {"remesh",
-           {{"base_vertices", remesh.base_vertices},
-            {"levels", remesh.levels},
-            {"triangles", remesh.triangles},
-            {"kept_connectivity", remesh.kept_connectivity},
-            {"smallest_angle_degrees", remesh.smallest_angle_degrees},
-            {"hausdorff_metres", remesh.hausdorff},
-            {"hausdorff_relative", remesh.hausdorff_relative},
-            {"flipped", remesh.flipped},
-            {"self_intersections", remesh.self_intersections}}}};
+  json record = {{"surface",
+                  {{"file", report.file},
+                   {"vertices", report.surface.vertex_count},
+                   {"triangles", report.surface.triangle_count},
+                   {"genus", report.surface.genus()},
+                   {"repairs", report.repairs}}},
+                 {"remesh",
+                  {{"base_vertices", remesh.base_vertices},
+                   {"levels", remesh.levels},
+                   {"triangles", remesh.triangles},
+                   {"kept_connectivity", remesh.kept_connectivity},
+                   {"smallest_angle_degrees", remesh.smallest_angle_degrees},
+                   {"hausdorff_metres", remesh.hausdorff},
+                   {"hausdorff_relative", remesh.hausdorff_relative},
+                   {"flipped", remesh.flipped},
+                   {"self_intersections", remesh.self_intersections}}}};
+  if (report.wrap) record["surface"]["wrap"] = wrap_record(*report.wrap);
+  return record;
 }
 
 json volume_record(const FilledVolume& filled) {

@@ -29,14 +29,21 @@ class SceneError : public std::runtime_error {
   std::vector<std::string> problems_;
 };
 
+/// A closed surface around whatever the file holds, in place of the file's own.
+struct WrapSource {
+  std::optional<double> length;  ///< what it resolves [m]; none: chosen
+  bool largest_piece = false;    ///< keep the largest of several pieces
+};
+
 /// The mesh and the size of its unit: exactly one of `unit` and `size` is set.
 struct MeshSource {
-  bool tetrahedra = false;       ///< [volume] instead of [surface]
-  std::string name;              ///< as the scene says
-  std::filesystem::path path;    ///< seen from the working directory
-  std::optional<double> unit;    ///< length of one mesh unit [m]
-  std::optional<double> size;    ///< longest side of the bounding box after scaling [m]
-  std::optional<double> weld;    ///< vertices of a surface within this become one [m]; none: as far as it takes
+  bool tetrahedra = false;     ///< [volume] instead of [surface]
+  std::string name;            ///< as the scene says
+  std::filesystem::path path;  ///< seen from the working directory
+  std::optional<double> unit;  ///< length of one mesh unit [m]
+  std::optional<double> size;  ///< longest side of the bounding box after scaling [m]
+  std::optional<double> weld;  ///< vertices of a surface within this become one [m]; none: as far as it takes
+  std::optional<WrapSource> wrap;
   bool keep_vertex_map = false;  ///< tell in the model where the surface's vertices lie on it
 
   /// Metres per unit of a mesh with this bounding box. Throws SceneError if the box has no extent to scale.

@@ -26,6 +26,31 @@ void read_weld(const Table& table, MeshSource& mesh) {
   mesh.weld = zero ? std::optional<double>(0) : table.quantity("weld", Dimension::length);
 }
 
+/// "auto" or a length, and which piece.
+void read_wrap(const Table& table, MeshSource& mesh) {
+  const auto* node = table.find("wrap");
+  if (node != nullptr) {
+    mesh.wrap.emplace();
+    if (node->value<std::string>() != "auto") mesh.wrap->length = table.quantity("wrap", Dimension::length);
+  }
+  const auto pieces = table.string("pieces");
+  if (pieces && *pieces != "one" && *pieces != "largest") {
+    table.refuse("pieces", "\"" + *pieces + "\" is neither \"one\", which refuses several, nor \"largest\"");
+  } else if (table.has("pieces") && !mesh.wrap) {
+    table.refuse("pieces", "chooses among the pieces of a wrap; write wrap = \"auto\" beside it");
+  } else if (pieces) {
+    mesh.wrap->largest_piece = *pieces == "largest";
+  }
+  if (mesh.wrap && table.has("weld")) {
+    table.refuse("weld", "does not go with wrap, which closes seams by itself; remove one of them");
+  }
+  for (const std::string_view key : {"wrap", "pieces"}) {
+    if (mesh.tetrahedra && table.has(key)) {
+      table.refuse(key, "does not go with [volume], whose tetrahedra are used as they are; remove it");
+    }
+  }
+}
+
 void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource& mesh) {
   if (scene.has("surface") == scene.has("volume")) {
     scene.problems().add({}, scene.has("volume") ? "volume" : "surface",
@@ -34,7 +59,7 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
                              : "missing; write for example [surface] file = \"bear.off\", unit = \"cm\"");
   }
   for (const std::string_view name : {"surface", "volume"}) {
-    const auto table = section(scene, name, {"file", "unit", "size", "weld", "keep_vertex_map"});
+    const auto table = section(scene, name, {"file", "unit", "size", "weld", "wrap", "pieces", "keep_vertex_map"});
     if (!table) {
       continue;
     }
@@ -48,6 +73,7 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
     if (mesh.tetrahedra && table->has("weld")) {
       table->refuse("weld", "does not go with [volume], whose tetrahedra share their vertices; remove it");
     }
+    read_wrap(*table, mesh);
     set_if(mesh.keep_vertex_map, table->boolean("keep_vertex_map"));
     if (mesh.tetrahedra && table->has("keep_vertex_map")) {
       table->refuse("keep_vertex_map", "does not go with [volume], whose surface is not the author's; remove it");

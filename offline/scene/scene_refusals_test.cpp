@@ -243,6 +243,18 @@ TEST_CASE("refused: a weld that is no length, and one of a volume") {
   check_refused(with("[surface]", "[volume]\nweld = \"1 mm\""), {"volume.weld: does not go with [volume]"});
 }
 
+TEST_CASE("refused: a wrap that is no length, pieces without one, a weld beside one, and one of a volume") {
+  check_refused(with("unit =", "wrap = 2\nunit ="), {":3:8: surface.wrap: 2 has no unit"});
+  check_refused(with("unit =", "wrap = \"automatic\"\nunit ="), {":3:8: surface.wrap: "});
+  check_refused(with("unit =", "wrap = \"0 mm\"\nunit ="), {":3:8: surface.wrap: "});
+  check_refused(with("unit =", "wrap = true\nunit ="), {":3:8: surface.wrap: "});
+  check_refused(with("unit =", "wrap = \"auto\"\npieces = \"all\"\nunit ="),
+                {":4:10: surface.pieces: \"all\" is neither \"one\""});
+  check_refused(with("unit =", "pieces = \"largest\"\nunit ="), {"surface.pieces: chooses among the pieces of a wrap"});
+  check_refused(with("unit =", "wrap = \"auto\"\nweld = \"1 mm\"\nunit ="), {"surface.weld: does not go with wrap"});
+  check_refused(with("[surface]", "[volume]\nwrap = \"auto\""), {"volume.wrap: does not go with [volume]"});
+}
+
 TEST_CASE("refused: levels out of range") {
   check_refused(smallest + "[remesh]\nlevels = 8\n", {"remesh.levels: 8 is out of range; it has to be from 0 to 7"});
   check_refused(smallest + "[remesh]\nlevels = -1\n", {"remesh.levels: -1 is out of range"});

@@ -178,6 +178,24 @@ TEST_CASE("welding: as far as it takes, a length, or not by distance") {
   CHECK(parse_scene(canonical_text(off), "s.toml").mesh.weld == 0);
 }
 
+TEST_CASE("wrapping: none, automatic, or a length, and the largest piece if asked for; all in the canonical text") {
+  const Scene plain = parse_scene(smallest, "s.toml");
+  CHECK(!plain.mesh.wrap);
+  CHECK(canonical_text(plain).find("wrap") == std::string::npos);
+  const Scene automatic = parse_scene(with("unit =", "wrap = \"auto\"\npieces = \"one\"\nunit ="), "s.toml");
+  REQUIRE(automatic.mesh.wrap);
+  CHECK(!automatic.mesh.wrap->length);
+  CHECK(!automatic.mesh.wrap->largest_piece);
+  CHECK(body_text(automatic) != body_text(plain));
+  CHECK(parse_scene(canonical_text(automatic), "s.toml").mesh.wrap);
+  const Scene length = parse_scene(with("unit =", "wrap = \"2 mm\"\npieces = \"largest\"\nunit ="), "s.toml");
+  CHECK(length.mesh.wrap->length == 0.002);
+  const Scene again = parse_scene(canonical_text(length), "s.toml");
+  CHECK(again.mesh.wrap->length == 0.002);
+  CHECK(again.mesh.wrap->largest_piece);
+  CHECK(body_text(length) != body_text(automatic));
+}
+
 TEST_CASE("a vertex map is kept if the scene says so, and only then part of the canonical text") {
   CHECK(!parse_scene(smallest, "s.toml").mesh.keep_vertex_map);
   const Scene asks = parse_scene(with("unit =", "keep_vertex_map = true\nunit ="), "s.toml");

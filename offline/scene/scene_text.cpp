@@ -63,11 +63,19 @@ std::string regions_text(const std::string& role, const std::vector<Region>& reg
   return text;
 }
 
+std::string wrap_text(const std::optional<WrapSource>& wrap) {
+  if (!wrap) return "";
+  std::string text = "wrap = ";
+  text += wrap->length ? quantity(*wrap->length, "m") : string("auto");
+  return text + (wrap->largest_piece ? "\npieces = \"largest\"\n" : "\n");
+}
+
 std::string mesh_text(const MeshSource& mesh) {
   const std::string weld =
       !mesh.weld ? "" : "weld = " + (*mesh.weld > 0 ? quantity(*mesh.weld, "m") : std::string("0")) + "\n";
   return std::string(mesh.tetrahedra ? "[volume]" : "[surface]") + "\nfile = " + string(mesh.name) + "\n" +
-         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n" + weld;
+         (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n" + weld +
+         wrap_text(mesh.wrap);
 }
 
 std::string remesh_text(const Scene& scene) {

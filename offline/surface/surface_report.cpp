@@ -157,7 +157,7 @@ bool is_closed_manifold(const TriangleMesh& mesh) {
   return report.closed() && report.manifold();
 }
 
-SurfaceReport check_surface(const TriangleMesh& mesh) {
+SurfaceReport check_connectivity(const TriangleMesh& mesh) {
   SurfaceReport report;
   report.vertex_count = mesh.vertices.size();
   report.triangle_count = mesh.triangles.size();
@@ -171,6 +171,11 @@ SurfaceReport check_surface(const TriangleMesh& mesh) {
   if (report.closed() && report.non_manifold_edges.empty() && report.oriented() && !mesh.triangles.empty()) {
     report.volume = signed_volume(mesh, report.box.center());
   }
+  return report;
+}
+
+SurfaceReport check_surface(const TriangleMesh& mesh) {
+  SurfaceReport report = check_connectivity(mesh);
   std::vector<bool> degenerate(mesh.triangles.size(), false);
   for (const int face : report.zero_area_faces) {
     degenerate[face] = true;

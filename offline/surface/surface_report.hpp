@@ -51,6 +51,9 @@ struct SurfaceReport {
 /// Work: n log n for n faces if few intersect; 20,000 faces take well below a second.
 [[nodiscard]] SurfaceReport check_surface(const TriangleMesh& mesh);
 
+/// The same but for intersecting_faces, which stay unknown.
+[[nodiscard]] SurfaceReport check_connectivity(const TriangleMesh& mesh);
+
 /// True if every edge has two faces and the faces around each vertex form one ring. Work: n log n.
 [[nodiscard]] bool is_closed_manifold(const TriangleMesh& mesh);
 

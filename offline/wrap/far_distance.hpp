@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "offline/wrap/lattice.hpp"
+
+namespace greenloop::offline {
+
+/// Continues distances that are known up to `band` to all points: from those within 1, by less than half a spacing too
+/// short (Felzenszwalb & Huttenlocher, "Distance transforms of sampled functions", 2012). Work: linear.
+[[nodiscard]] std::vector<float> far_distance(const std::vector<float>& distance, const Lattice& lattice);
+
+}  // namespace greenloop::offline
