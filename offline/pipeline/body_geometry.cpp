@@ -188,10 +188,13 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
     });
   });
   body.report = {scene.mesh.name, prepared.report, prepared.repairs, wrapped, remeshed.quality};
-  progress.end(
-      fmt::format("{} vertices on {} levels over {}, smallest angle {:.1f} degrees, Hausdorff {:.2f} % of the diagonal",
-                  remeshed.mesh.positions.size(), remeshed.quality.levels + 1, remeshed.quality.base_vertices,
-                  remeshed.quality.smallest_angle_degrees, 100 * remeshed.quality.hausdorff_relative));
+  progress.end(fmt::format(
+      "{} vertices on {} levels over {}, smallest angle {:.1f} degrees, Hausdorff {:.2f} % of the diagonal, "
+      "{:.3g} mm off the surface, the surface {:.3g} mm off it, volume {:+.2f} %",
+      remeshed.mesh.positions.size(), remeshed.quality.levels + 1, remeshed.quality.base_vertices,
+      remeshed.quality.smallest_angle_degrees, 100 * remeshed.quality.hausdorff_relative,
+      1e3 * remeshed.quality.farthest_of_mesh, 1e3 * remeshed.quality.farthest_of_input,
+      100 * remeshed.quality.volume_change));
 
   progress.begin("nodes");
   const auto sets = select_nodes(scene, remeshed.mesh.positions, bounding_box(remeshed.mesh.positions));

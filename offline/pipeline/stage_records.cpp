@@ -68,6 +68,9 @@ json geometry_record(const GeometryReport& report) {
                    {"smallest_angle_degrees", remesh.smallest_angle_degrees},
                    {"hausdorff_metres", remesh.hausdorff},
                    {"hausdorff_relative", remesh.hausdorff_relative},
+                   {"mesh_off_surface_metres", remesh.farthest_of_mesh},
+                   {"surface_off_mesh_metres", remesh.farthest_of_input},
+                   {"volume_change", remesh.volume_change},
                    {"flipped", remesh.flipped},
                    {"self_intersections", remesh.self_intersections}}}};
   if (report.wrap) record["surface"]["wrap"] = wrap_record(*report.wrap);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <queue>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -25,6 +26,9 @@ constexpr std::array<CollapseRule, 5> kRules{{{0.3, 0.25, 4, 7, 1},
                                               {-0.5, 0.05, 4, 8, 5},
                                               {-2.0, 0.0, 4, 9, 20},
                                               {-2.0, -1.0, 3, std::numeric_limits<int>::max(), 1e3}}};
+
+/// With chains to keep, worse triangles than these allow are not worth fewer vertices.
+constexpr std::array<CollapseRule, 2> kFeatureRules{{{0.3, 0.5, 4, 7, 1}, {0.0, 0.4, 4, 8, 3}}};
 
 /// Share of the scatter of area against the quadric error: 0 places base vertices by shape alone.
 constexpr double kEvenness = 0.02;
@@ -51,7 +55,7 @@ constexpr double kThinWeight = 2, kCreaseWeight = 4;
 
 class Decimation {
  public:
-  explicit Decimation(const TriangleMesh& mesh)
+  Decimation(const TriangleMesh& mesh, const Features& features)
       : positions_(mesh.vertices),
         corners_(mesh.triangles),
         alive_(mesh.triangles.size(), 1),
@@ -59,6 +63,8 @@ class Decimation {
         planes_(mesh.vertices.size()),
         scatter_(mesh.vertices.size()),
         stamps_(mesh.vertices.size(), 0),
+        links_(features, mesh.vertices.size()),
+        rules_(features.chains.empty() ? std::span<const CollapseRule>(kRules) : kFeatureRules),
         remaining_(static_cast<int>(mesh.vertices.size())) {
     double area = 0;
     for (const auto& [a, b, c] : mesh.triangles) {
@@ -82,6 +88,7 @@ class Decimation {
       if (around_[v].empty()) continue;
       renumbered[v] = static_cast<int>(parameterization.base_vertices.size());
       parameterization.base_vertices.push_back(positions_[v]);
+      parameterization.base_origin.push_back(static_cast<int>(v));
       parameterization.base_planes.push_back(1 / scatter_[v].a(0, 0) * planes_[v]);
     }
     for (std::size_t t = 0; t < corners_.size(); ++t) {
@@ -91,6 +98,7 @@ class Decimation {
       parameterization.base_ids.push_back(static_cast<int>(t));
     }
     parameterization.changes = std::move(changes_);
+    parameterization.base_features = links_.features(renumbered, parameterization.base_vertices);
     return parameterization;
   }
 
@@ -126,10 +134,30 @@ class Decimation {
 
   [[nodiscard]] Quadric cost_of(int v) const { return planes_[v] + kEvenness * scatter_[v]; }
 
+  /// Which end of an edge goes into which, and where the other then is.
+  struct Merge {
+    int from, to;
+    Eigen::Vector3d place;
+  };
+
+  /// Free ends meet where the shape is kept best, others at the end that must stay; nothing where neither may go.
+  [[nodiscard]] std::optional<Merge> merge_of(int low, int high) const {
+    const Quadric joint = cost_of(low) + cost_of(high);
+    if (links_.is_free(low) && links_.is_free(high)) return Merge{low, high, joint.minimizer()};
+    const bool low_goes = links_.may_collapse(low, high), high_goes = links_.may_collapse(high, low);
+    if (!low_goes && !high_goes) return std::nullopt;
+    if (low_goes && (!high_goes || joint.at(positions_[high]) <= joint.at(positions_[low]))) {
+      return Merge{low, high, positions_[high]};
+    }
+    return Merge{high, low, positions_[low]};
+  }
+
   void push(int v, int w) {
-    const int from = std::min(v, w), to = std::max(v, w);
+    const auto merge = merge_of(std::min(v, w), std::max(v, w));
+    if (!merge) return;
+    const auto& [from, to, place] = *merge;
     const Quadric of_from = cost_of(from), of_to = cost_of(to), joint = of_from + of_to;
-    const double cost = joint.at(joint.minimizer()) - of_from.at(positions_[from]) - of_to.at(positions_[to]);
+    const double cost = joint.at(place) - of_from.at(positions_[from]) - of_to.at(positions_[to]);
     queue_.push({std::max(cost, 1e-15), from, to, stamps_[from] + stamps_[to], 0});
   }
 
@@ -147,10 +175,10 @@ class Decimation {
           candidate.stamp != stamps_[candidate.from] + stamps_[candidate.to]) {
         continue;
       }
-      if (!collapse(candidate.from, candidate.to, kRules[candidate.rule])) {
-        if (candidate.rule + 1 == kRules.size()) continue;
+      if (!collapse(candidate.from, candidate.to, rules_[candidate.rule])) {
+        if (candidate.rule + 1 == rules_.size()) continue;
         ++candidate.rule;
-        candidate.cost *= kRules[candidate.rule].cost_factor / kRules[candidate.rule - 1].cost_factor;
+        candidate.cost *= rules_[candidate.rule].cost_factor / rules_[candidate.rule - 1].cost_factor;
         queue_.push(candidate);
         continue;
       }
@@ -175,15 +203,56 @@ class Decimation {
     for (const int side : shared) {
       if (valence(side) - 1 < rule.least_valence) return false;
     }
-    const auto patch = patch_of(from, to, (cost_of(from) + cost_of(to)).minimizer());
+    const bool free = links_.is_free(from) && links_.is_free(to);
+    if (!free && !links_.may_collapse(from, to)) return false;
+    if (makes_ear(from, to)) return false;
+    const auto patch = patch_of(from, to, free ? (cost_of(from) + cost_of(to)).minimizer() : positions_[to]);
     if (!allowed(patch, rule)) return false;
-    auto flat = flatten(patch);
+    auto flat = free ? flatten(patch) : flatten_onto_second(patch);
     if (!flat) return false;
     changes_.push_back(std::move(*flat));
     apply(from, to, patch.vertices.back());
+    links_.collapse(from, to);
     planes_[to] += planes_[from];
     scatter_[to] += scatter_[from];
     return true;
+  }
+
+  /// A triangle with two edges on chains would be flattened where they run on smoothly: at a vertex inside a chain, or
+  /// a corner at which they turn little.
+  [[nodiscard]] bool is_ear(const std::array<int, 3>& corners, const std::array<bool, 3>& on_chain) const {
+    constexpr double kWidest = -0.5;  // the cosine of 120 degrees
+    for (int c = 0; c < 3; ++c) {
+      if (!on_chain[c] || !on_chain[(c + 2) % 3]) continue;
+      if (!links_.is_corner(corners[c])) return true;
+      const Eigen::Vector3d u = positions_[corners[(c + 1) % 3]] - positions_[corners[c]];
+      const Eigen::Vector3d v = positions_[corners[(c + 2) % 3]] - positions_[corners[c]];
+      if (u.dot(v) < kWidest * u.norm() * v.norm()) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool makes_ear(int from, int to) const {
+    if (links_.is_free(to)) return false;
+    const int other = links_.is_free(from) ? -1 : links_.beyond(from, to);
+    const auto linked = [&](int v, int w) {
+      return links_.chain(v, w) >= 0 || (other >= 0 && std::minmax(v, w) == std::minmax(to, other));
+    };
+    for (const int start : {from, to}) {
+      for (const int t : around_[start]) {
+        auto corners = corners_[t];
+        std::replace(corners.begin(), corners.end(), from, to);
+        const auto& [a, b, c] = corners;
+        if (a == b || b == c || c == a) continue;
+        if (is_ear(corners, {linked(a, b), linked(b, c), linked(c, a)})) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool is_ear(int a, int b, int c) const {
+    const auto linked = [&](int v, int w) { return links_.chain(v, w) >= 0; };
+    return is_ear({a, b, c}, {linked(a, b), linked(b, c), linked(c, a)});
   }
 
   [[nodiscard]] std::vector<int> common_neighbors(int v, int w) const {
@@ -223,6 +292,7 @@ class Decimation {
       }
       throw std::logic_error("decimation: vertex " + std::to_string(v) + " is missing from the outline of its patch");
     };
+    if (!links_.is_free(from)) patch.line = index(links_.beyond(from, to));
     for (const int t : triangles) {
       PatchTriangle triangle{t, {index(corners_[t][0]), index(corners_[t][1]), index(corners_[t][2])}};
       patch.before.push_back(triangle);
@@ -300,9 +370,11 @@ class Decimation {
       if (following(t, following(t, v)) == w) right = t;
     }
     const int above = following(left, w), below = following(right, v);
+    if (links_.chain(v, w) != CurvePoint::kFree) return false;
     if (valence(v) < 5 || valence(w) < 5 || common_neighbors(v, w).size() != 2) return false;
     const auto ring = neighbors(above);
     if (std::binary_search(ring.begin(), ring.end(), below)) return false;
+    if (is_ear(above, v, below) || is_ear(below, w, above)) return false;
     const double now = unevenness(v, w, above) + unevenness(w, v, below) + crease(v, w, above, below);
     const double then = unevenness(above, v, below) + unevenness(below, w, above) + crease(above, below, w, v);
     const double valences = 2.0 * (valence(above) + valence(below) - valence(v) - valence(w) + 2);
@@ -367,13 +439,15 @@ class Decimation {
   std::vector<long> stamps_;               ///< raised whenever a vertex or its ring changes: older candidates are void
   std::priority_queue<Candidate> queue_;
   std::vector<FlatPatch> changes_;
+  FeatureLinks links_;
+  std::span<const CollapseRule> rules_;  ///< mildest first
   int remaining_;
 };
 
 }  // namespace
 
-SelfParameterization decimate(const TriangleMesh& mesh, int base_vertices) {
-  Decimation decimation(mesh);
+SelfParameterization decimate(const TriangleMesh& mesh, int base_vertices, const Features& features) {
+  Decimation decimation(mesh, features);
   decimation.run(base_vertices);
   return std::move(decimation).result();
 }

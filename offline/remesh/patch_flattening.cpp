@@ -122,6 +122,29 @@ bool unfolded(const std::vector<FlatTriangle>& triangles, double share) {
   return least > share * whole / static_cast<double>(triangles.size()) && whole > 0;
 }
 
+/// The first end between the second, which stays, and where its line comes from, or its neighbours' mean value.
+std::optional<FlatPatch> flattened_towards_second(const CollapsePatch& patch, Places places, double share) {
+  const int first = patch.outline, second = patch.outline + 1;
+  places[second] = places[patch.outline + 2];
+  const double to_second = (patch.vertices[second] - patch.vertices[first]).norm();
+  Eigen::Vector2d away = Eigen::Vector2d::Zero();
+  if (patch.line >= 0) {
+    const double to_line = (patch.vertices[patch.line] - patch.vertices[first]).norm();
+    away = to_second / (to_second + to_line) * (places[patch.line] - places[second]);
+  } else {
+    const auto weights = mean_value_weights(patch, patch.before, first);
+    for (int b = 0; b <= patch.outline + 1; ++b) {
+      if (b != first) away += weights[b] * (places[b] - places[second]);
+    }
+  }
+  for (int halvings = 0; halvings < 12; ++halvings, away /= 2) {
+    places[first] = places[second] + away;
+    FlatPatch flat{laid_out(patch.before, places), laid_out(patch.after, places)};
+    if (unfolded(flat.before, std::ldexp(share, -halvings)) && unfolded(flat.after, share)) return flat;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<FlatPatch> flatten(const CollapsePatch& patch) {
@@ -136,6 +159,15 @@ std::optional<FlatPatch> flatten(const CollapsePatch& patch) {
   FlatPatch flat{laid_out(patch.before, places), laid_out(patch.after, places)};
   if (unfolded(flat.before, 1e-9) && unfolded(flat.after, 1e-9)) return flat;
   return std::nullopt;
+}
+
+std::optional<FlatPatch> flatten_onto_second(const CollapsePatch& patch) {
+  Places places(patch.outline + 3);
+  if (place_outline_by_polar_map(patch, places)) {
+    if (auto flat = flattened_towards_second(patch, places, 1e-3)) return flat;
+  }
+  place_outline_on_circle(patch, places);
+  return flattened_towards_second(patch, places, 1e-6);
 }
 
 FlatLocation locate(const std::vector<FlatTriangle>& triangulation, const Eigen::Vector2d& place) {

@@ -30,6 +30,7 @@ struct PatchTriangle {
 struct CollapsePatch {
   std::vector<Eigen::Vector3d> vertices;
   int outline = 0;
+  int line = -1;  ///< if the first end lies on a feature line to the second: the outline vertex where that comes from
   std::vector<PatchTriangle> before, after;
 };
 
@@ -38,6 +39,10 @@ struct CollapsePatch {
 /// coordinates. Where that folds a triangle: the outline on a circle, all three by mean value coordinates, which
 /// cannot fold (Floater 2003). Nothing is returned if rounding spoils even that.
 [[nodiscard]] std::optional<FlatPatch> flatten(const CollapsePatch& patch);
+
+/// The same where the second end stays in its place, so that feature lines through it map to themselves: the first lies
+/// on the line from patch.line to it, if there is one, as near to it as folds nothing.
+[[nodiscard]] std::optional<FlatPatch> flatten_onto_second(const CollapsePatch& patch);
 
 /// The triangle of `triangulation` that holds `place`, and its barycentric weights there (clamped to >= 0).
 struct FlatLocation {

@@ -18,7 +18,7 @@ struct Extreme {
   Eigen::Vector3d place;
 };
 
-Extreme smallest_angle(const TriangleMesh& mesh) {
+Extreme sharpest(const TriangleMesh& mesh) {
   Extreme least{std::numbers::pi, Eigen::Vector3d::Zero()};
   for (const auto& corners : mesh.triangles) {
     for (int c = 0; c < 3; ++c) {
@@ -45,9 +45,9 @@ std::size_t flipped_triangles(const TriangleMesh& mesh, const Surface& input, co
   }));
 }
 
-/// The greatest distance from samples of `from` to the surface of `to`, at least `known`.
-Extreme one_sided_distance(const TriangleMesh& from, const TriangleTree& to, double spacing, const Extreme& known) {
-  Extreme greatest = known;
+/// The greatest distance from samples of `from` to the surface of `to`.
+Extreme one_sided_distance(const TriangleMesh& from, const TriangleTree& to, double spacing) {
+  Extreme greatest{0, from.vertices.front()};
   const auto sample = [&](const Eigen::Vector3d& p) {
     const double distance = to.distance(p, greatest.value);
     if (distance > greatest.value) greatest = {distance, p};
@@ -66,7 +66,17 @@ Extreme one_sided_distance(const TriangleMesh& from, const TriangleTree& to, dou
   return greatest;
 }
 
+double volume(const TriangleMesh& mesh, const Eigen::Vector3d& origin) {
+  double six = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    six += (mesh.vertices[a] - origin).cross(mesh.vertices[b] - origin).dot(mesh.vertices[c] - origin);
+  }
+  return six / 6;
+}
+
 }  // namespace
+
+double smallest_angle(const TriangleMesh& mesh) { return sharpest(mesh).value; }
 
 RemeshQuality measure_quality(const TriangleMesh& input, const SemiRegularMesh& mesh) {
   const TriangleMesh finest{mesh.positions, triangles_of_level(mesh, mesh.finest_level())};
@@ -80,11 +90,15 @@ RemeshQuality measure_quality(const TriangleMesh& input, const SemiRegularMesh& 
   const auto fraction = [&](const Eigen::Vector3d& place) -> Eigen::Vector3d {
     return (place - box.min()).cwiseQuotient(box.sizes().cwiseMax(1e-300));
   };
-  const auto angle = smallest_angle(finest);
+  const auto angle = sharpest(finest);
   quality.smallest_angle_degrees = angle.value;
   quality.smallest_angle_at = fraction(angle.place);
-  const auto farthest = one_sided_distance(finest, input_tree, diagonal / 400, {0, box.min()});
-  const auto distance = one_sided_distance(input, finest_tree, diagonal / 400, farthest);
+  const auto of_mesh = one_sided_distance(finest, input_tree, diagonal / 400);
+  const auto of_input = one_sided_distance(input, finest_tree, diagonal / 400);
+  const auto& distance = of_input.value > of_mesh.value ? of_input : of_mesh;
+  quality.farthest_of_mesh = of_mesh.value;
+  quality.farthest_of_input = of_input.value;
+  quality.volume_change = volume(finest, box.center()) / volume(input, box.center()) - 1;
   quality.hausdorff = distance.value;
   quality.hausdorff_at = fraction(distance.place);
   quality.hausdorff_relative = quality.hausdorff / diagonal;

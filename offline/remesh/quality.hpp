@@ -12,6 +12,9 @@ namespace greenloop::offline {
 struct RemeshQuality {
   double smallest_angle_degrees = 0;
   double hausdorff = 0;           ///< the greater of both directions, in the input's unit
+  double farthest_of_mesh = 0;    ///< of the mesh from the input, in its unit
+  double farthest_of_input = 0;   ///< of the input from the mesh, in its unit
+  double volume_change = 0;       ///< of the enclosed volume, as a share of the input's
   double hausdorff_relative = 0;  ///< as a share of the diagonal of the input's bounding box
   std::size_t triangles = 0;
   std::size_t flipped = 0;             ///< triangles whose normal is not within 90 degrees of the input's
@@ -25,6 +28,9 @@ struct RemeshQuality {
   Eigen::Vector3d hausdorff_at = Eigen::Vector3d::Zero();
   Eigen::Vector3d flipped_at = Eigen::Vector3d::Zero();
 };
+
+/// The smallest angle of a triangle mesh, degrees.
+[[nodiscard]] double smallest_angle(const TriangleMesh& mesh);
 
 /// Measures `mesh` against `input` (kept_connectivity is left false). The Hausdorff distance is sampled from both
 /// surfaces: all vertices, and on every triangle a grid of points no farther apart than 1/400 of the diagonal of the

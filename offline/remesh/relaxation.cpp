@@ -77,9 +77,10 @@ Eigen::Vector3d position_on(const TriangleMesh& mesh, const SurfacePoint& place)
 
 class Relaxation {
  public:
-  Relaxation(const Surface& surface, const SemiRegularMesh& mesh, std::vector<SurfacePoint> points,
-             const std::vector<Quadric>& base_planes)
+  Relaxation(const Surface& surface, const FeatureCurves& curves, const SemiRegularMesh& mesh,
+             std::vector<BoundPoint> points, const std::vector<Quadric>& base_planes)
       : surface_(surface),
+        curves_(curves),
         points_(std::move(points)),
         triangles_(triangles_of_level(mesh, mesh.finest_level())),
         base_planes_(base_planes) {
@@ -97,6 +98,7 @@ class Relaxation {
     for (const auto& [a, b, c] : input.triangles) {
       area += (input.vertices[b] - input.vertices[a]).cross(input.vertices[c] - input.vertices[a]).norm() / 2;
     }
+    find_witnesses();
     anchor_weight_ = kAnchor * static_cast<double>(triangles_.size()) / area;
     ideal_area_ = area / static_cast<double>(triangles_.size());
     targets_.assign(points_.size(), -1);
@@ -159,23 +161,44 @@ class Relaxation {
     for (std::size_t t = 0; t < rise.size(); ++t) weights_[t] = std::min(weights_[t] * std::exp(rise[t]), kMostWeight);
   }
 
-  [[nodiscard]] std::vector<SurfacePoint> points() && { return std::move(points_); }
+  [[nodiscard]] std::vector<BoundPoint> points() && { return std::move(points_); }
 
  private:
   static constexpr double kMostRise = 1.5;
   static constexpr int kRisePasses = 6;
 
-  void place(int v, const SurfacePoint& point) {
-    points_[v] = point;
-    positions_[v] = surface_.position(point);
-    normals_[v] = surface_.normal(point);
+  /// A triangle at a corner without a free vertex takes its normal from the free one beyond the edge that lies on no
+  /// chain.
+  void find_witnesses() {
+    witness_.assign(triangles_.size(), -1);
+    const auto neighbors = triangle_neighbors(triangles_);
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const auto& corners = triangles_[t];
+      if (std::any_of(corners.begin(), corners.end(), [&](int v) { return is_free(v); })) continue;
+      for (int e = 0; e < 3; ++e) {
+        const auto &a = points_[corners[e]].curve, &b = points_[corners[(e + 1) % 3]].curve;
+        if (a.chain == CurvePoint::kCorner || b.chain == CurvePoint::kCorner) continue;
+        const auto& beyond = triangles_[neighbors[t][e]];
+        const auto found = std::find_if(beyond.begin(), beyond.end(), [&](int v) { return is_free(v); });
+        if (found != beyond.end()) witness_[t] = *found;
+      }
+    }
   }
+
+  /// Only free vertices have a normal: on a sharp line it would belong to neither side.
+  void place(int v, const BoundPoint& at) {
+    points_[v] = at;
+    positions_[v] = surface_.position(at.point);
+    normals_[v] = is_free(v) ? surface_.normal(at.point) : Eigen::Vector3d::Zero();
+  }
+
+  [[nodiscard]] bool is_free(int v) const { return points_[v].curve.chain == CurvePoint::kFree; }
 
   /// The corner of triangle t nearest to x among those that are to come nowhere yet; -1 if there is none.
   [[nodiscard]] int nearest_without_target(int t, const Eigen::Vector3d& x) const {
     int nearest = -1;
     for (const int v : triangles_[t]) {
-      if (targets_[v] >= 0) continue;
+      if (targets_[v] >= 0 || !is_free(v)) continue;
       if (nearest < 0 || (positions_[v] - x).squaredNorm() < (positions_[nearest] - x).squaredNorm()) nearest = v;
     }
     return nearest;
@@ -184,7 +207,8 @@ class Relaxation {
   /// Area over ideal area, signed by the surface's normal.
   [[nodiscard]] double signed_share(int t) const {
     const auto& [a, b, c] = triangles_[t];
-    const Eigen::Vector3d normal = normals_[a] + normals_[b] + normals_[c];
+    const Eigen::Vector3d normal =
+        witness_[t] >= 0 ? normals_[witness_[t]] : Eigen::Vector3d(normals_[a] + normals_[b] + normals_[c]);
     const double length = normal.norm();
     if (length < 1e-9) return 0;
     return (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]).dot(normal) /
@@ -222,12 +246,12 @@ class Relaxation {
 
   /// Moves the patch's center by (x, y) in its tangent plane and its members along by weight.
   void move(const Patch& patch, double reach) {
-    const Eigen::Vector3d normal = normals_[patch.center];
-    const Eigen::Vector3d t1 = normal.unitOrthogonal(), t2 = normal.cross(t1);
-    steps_.clear();
-    for (const auto& [vertex, weight] : patch.members) {
-      const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(normal, normals_[vertex]);
-      steps_.push_back({positions_[vertex], points_[vertex], weight * (turn * t1), weight * (turn * t2)});
+    const auto& curve = points_[patch.center].curve;
+    if (curve.chain == CurvePoint::kCorner) return;
+    if (curve.chain == CurvePoint::kFree) {
+      set_steps_in_tangent_plane(patch);
+    } else {
+      set_steps_along(curves_.tangent(curve), patch);
     }
     const double start = energy(patch);
     const auto step = newton_step(patch, start, reach);
@@ -235,11 +259,42 @@ class Relaxation {
     for (double scale = 1; scale > 0.1; scale /= 2) {
       for (std::size_t m = 0; m < patch.members.size(); ++m) {
         const Eigen::Vector3d displacement = scale * (step.x() * steps_[m].along_1 + step.y() * steps_[m].along_2);
-        place(patch.members[m].vertex, surface_.walk(steps_[m].point, displacement));
+        place(patch.members[m].vertex, displaced(steps_[m].point, displacement));
       }
       if (energy(patch) < start) return;
     }
     for (std::size_t m = 0; m < patch.members.size(); ++m) place(patch.members[m].vertex, steps_[m].point);
+  }
+
+  void set_steps_in_tangent_plane(const Patch& patch) {
+    const Eigen::Vector3d normal = normals_[patch.center];
+    const Eigen::Vector3d t1 = normal.unitOrthogonal(), t2 = normal.cross(t1);
+    steps_.clear();
+    for (const auto& [vertex, weight] : patch.members) {
+      const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(normal, normals_[vertex]);
+      steps_.push_back({positions_[vertex], points_[vertex], weight * (turn * t1), weight * (turn * t2)});
+    }
+  }
+
+  /// Members on the chain of the center go along it, free ones beside them.
+  void set_steps_along(const Eigen::Vector3d& tangent, const Patch& patch) {
+    steps_.clear();
+    for (const auto& [vertex, weight] : patch.members) {
+      Eigen::Vector3d along = tangent;
+      if (is_free(vertex)) {
+        along = (tangent - tangent.dot(normals_[vertex]) * normals_[vertex]).stableNormalized();
+      } else {
+        along = curves_.tangent(points_[vertex].curve);
+        if (along.dot(tangent) < 0) along = -along;
+      }
+      steps_.push_back({positions_[vertex], points_[vertex], weight * along, Eigen::Vector3d::Zero()});
+    }
+  }
+
+  [[nodiscard]] BoundPoint displaced(const BoundPoint& from, const Eigen::Vector3d& displacement) const {
+    if (from.curve.chain == CurvePoint::kFree) return {surface_.walk(from.point, displacement), {}};
+    const auto there = curves_.moved(from.curve, displacement.dot(curves_.tangent(from.curve)));
+    return {curves_.point(there), there};
   }
 
   /// Newton step of the energy in the plane, by central differences; the Hessian made positive definite.
@@ -274,12 +329,13 @@ class Relaxation {
   /// Where a member was before the move, and its share of a unit move along the two tangents.
   struct MemberStep {
     Eigen::Vector3d position;
-    SurfacePoint point;
+    BoundPoint point;
     Eigen::Vector3d along_1, along_2;
   };
 
   const Surface& surface_;
-  std::vector<SurfacePoint> points_;
+  const FeatureCurves& curves_;
+  std::vector<BoundPoint> points_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<std::vector<Patch>> patches_;  ///< of each level
   std::vector<Eigen::Vector3d> positions_, normals_;
@@ -291,14 +347,15 @@ class Relaxation {
   std::vector<int> targets_;  ///< of each vertex: the input's vertex that it should come to, or -1
   double pull_ = 0;           ///< per squared length
   double smoothing_ = 0;
+  std::vector<int> witness_;  ///< of each triangle: the vertex whose normal stands for its own, or -1
 };
 
 }  // namespace
 
-std::vector<SurfacePoint> relax(const Surface& surface, const SemiRegularMesh& connectivity,
-                                std::vector<SurfacePoint> points, const std::vector<Quadric>& base_planes,
-                                const std::function<void(double)>& progress) {
-  Relaxation relaxation(surface, connectivity, std::move(points), base_planes);
+std::vector<BoundPoint> relax(const Surface& surface, const FeatureCurves& curves, const SemiRegularMesh& connectivity,
+                              std::vector<BoundPoint> points, const std::vector<Quadric>& base_planes,
+                              const std::function<void(double)>& progress) {
+  Relaxation relaxation(surface, curves, connectivity, std::move(points), base_planes);
   for (int k = 0; k < kSweeps; ++k) {
     if (k >= kFirstLook && k < kSweeps - kFirstLook && k % kLookEvery == 0) {
       relaxation.refine_where_far(kTolerance);

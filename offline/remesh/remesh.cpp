@@ -4,26 +4,42 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "offline/remesh/feature_curves.hpp"
+#include "offline/remesh/ground.hpp"
 #include "offline/remesh/midpoint_refinement.hpp"
-#include "offline/remesh/relaxation.hpp"
-#include "offline/remesh/self_parameterization.hpp"
 #include "offline/remesh/subdivision_connectivity.hpp"
-#include "offline/remesh/surface.hpp"
 
 namespace greenloop::offline {
 namespace {
 
-/// By what the base grows from attempt to attempt, against the size asked for.
-constexpr std::array kGrowth{1.0, 1.1, 1.19, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0};
+/// By what the base grows from attempt to attempt, against the size asked for: on the input's own triangles, and on
+/// even ones.
+constexpr std::array kGrowth{1.0, 1.1, 1.19, 1.4, 2.0, 2.8, 4.0};
+constexpr std::array kEvenGrowth{1.0, 1.4, 2.0, 2.8};
+constexpr int kMostGrowth = 8;
 
-/// Fewer levels than this leave triangles too large to be shaped by the surface below them.
-constexpr int kWorkingLevels = 3;
+/// Attempts that keep the drawing's edges, each over this many times the base of the one before.
+constexpr int kFeatureAttempts = 4;
+constexpr double kFeatureGrowth = 1.4;
+
+/// Turn of the surface at an edge of the drawing, degrees; and the least length of a line of them, in diagonals.
+constexpr double kSharp = 40, kShortestLine = 0.1;
+/// Mean length of the lines of a drawing, in diagonals: the creases of a scan or of a coarse animal are shorter.
+constexpr double kDrawnLine = 0.15;
+
+/// Angles below this, in degrees, make needles.
+constexpr double kNeedle = 1;
+/// A ground over which an attempt crosses itself in more places than this will not do with a larger base either.
+constexpr std::size_t kHopeless = 1000;
 
 double accuracy_of(const RemeshOptions& options) {
   constexpr double at_base = 0.16;
@@ -67,18 +83,21 @@ std::string place(const Eigen::Vector3d& p) {
 }
 
 std::string failure(const RemeshQuality& reached, const RemeshOptions& options) {
-  char text[768];
-  std::snprintf(text, sizeof text,
-                "remesh: %d levels over a base of %d to %d vertices do not resolve this shape. Last reached: smallest "
-                "angle %.3g degrees at %s, Hausdorff distance %.3g %% of the diagonal at %s, %zu flipped triangles%s, "
-                "%zu self-intersections; wanted: at least %.3g degrees, at most %.3g %%, none and none (places are "
-                "fractions of the bounding box). Raise remesh.levels (now %d) or remesh.base_vertices (now %d); if "
-                "there are needles or features thinner than a finest triangle, remesh the input evenly or thicken it",
-                options.levels, options.base_vertices, reached.base_vertices, reached.smallest_angle_degrees,
-                place(reached.smallest_angle_at).c_str(), 100 * reached.hausdorff_relative,
-                place(reached.hausdorff_at).c_str(), reached.flipped,
-                reached.flipped > 0 ? (" around " + place(reached.flipped_at)).c_str() : "", reached.self_intersections,
-                options.smallest_angle, 100 * accuracy_of(options), options.levels, options.base_vertices);
+  char text[1024];
+  std::snprintf(
+      text, sizeof text,
+      "remesh: %d levels over a base of %d or more vertices do not resolve this shape. Best reached, over %d: "
+      "smallest angle %.3g degrees at %s, Hausdorff distance %.3g %% of the diagonal at %s, %zu flipped "
+      "triangles%s, %zu self-intersections; wanted: at least %.3g degrees, at most %.3g %%, none and none "
+      "(places are fractions of the bounding box). Raise remesh.levels (now %d) or remesh.base_vertices (now "
+      "%d; the next that was not tried is %d); where a part is thinner than a finest triangle, thicken it, or "
+      "set surface.wrap for an even surface around it",
+      options.levels, options.base_vertices, reached.base_vertices, reached.smallest_angle_degrees,
+      place(reached.smallest_angle_at).c_str(), 100 * reached.hausdorff_relative, place(reached.hausdorff_at).c_str(),
+      reached.flipped, reached.flipped > 0 ? (" around " + place(reached.flipped_at)).c_str() : "",
+      reached.self_intersections, options.smallest_angle, 100 * accuracy_of(options), options.levels,
+      options.base_vertices,
+      static_cast<int>(std::lround(1.4 * std::max(reached.base_vertices, options.base_vertices))));
   return text;
 }
 
@@ -121,80 +140,176 @@ TriangleMesh with_enough_vertices(TriangleMesh input, int base_vertices) {
   return input;
 }
 
-/// One attempt; `surface` holds the input in normalised coordinates.
-SemiRegularMesh attempt(const TriangleMesh& input, const Surface& surface, int base_vertices, int levels,
-                        const std::function<void(double)>& progress) {
-  const auto parameterization = decimate(surface.mesh(), base_vertices);
-  auto refinement =
-      refine_midpoints(parameterization.base_triangles, static_cast<int>(parameterization.base_vertices.size()),
-                       std::max(levels, kWorkingLevels));
-  const auto points = relax(surface, refinement.mesh, parameterization.to_input(std::move(refinement.places)),
-                            parameterization.base_planes, progress);
-  auto& positions = refinement.mesh.positions;
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    const auto& [a, b, c] = input.triangles[points[v].triangle];
-    const auto& w = points[v].weights;
-    positions[v] = w[0] * input.vertices[a] + w[1] * input.vertices[b] + w[2] * input.vertices[c];
+double area_of(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    area += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm() / 2;
   }
-  return truncated(std::move(refinement.mesh), levels);
+  return area;
+}
+
+/// Edges of an even ground whose triangles are a few times smaller than the finest ones.
+double even_edge(const TriangleMesh& normalized, const RemeshOptions& options) {
+  constexpr double kFiner = 6, kFewest = 2e4, kMost = 2e5;
+  const double finest = 2.0 * options.base_vertices * std::ldexp(1.0, 2 * std::max(options.levels, 3));
+  return std::sqrt(4 / std::sqrt(3.0) * area_of(normalized) / std::clamp(kFiner * finest, kFewest, kMost));
+}
+
+/// Whether the surface is made of faces that meet in edges, as drawings are.
+bool is_drawn(const Features& features) {
+  double length = 0;
+  for (const auto& chain : features.chains) length += chain.lengths.back();
+  return length > 0 && length >= kDrawnLine * static_cast<double>(features.chains.size());
+}
+
+/// Attempts one after the other, and the best of those that would not do.
+class Search {
+ public:
+  Search(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress)
+      : input_(input), options_(options), progress_(progress), normalization_(input) {}
+
+  std::optional<Remeshed> run() {
+    const auto normalized = normalization_.apply(input_);
+    if (auto found = exactly(options_.base_vertices)) return found;
+    const auto features = find_features(normalized, kSharp, kShortestLine);
+    if (is_drawn(features)) {
+      const Ground ground(normalized, features, even_edge(normalized, options_));
+      if (auto found = with_features(ground)) return found;
+    }
+    if (smallest_angle(input_) >= kNeedle) {
+      if (auto found = on_own_triangles()) return found;
+    }
+    const Features none{{}, std::vector<char>(input_.vertices.size(), 0)};
+    const Ground ground(normalized, none, even_edge(normalized, options_));
+    return on_even_triangles(ground);
+  }
+
+  void report(double fraction, std::string_view stage) const {
+    if (progress_) progress_(fraction, stage);
+  }
+
+  [[nodiscard]] const RemeshQuality& best() const { return *best_; }
+
+ private:
+  [[nodiscard]] bool within_limit(int base_vertices) const {
+    const int most = options_.most_base_vertices.value_or(kMostGrowth * options_.base_vertices);
+    return base_vertices <= std::max(most, options_.base_vertices);
+  }
+
+  /// The input's own triangles as the base, if it has no more vertices than that.
+  std::optional<Remeshed> exactly(int base_vertices) {
+    if (tried_exactly_ || input_.vertices.size() > static_cast<std::size_t>(base_vertices)) return std::nullopt;
+    tried_exactly_ = true;
+    Remeshed result{exact(input_, base_vertices, options_.levels), {}};
+    result.quality = measure_quality(input_, result.mesh);
+    result.quality.flipped = 0;  // no triangle leaves the input's own; smooth normals mislead on so few
+    if (!acceptable(result.quality, options_)) return std::nullopt;
+    report(1, "split the surface's own triangles");
+    return result;
+  }
+
+  /// The least base that keeps the features, and larger ones.
+  std::optional<Remeshed> with_features(const Ground& ground) {
+    int base_vertices = options_.base_vertices;
+    for (int k = 0; k < kFeatureAttempts && within_limit(base_vertices); ++k) {
+      if (auto found = over(ground, input_, base_vertices)) return found;
+      if (last_.self_intersections > kHopeless || !within_limit(last_.base_vertices)) break;
+      base_vertices = static_cast<int>(std::lround(kFeatureGrowth * std::max(base_vertices, last_.base_vertices)));
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Remeshed> on_own_triangles() {
+    std::unique_ptr<Ground> ground;
+    TriangleMesh fine;
+    for (const double growth : kGrowth) {
+      const int base_vertices = static_cast<int>(std::lround(growth * options_.base_vertices));
+      if (!within_limit(base_vertices)) break;
+      if (auto found = exactly(base_vertices)) return found;
+      if (!ground || fine.vertices.size() < 2 * static_cast<std::size_t>(base_vertices)) {
+        fine = with_enough_vertices(input_, base_vertices);
+        ground = std::make_unique<Ground>(normalization_.apply(fine));
+      }
+      if (auto found = over(*ground, fine, base_vertices)) return found;
+      if (last_.self_intersections > kHopeless) break;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Remeshed> on_even_triangles(const Ground& ground) {
+    for (const double growth : kEvenGrowth) {
+      const int base_vertices = static_cast<int>(std::lround(growth * options_.base_vertices));
+      if (!within_limit(base_vertices)) break;
+      if (auto found = over(ground, input_, base_vertices)) return found;
+      if (last_.self_intersections > kHopeless) break;
+    }
+    return std::nullopt;
+  }
+
+  /// One attempt; `own` has the triangles that the ground's places refer to.
+  std::optional<Remeshed> over(const Ground& ground, const TriangleMesh& own, int base_vertices) {
+    const double share = (1 - done_) / 2;  // how many attempts there will be is not known
+    auto attempt = ground.attempt(base_vertices, options_.levels, [&](double fraction) {
+      report(done_ + share * fraction, "sliding " + std::to_string(base_vertices) + " base vertices and their splits");
+    });
+    auto& positions = attempt.mesh.positions;
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      const auto& [a, b, c] = own.triangles[attempt.places[v].triangle];
+      const auto& w = attempt.places[v].weights;
+      positions[v] = w[0] * own.vertices[a] + w[1] * own.vertices[b] + w[2] * own.vertices[c];
+    }
+    done_ += share;
+    report(done_, "measuring");
+    last_ = measure_quality(input_, attempt.mesh);
+    if (acceptable(last_, options_)) {
+      report(1, "remeshed");
+      return Remeshed{std::move(attempt.mesh), last_};
+    }
+    if (!best_ || faults(last_) < faults(*best_)) best_ = last_;
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::pair<std::size_t, double> faults(const RemeshQuality& quality) const {
+    return {quality.flipped + quality.self_intersections,
+            std::max(options_.smallest_angle / std::max(quality.smallest_angle_degrees, 1e-9),
+                     quality.hausdorff_relative / accuracy_of(options_))};
+  }
+
+  const TriangleMesh& input_;
+  const RemeshOptions& options_;
+  const Progress& progress_;
+  Normalization normalization_;
+  double done_ = 0;
+  bool tried_exactly_ = false;
+  RemeshQuality last_;
+  std::optional<RemeshQuality> best_;
+};
+
+/// Whether a surface's own levels are those asked for, over a base of a size that might have been found.
+bool serves(const SemiRegularMesh& found, const RemeshOptions& options) {
+  const int most = options.most_base_vertices.value_or(kMostGrowth * options.base_vertices);
+  return found.finest_level() == options.levels &&
+         found.vertex_end.front() <= static_cast<std::size_t>(std::max(most, options.base_vertices));
 }
 
 }  // namespace
 
 Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress) {
   check(input, options);
-  const auto report = [&](double fraction, std::string_view stage) {
-    if (progress) progress(fraction, stage);
-  };
-  report(0, "looking for subdivision connectivity");
+  Search search(input, options, progress);
+  search.report(0, "looking for subdivision connectivity");
   if (options.keep_connectivity) {
-    if (auto found = find_subdivision_connectivity(input, options.levels)) {
+    auto found = find_subdivision_connectivity(input, options.levels);
+    if (found && serves(*found, options)) {
       Remeshed kept{std::move(*found), {}};
       kept.quality = measure_quality(input, kept.mesh);
       kept.quality.kept_connectivity = true;
-      report(1, "kept the surface's own subdivision connectivity");
+      search.report(1, "kept the surface's own subdivision connectivity");
       return kept;
     }
   }
-  const Normalization normalization(input);
-  std::optional<Surface> surface;
-  TriangleMesh fine;
-  const int most = options.most_base_vertices.value_or(static_cast<int>(kGrowth.back()) * options.base_vertices);
-  double done = 0;
-  bool tried_exact = false;
-  RemeshQuality reached;
-  for (const double growth : kGrowth) {
-    const int base_vertices = static_cast<int>(std::lround(growth * options.base_vertices));
-    if (base_vertices > std::max(most, options.base_vertices)) break;
-    if (!tried_exact && input.vertices.size() <= static_cast<std::size_t>(base_vertices)) {
-      Remeshed result{exact(input, base_vertices, options.levels), {}};
-      result.quality = measure_quality(input, result.mesh);
-      result.quality.flipped = 0;  // no triangle leaves the input's own; smooth normals mislead on so few
-      if (acceptable(result.quality, options)) {
-        report(1, "split the surface's own triangles");
-        return result;
-      }
-      tried_exact = true;
-    }
-    if (!surface || fine.vertices.size() < 2 * static_cast<std::size_t>(base_vertices)) {
-      fine = with_enough_vertices(input, base_vertices);
-      surface.emplace(normalization.apply(fine));
-    }
-    const double share = (1 - done) / 2;  // how many attempts there will be is not known
-    Remeshed result;
-    result.mesh = attempt(fine, *surface, base_vertices, options.levels, [&](double fraction) {
-      report(done + share * fraction, "sliding " + std::to_string(base_vertices) + " base vertices and their splits");
-    });
-    done += share;
-    report(done, "measuring");
-    result.quality = measure_quality(input, result.mesh);
-    if (acceptable(result.quality, options)) {
-      report(1, "remeshed");
-      return result;
-    }
-    reached = result.quality;
-  }
-  throw std::runtime_error(failure(reached, options));
+  if (auto found = search.run()) return *std::move(found);
+  throw std::runtime_error(failure(search.best(), options));
 }
 
 }  // namespace greenloop::offline

@@ -88,6 +88,19 @@ TEST_CASE("a surface that has subdivision connectivity keeps its vertices") {
   CHECK(sorted(kept.mesh.positions) == sorted(input.vertices));  // kept to the bit, in another order
 }
 
+TEST_CASE("a surface's own levels serve only if they are those asked for, over a base within the limit") {
+  const auto input = fetched("meshes/geosphere.off");
+  RemeshOptions options;
+  options.levels = 3;
+  CHECK_FALSE(remesh(input, options).quality.kept_connectivity);
+  CHECK(remesh(input, options).quality.levels == 3);
+  options.levels = 1;
+  options.base_vertices = options.most_base_vertices.emplace(41);  // one split undone leaves 42
+  CHECK_FALSE(remesh(input, options).quality.kept_connectivity);
+  options.most_base_vertices = 42;
+  CHECK(remesh(input, options).quality.kept_connectivity);
+}
+
 TEST_CASE("a surface of few triangles is split as it is, corners and edges included") {
   const auto input = fetched("meshes/tetrahedron.off");
   const auto remeshed = remesh(input, {});

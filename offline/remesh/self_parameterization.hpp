@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/mesh/triangle_mesh.hpp"
+#include "offline/remesh/feature_curves.hpp"
 #include "offline/remesh/patch_flattening.hpp"
 #include "offline/remesh/quadric.hpp"
 #include "offline/remesh/surface.hpp"
@@ -18,6 +19,8 @@ struct SelfParameterization {
   std::vector<Quadric> base_planes;                ///< mean squared distance to the planes a base vertex stands for
   std::vector<int> base_ids;                       ///< the triangle of the input that base triangle t descends from
   std::vector<FlatPatch> changes;                  ///< collapses and edge flips, in the order they were made
+  std::vector<int> base_origin;                    ///< the input's vertex that each base vertex descends from
+  Features base_features;                          ///< the input's chains as edges of the base, in the same order
 
   /// Carries points on base triangles (SurfacePoint::triangle indexes base_triangles) to the input's triangles.
   /// Work: linear in the points met by the changes, about points * log(input / base vertices).
@@ -27,7 +30,8 @@ struct SelfParameterization {
 /// Decimates a closed manifold mesh to `base_vertices` vertices, or to as few as stay a valid closed triangulation
 /// (no two edges with the same ends) if that is more. Collapses go by the increase of quadric error (Garland,
 /// Heckbert 1997) plus a share of the scatter of the area each vertex stands for, which keeps the base even.
-/// Every choice is made by value then index: the same input gives the same bits.
-[[nodiscard]] SelfParameterization decimate(const TriangleMesh& mesh, int base_vertices);
+/// Chains of features stay chains of edges, whose vertices are the input's; corners stay (Lee et al. 1998,
+/// section 3.3). Every choice is made by value then index: the same input gives the same bits.
+[[nodiscard]] SelfParameterization decimate(const TriangleMesh& mesh, int base_vertices, const Features& features = {});
 
 }  // namespace greenloop::offline

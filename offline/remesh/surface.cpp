@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -66,7 +67,10 @@ std::vector<std::array<int, 3>> triangle_neighbors(const std::vector<std::array<
   return neighbors;
 }
 
-Surface::Surface(TriangleMesh mesh) : mesh_(std::move(mesh)), neighbors_(triangle_neighbors(mesh_.triangles)) {
+Surface::Surface(TriangleMesh mesh, const std::vector<std::array<int, 2>>& sharp)
+    : mesh_(std::move(mesh)),
+      neighbors_(triangle_neighbors(mesh_.triangles)),
+      sharp_(mesh_.triangles.size(), {0, 0, 0}) {
   vertex_normals_.assign(mesh_.vertices.size(), Eigen::Vector3d::Zero());
   triangle_normals_.reserve(mesh_.triangles.size());
   for (const auto& corners : mesh_.triangles) {
@@ -79,6 +83,23 @@ Surface::Surface(TriangleMesh mesh) : mesh_(std::move(mesh)), neighbors_(triangl
     }
   }
   for (auto& normal : vertex_normals_) normal.stableNormalize();
+  set_sharp(sharp);
+}
+
+void Surface::set_sharp(const std::vector<std::array<int, 2>>& edges) {
+  std::set<std::pair<int, int>> sharp;
+  for (const auto& [v, w] : edges) {
+    sharp.emplace(std::minmax(v, w));
+    vertex_normals_[v].setZero();
+    vertex_normals_[w].setZero();
+  }
+  if (sharp.empty()) return;
+  for (std::size_t t = 0; t < sharp_.size(); ++t) {
+    for (int e = 0; e < 3; ++e) {
+      const int v = mesh_.triangles[t][e], w = mesh_.triangles[t][(e + 1) % 3];
+      sharp_[t][e] = sharp.contains(std::minmax(v, w)) ? 1 : 0;
+    }
+  }
 }
 
 Eigen::Vector3d Surface::position(const SurfacePoint& point) const {
@@ -122,6 +143,7 @@ SurfacePoint Surface::walk(const SurfacePoint& start, const Eigen::Vector3d& dis
 
     // unfold the neighbour across the edge opposite the corner whose weight ran out
     const int edge = (leaving + 1) % 3;
+    if (sharp_[here.triangle][edge] != 0) break;
     const int from = corners[edge], to = corners[(edge + 1) % 3];
     const int next = neighbors_[here.triangle][edge];
     const auto& next_corners = mesh_.triangles[next];

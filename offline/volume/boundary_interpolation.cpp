@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -39,7 +40,12 @@ int nonempty_columns(const Eigen::SparseMatrix<double>& matrix) {
   return count;
 }
 
-constexpr const char* kRemedy = "; use fewer levels (remesh.levels) or a finer tetrahedral mesh";
+/// Each level less leaves a fourth of the nodes: how many less leave no more of them than vertices, one at least.
+std::string remedy(std::size_t nodes, int vertices) {
+  int fewer = 1;
+  while (vertices > 0 && std::ldexp(static_cast<double>(nodes), -2 * fewer) > vertices) ++fewer;
+  return "; use fewer levels (remesh.levels; " + std::to_string(fewer) + " less would do) or a finer tetrahedral mesh";
+}
 
 }  // namespace
 
@@ -103,7 +109,8 @@ void require_independent(const Interpolation& interpolation, const std::vector<i
   const int vertices = nonempty_columns(weights);
   if (static_cast<int>(nodes.size()) > vertices) {
     throw std::runtime_error(std::to_string(nodes.size()) + " touchable surface nodes hang on only " +
-                             std::to_string(vertices) + " free boundary vertices of the tetrahedral mesh" + kRemedy);
+                             std::to_string(vertices) + " free boundary vertices of the tetrahedral mesh" +
+                             remedy(nodes.size(), vertices));
   }
   const Eigen::SparseMatrix<double> gram = weights * weights.transpose();
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(gram);
@@ -114,7 +121,7 @@ void require_independent(const Interpolation& interpolation, const std::vector<i
     throw std::runtime_error("surface node " + std::to_string(node) +
                              " moves exactly as its neighbours make it: too many surface nodes on one boundary "
                              "triangle of the tetrahedral mesh" +
-                             kRemedy);
+                             remedy(nodes.size(), vertices));
   }
 }
 

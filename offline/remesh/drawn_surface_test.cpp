@@ -1,0 +1,156 @@
+// Surfaces as drawing programs make them: faces in needles, meeting in edges and corners.
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "formats/mesh/triangle_mesh.hpp"
+#include "offline/remesh/feature_curves.hpp"
+#include "offline/remesh/remesh.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+using Vertices = std::vector<Eigen::Vector3d>;
+
+/// A box of half sizes `half` with a hole of `sides` sides along z: every face a fan of needles to the box's corners.
+TriangleMesh box_with_hole(const Eigen::Vector3d& half, double radius, int sides) {
+  TriangleMesh mesh;
+  const auto rim = [&](int top, int k) { return top * sides + k % sides; };
+  const auto corner = [&](int top, int q) { return 2 * sides + 4 * top + q % 4; };
+  for (const double z : {-half.z(), half.z()}) {
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      mesh.vertices.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+  }
+  for (const double z : {-half.z(), half.z()}) {
+    for (const auto& [x, y] : {std::array{1, 1}, std::array{-1, 1}, std::array{-1, -1}, std::array{1, -1}}) {
+      mesh.vertices.emplace_back(x * half.x(), y * half.y(), z);
+    }
+  }
+  const auto add = [&](int top, int a, int b, int c) {
+    mesh.triangles.push_back(top == 1 ? std::array{a, b, c} : std::array{a, c, b});
+  };
+  for (const int top : {0, 1}) {
+    for (int k = 0; k < sides; ++k) add(top, rim(top, k), corner(top, 4 * k / sides), rim(top, k + 1));
+    for (int q = 0; q < 4; ++q) add(top, rim(top, (q + 1) * sides / 4), corner(top, q), corner(top, q + 1));
+  }
+  for (int k = 0; k < sides; ++k) {
+    mesh.triangles.push_back({rim(0, k), rim(1, k), rim(0, k + 1)});
+    mesh.triangles.push_back({rim(0, k + 1), rim(1, k), rim(1, k + 1)});
+  }
+  for (int q = 0; q < 4; ++q) {
+    mesh.triangles.push_back({corner(0, q), corner(0, q + 1), corner(1, q)});
+    mesh.triangles.push_back({corner(0, q + 1), corner(1, q + 1), corner(1, q)});
+  }
+  return mesh;
+}
+
+/// An L of unit arms, its faces split to `parts` along each unit, so that it is no base by itself.
+TriangleMesh l_shape(int parts) {
+  TriangleMesh mesh;
+  const auto solid = [&](int x, int y, int z) {
+    return z >= 0 && z < parts && x >= 0 && y >= 0 && x < 2 * parts && y < 2 * parts && (x < parts || y < parts);
+  };
+  const auto vertex = [&](const Eigen::Vector3i& p) {
+    const Eigen::Vector3d place = p.cast<double>() / parts;
+    const auto found = std::find(mesh.vertices.begin(), mesh.vertices.end(), place);
+    if (found != mesh.vertices.end()) return static_cast<int>(found - mesh.vertices.begin());
+    mesh.vertices.push_back(place);
+    return static_cast<int>(mesh.vertices.size()) - 1;
+  };
+  for (int x = 0; x < 2 * parts; ++x) {
+    for (int y = 0; y < 2 * parts; ++y) {
+      for (int z = 0; z < parts; ++z) {
+        if (!solid(x, y, z)) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+          for (const int side : {0, 1}) {
+            Eigen::Vector3i beyond(x, y, z), u = Eigen::Vector3i::Zero(), v = Eigen::Vector3i::Zero();
+            beyond[axis] += side == 1 ? 1 : -1;
+            if (solid(beyond.x(), beyond.y(), beyond.z())) continue;
+            Eigen::Vector3i origin(x, y, z);
+            origin[axis] += side;
+            u[(axis + 1) % 3] = v[(axis + 2) % 3] = 1;
+            if (side == 0) std::swap(u, v);
+            const int a = vertex(origin), b = vertex(origin + u), c = vertex(origin + u + v), d = vertex(origin + v);
+            mesh.triangles.push_back({a, b, c});
+            mesh.triangles.push_back({a, c, d});
+          }
+        }
+      }
+    }
+  }
+  return mesh;
+}
+
+double nearest(const Vertices& vertices, const Eigen::Vector3d& place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& v : vertices) least = std::min(least, (v - place).norm());
+  return least;
+}
+
+void check_accepted(const Remeshed& remeshed) {
+  CHECK(remeshed.quality.flipped == 0);
+  CHECK(remeshed.quality.self_intersections == 0);
+  CHECK(remeshed.quality.smallest_angle_degrees >= 8);
+}
+
+}  // namespace
+
+TEST_CASE("the lines of a box with a hole are found, its needles and facets are none") {
+  const auto mesh = box_with_hole({40, 30, 10}, 12, 32);
+  const auto features = find_features(mesh, 40, 1);
+  CHECK(features.corner_count() == 8);
+  CHECK(features.chains.size() == 14);  // twelve edges and two rims
+  CHECK(std::count_if(features.chains.begin(), features.chains.end(), [](const auto& c) { return c.loop; }) == 2);
+  CHECK(find_features(mesh, 95, 1).chains.empty());
+}
+
+TEST_CASE("short loose lines and loops are noise") {
+  const auto mesh = box_with_hole({40, 30, 10}, 1, 32);  // rims 6.3 long
+  CHECK(find_features(mesh, 40, 7).chains.size() == 12);
+  CHECK(find_features(mesh, 40, 6).chains.size() == 14);
+}
+
+TEST_CASE("a box with a hole keeps its corners, edges and rims") {
+  const auto mesh = box_with_hole({40, 30, 10}, 12, 32);
+  const auto remeshed = remesh(mesh, {});
+  check_accepted(remeshed);
+  CHECK(remeshed.quality.base_vertices <= 60);
+  CHECK(remeshed.quality.hausdorff < 0.25);  // of a box 80 long: the hole's facets
+  CHECK(std::abs(remeshed.quality.volume_change) < 0.002);
+  for (std::size_t v = 64; v < mesh.vertices.size(); ++v) {
+    CHECK(nearest(remeshed.mesh.positions, mesh.vertices[v]) < 1e-12);  // its corners, to rounding
+  }
+  int on_rim = 0;
+  for (const auto& p : remeshed.mesh.positions) {
+    const double apothem = 12 * std::cos(std::numbers::pi / 32);
+    if (std::abs(p.z() - 10) < 1e-9 && p.head<2>().norm() < 12 + 1e-9) {
+      CHECK(p.head<2>().norm() > apothem - 1e-9);
+      ++on_rim;
+    }
+  }
+  CHECK(on_rim >= 3 * 8);
+}
+
+TEST_CASE("needles to rims of many sides are no hindrance") {
+  const auto remeshed = remesh(box_with_hole({40, 30, 3}, 5, 96), {});
+  check_accepted(remeshed);
+  CHECK(remeshed.quality.hausdorff < 0.25);
+}
+
+TEST_CASE("an L keeps its edges") {
+  const auto mesh = l_shape(4);
+  const auto remeshed = remesh(mesh, {});
+  check_accepted(remeshed);
+  CHECK(remeshed.quality.hausdorff < 1e-9);  // flat faces between straight edges: nothing is lost
+  CHECK(std::abs(remeshed.quality.volume_change) < 1e-9);
+}
+
+}  // namespace greenloop::offline
