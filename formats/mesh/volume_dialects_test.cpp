@@ -182,7 +182,76 @@ std::string gmsh_4(std::endian order) {
          bytes_of(Longs{2, 2, 10, 20, 30, 40, 3, 20, 30, 40, 50}, order) + "\n$EndElements\n";
 }
 
+/// The two tetrahedra, a section that nobody knows, and the end.
+std::string meshb(int version, std::endian order) {
+  const auto word = [&](std::int64_t value) {
+    return bytes_of<std::int32_t>({static_cast<std::int32_t>(value)}, order);
+  };
+  const auto either = [&](std::int64_t value, bool wide) {
+    return wide ? bytes_of<std::int64_t>({value}, order) : word(value);
+  };
+  std::string bytes = word(1) + word(version);
+  const auto section = [&](int keyword, const std::string& content) {
+    const auto next = bytes.size() + 4 + (version < 3 ? 4 : 8) + content.size();
+    bytes += word(keyword) + either(static_cast<std::int64_t>(next), version >= 3) + content;
+  };
+  const bool wide = version >= 4;
+  std::string points = either(5, wide), cells = either(2, wide);
+  for (const auto& v : two.vertices) {
+    points +=
+        version < 2
+            ? bytes_of<float>({static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())}, order)
+            : bytes_of<double>({v.x(), v.y(), v.z()}, order);
+    points += either(7, wide);
+  }
+  for (const auto& t : two.tetrahedra) {
+    for (const int node : t) cells += either(node + 1, wide);
+    cells += either(7, wide);
+  }
+  section(3, word(3));
+  section(8, cells);
+  section(81, "anything");
+  section(10, either(0, wide));
+  section(4, points);
+  return bytes + word(54) + either(0, version >= 3);
+}
+
 }  // namespace
+
+TEST_CASE("Medit, binary: versions 1 to 4, both byte orders, either extension, sections in any order") {
+  for (const int version : {1, 2, 3, 4}) {
+    for (const auto order : {std::endian::little, std::endian::big}) {
+      CAPTURE(version);
+      check_two(read("a.meshb", meshb(version, order)));
+    }
+  }
+  check_two(read("a.mesh", meshb(2, std::endian::little)));
+}
+
+TEST_CASE("Medit, binary, refused: what is no place, no count, no vertex, no tetrahedra") {
+  const auto little = std::endian::little;
+  const auto right = meshb(2, little);
+  const auto changed = [&](std::size_t at, std::int32_t value) {
+    auto bytes = right;
+    return bytes.replace(at, 4, bytes_of<std::int32_t>({value}, little));
+  };
+  const auto refuse = [&](const std::string& bytes, const std::string& why) {
+    check_refused([&] { return read("a.meshb", bytes); }, why);
+  };
+  refuse(changed(4, 5), "found version 5");
+  refuse(changed(8, 4), "found keyword 4");
+  refuse(changed(12, 7), "found the next section at byte 7");
+  refuse(changed(12, 1 << 30), "found the next section at byte 1073741824");
+  refuse(changed(16, 2), "found dimension 2");
+  refuse(changed(20, 9), "found prisms");
+  refuse(changed(24, 20), "found the next section at byte 20");
+  refuse(changed(28, -1), "found -1 tetrahedra");
+  refuse(changed(28, 3), "found 3 tetrahedra at byte 32, expected as many as fit the 40 bytes of the section");
+  refuse(changed(32, 0), "found vertex 0");
+  refuse(changed(32, 6), "found vertex 6");
+  refuse(right.substr(0, right.size() - 40), "found the next section at byte 252");
+  refuse(right.substr(0, 10), "found the end");
+}
 
 TEST_CASE("VTK XML: inline and appended, base64 and raw, compressed or not, lengths and bytes of either kind") {
   for (const auto& style : all_styles()) {
@@ -281,7 +350,7 @@ TEST_CASE("TetGen: markers, attributes, numbers from 0 or 1, extensions in upper
   CHECK(files_of_mesh("m/t.msh") == std::vector<std::filesystem::path>{"m/t.msh"});
 }
 
-TEST_CASE("damaged files are read or refused, never worse; seeds 1 to 8") {
+TEST_CASE("damaged files are read or refused, never worse; seeds 1 to 9") {
   const auto check = [&](const std::string& good, std::uint64_t seed, auto parse) {
     CAPTURE(seed);
     CHECK(count_refused_mutants(good, seed, 4000, [&](const std::string& bad) {
@@ -297,4 +366,5 @@ TEST_CASE("damaged files are read or refused, never worse; seeds 1 to 8") {
   check(vtk(true), 6, parse_vtk);
   check(gmsh_2(std::endian::little), 7, parse_gmsh);
   check(gmsh_4(std::endian::big), 8, parse_gmsh);
+  check(meshb(2, std::endian::little), 9, parse_medit);
 }
