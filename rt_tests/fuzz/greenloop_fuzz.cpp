@@ -40,8 +40,10 @@ struct KnownDoor {
   std::unique_ptr<greenloop::Door> (*make)();
 };
 
-constexpr std::array doors{KnownDoor{"model", greenloop::model_door}, KnownDoor{"transport", greenloop::transport_door},
-                           KnownDoor{"store", greenloop::store_door}, KnownDoor{"report", greenloop::report_door}};
+constexpr std::array doors{
+    KnownDoor{"mesh", greenloop::mesh_door},     KnownDoor{"model", greenloop::model_door},
+    KnownDoor{"report", greenloop::report_door}, KnownDoor{"scene", greenloop::scene_door},
+    KnownDoor{"store", greenloop::store_door},   KnownDoor{"transport", greenloop::transport_door}};
 
 std::unique_ptr<greenloop::Door> door_of(const std::string& name) {
   for (const KnownDoor& known : doors) {
@@ -69,7 +71,7 @@ int main(int count, char** arguments) {
   door_name = count > 1 ? arguments[1] : "";
   const auto door = door_of(door_name);
   if (!door || count < 3) {
-    std::fprintf(stderr, "greenloop-fuzz model|transport|store|report SECONDS [SEED [FIRST]]\n");
+    std::fprintf(stderr, "greenloop-fuzz mesh|model|report|scene|store|transport SECONDS [SEED [FIRST]]\n");
     return 2;
   }
   seed = number(3, 1);
