@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -304,6 +305,30 @@ TEST_CASE("Gmsh, binary: 2.2 and 4.1, both byte orders") {
     check_two(read("a.msh", gmsh_4(order)));
   }
   check_refused([] { return read("a.msh", gmsh_2(std::endian::little).substr(0, 150)); }, "a.msh:");
+}
+
+TEST_CASE("Gmsh: nodes numbered down, up and in between, one twice") {
+  const auto file = [](const std::string& numbers) {
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n" + numbers +
+           "$EndNodes\n$Elements\n2\n1 4 0 50 -7 3 20\n" + "2 4 0 -7 3 20 8\n$EndElements\n";
+  };
+  check_two(read("a.msh", file("50 0 0 0\n-7 1 0 0\n3 0 1 0\n20 0 0 1\n8 1 1 1\n")));
+  check_refused([&] { return read("a.msh", file("3 0 0 0\n50 1 0 0\n-7 0 1 0\n20 0 0 1\n50 1 1 1\n")); },
+                "a.msh:10: found \"node 50 again\"");
+  check_refused([&] { return read("a.msh", file("3 0 0 0\n50 1 0 0\n-7 0 1 0\n20 0 0 1\n-7 1 1 1\n")); },
+                "a.msh:10: found \"node -7 again\"");
+}
+
+TEST_CASE("many nodes whose numbers a table of remainders could not tell apart are read as fast as any") {
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n100000\n";
+  for (std::int64_t i = 1; i <= 100000; ++i) {
+    text += std::to_string(i * 107897) + (i == 2 ? " 1 0 0\n" : i == 3 ? " 0 1 0\n" : i == 4 ? " 0 0 1\n" : " 0 0 0\n");
+  }
+  text += "$EndNodes\n$Elements\n1\n1 4 0 107897 215794 323691 431588\n$EndElements\n";
+  write_file(folder / "a.msh", text);
+  const std::clock_t begin = std::clock();
+  CHECK(read_volume(folder / "a.msh").vertices.size() == 4);
+  CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 3);
 }
 
 TEST_CASE("Medit and Gmsh: line ends, byte order mark, words in lower case") {
