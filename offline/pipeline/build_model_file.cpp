@@ -170,8 +170,8 @@ std::vector<int> touched_nodes(const GreenStoreContents& contents) {
 MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar& progress) {
   progress.begin("mesh error");
   const GreenStoreContents& contents = store.contents();
-  const MeshError error = estimate_mesh_error(fem_problem(contents), touched_nodes(contents),
-                                              [&](double fraction) { progress.update(fraction); });
+  MeshError error = estimate_mesh_error(fem_problem(contents), touched_nodes(contents),
+                                        [&](double fraction) { progress.update(fraction); });
   const std::string found =
       fmt::format("forces of pressed patches up to {}{:.3g} % too large, extrapolated from quadratic elements",
                   error.settled ? "" : "more than ", 100 * error.force());
