@@ -132,9 +132,20 @@ std::string in_quotes(std::string_view text) {
   return result + (text.size() > longest ? "...\"" : "\"");
 }
 
+bool NodeNumbers::add(std::int64_t number) {
+  const auto place = static_cast<int>(rising_.size() + others_.size());
+  if (rising_.empty() || rising_.back().first < number) {
+    rising_.emplace_back(number, place);
+    return true;
+  }
+  return !find(number) && others_.emplace(number, place).second;
+}
+
 std::optional<int> NodeNumbers::find(std::int64_t number) const {
-  const auto it = index_.find(number);
-  return it == index_.end() ? std::nullopt : std::optional<int>(it->second);
+  const auto at = std::lower_bound(rising_.begin(), rising_.end(), std::pair(number, 0));
+  if (at != rising_.end() && at->first == number) return at->second;
+  const auto other = others_.find(number);
+  return other == others_.end() ? std::nullopt : std::optional<int>(other->second);
 }
 
 bool same_word(std::string_view a, std::string_view b) {

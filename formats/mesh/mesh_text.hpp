@@ -4,11 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace greenloop {
@@ -118,15 +119,17 @@ class MeshText {
 };
 
 /// The numbers a file gives its nodes, and their order in it. Files that number from 0, from 1 or with gaps read alike.
+/// Work: log n each, whatever the numbers are.
 class NodeNumbers {
  public:
-  void reserve(std::size_t count) { index_.reserve(count); }
+  void reserve(std::size_t count) { rising_.reserve(count); }
   /// False if the number is taken already.
-  [[nodiscard]] bool add(std::int64_t number) { return index_.emplace(number, static_cast<int>(index_.size())).second; }
+  [[nodiscard]] bool add(std::int64_t number);
   [[nodiscard]] std::optional<int> find(std::int64_t number) const;
 
  private:
-  std::unordered_map<std::int64_t, int> index_;
+  std::vector<std::pair<std::int64_t, int>> rising_;  ///< as files have them, with their places
+  std::map<std::int64_t, int> others_;                ///< below the last of these when they came
 };
 
 /// "quoted" form of a piece of a file for a message: unprintable bytes replaced, long ones cut.

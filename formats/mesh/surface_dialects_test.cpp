@@ -205,6 +205,7 @@ TEST_CASE("STL: words in two, everything on one line, colours, polygons") {
   check_cube(read("a.stl", replaced(stl, "\n", " ")));
   check_cube(read("a.stl", replaced(stl, " facet", " color 1 0 0\n facet")));
   check_cube(read("a.stl", replaced(stl, "normal 0 0 0", "normal nan nan -nan(ind)")));
+  check_cube(read("a.stl", replaced(stl, "solid a cube", "solid a facet of facet s")));
   std::string quads = "solid\n";
   for (const auto& side : sides) {
     quads += "facet normal 0 0 0 outer loop\n";
@@ -254,6 +255,7 @@ TEST_CASE("OFF: colours without a word, prefixes, no header, all on one line, a 
   check_cube(read("a.off", off.substr(4)));
   check_cube(read("a.off", replaced(off, "\n", " ")));
   check_cube(read("a.off", off + "# the end\n"));
+  check_cube(read("a.off", replaced(off, "8 6 0", "8 8 0") + "2 0 1\n1 7\n"), 1);
   check_cube(read("a.off", off + "4 0 1 2 3\n"), 1);
   check_refused([] { return read("a.off", replaced(off, "OFF", "4OFF")).mesh; }, "found \"4OFF\"");
 }

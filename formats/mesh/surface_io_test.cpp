@@ -214,7 +214,7 @@ TEST_CASE("refused: OFF indices") {
   refuse("a.off", with("3 0 1 3\n"), "a.off:6: found \"3\", expected a vertex index (a whole number, from 0 to 2)");
   refuse("a.off", with("3 0 1 -1\n"), "a.off:6: found \"-1\"");
   refuse("a.off", with("3 0 1 1.5\n"), "a.off:6: found \"1.5\"");
-  refuse("a.off", with("2 0 1    \n"), "a.off:6: found \"2\", expected the number of vertices of a face");
+  refuse("a.off", with("0 0 1    \n"), "a.off:6: found \"0\", expected the number of vertices of a face");
   refuse("a.off", with("3 0 1   "), "a.off:6: found the end of the file, expected a vertex index");
 }
 

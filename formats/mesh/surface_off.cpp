@@ -55,7 +55,7 @@ PolygonMesh parse_off(const std::filesystem::path& file, std::string content, Me
   }
   std::vector<int> polygon;
   for (std::size_t i = 0; i < face_count; ++i) {
-    polygon.resize(static_cast<std::size_t>(text.integer("the number of vertices of a face", 3, 65536)));
+    polygon.resize(static_cast<std::size_t>(text.integer("the number of vertices of a face", 1, 65536)));
     for (int& vertex : polygon) {
       vertex = static_cast<int>(text.integer("a vertex index", 0, static_cast<std::int64_t>(vertex_count) - 1));
     }

@@ -103,10 +103,17 @@ void take_end(MeshText& text, std::string_view what) {
   }
 }
 
+/// "facet normal"; a name may hold "facet" alone.
+bool begins_facet(std::string_view text) {
+  if (!same_word(text.substr(0, 5), "facet")) return false;
+  const auto next = std::min(text.find_first_not_of(" \t\r\n", 5), text.size());
+  return next > 5 && same_word(text.substr(next, 6), "normal");
+}
+
 /// "solid" and a name, up to the end of the line or a facet on it.
 void take_solid(MeshText& text) {
   text.word("solid");
-  while (text.more_on_line() && !same_word(text.peek(), "facet")) {
+  while (text.more_on_line() && !begins_facet(text.rest())) {
     static_cast<void>(text.token("a name"));
   }
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -182,7 +183,76 @@ std::string gmsh_4(std::endian order) {
          bytes_of(Longs{2, 2, 10, 20, 30, 40, 3, 20, 30, 40, 50}, order) + "\n$EndElements\n";
 }
 
+/// The two tetrahedra, a section that nobody knows, and the end.
+std::string meshb(int version, std::endian order) {
+  const auto word = [&](std::int64_t value) {
+    return bytes_of<std::int32_t>({static_cast<std::int32_t>(value)}, order);
+  };
+  const auto either = [&](std::int64_t value, bool wide) {
+    return wide ? bytes_of<std::int64_t>({value}, order) : word(value);
+  };
+  std::string bytes = word(1) + word(version);
+  const auto section = [&](int keyword, const std::string& content) {
+    const auto next = bytes.size() + 4 + (version < 3 ? 4 : 8) + content.size();
+    bytes += word(keyword) + either(static_cast<std::int64_t>(next), version >= 3) + content;
+  };
+  const bool wide = version >= 4;
+  std::string points = either(5, wide), cells = either(2, wide);
+  for (const auto& v : two.vertices) {
+    points +=
+        version < 2
+            ? bytes_of<float>({static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())}, order)
+            : bytes_of<double>({v.x(), v.y(), v.z()}, order);
+    points += either(7, wide);
+  }
+  for (const auto& t : two.tetrahedra) {
+    for (const int node : t) cells += either(node + 1, wide);
+    cells += either(7, wide);
+  }
+  section(3, word(3));
+  section(8, cells);
+  section(81, "anything");
+  section(10, either(0, wide));
+  section(4, points);
+  return bytes + word(54) + either(0, version >= 3);
+}
+
 }  // namespace
+
+TEST_CASE("Medit, binary: versions 1 to 4, both byte orders, either extension, sections in any order") {
+  for (const int version : {1, 2, 3, 4}) {
+    for (const auto order : {std::endian::little, std::endian::big}) {
+      CAPTURE(version);
+      check_two(read("a.meshb", meshb(version, order)));
+    }
+  }
+  check_two(read("a.mesh", meshb(2, std::endian::little)));
+}
+
+TEST_CASE("Medit, binary, refused: what is no place, no count, no vertex, no tetrahedra") {
+  const auto little = std::endian::little;
+  const auto right = meshb(2, little);
+  const auto changed = [&](std::size_t at, std::int32_t value) {
+    auto bytes = right;
+    return bytes.replace(at, 4, bytes_of<std::int32_t>({value}, little));
+  };
+  const auto refuse = [&](const std::string& bytes, const std::string& why) {
+    check_refused([&] { return read("a.meshb", bytes); }, why);
+  };
+  refuse(changed(4, 5), "found version 5");
+  refuse(changed(8, 4), "found keyword 4");
+  refuse(changed(12, 7), "found the next section at byte 7");
+  refuse(changed(12, 1 << 30), "found the next section at byte 1073741824");
+  refuse(changed(16, 2), "found dimension 2");
+  refuse(changed(20, 9), "found prisms");
+  refuse(changed(24, 20), "found the next section at byte 20");
+  refuse(changed(28, -1), "found -1 tetrahedra");
+  refuse(changed(28, 3), "found 3 tetrahedra at byte 32, expected as many as fit the 40 bytes of the section");
+  refuse(changed(32, 0), "found vertex 0");
+  refuse(changed(32, 6), "found vertex 6");
+  refuse(right.substr(0, right.size() - 40), "found the next section at byte 252");
+  refuse(right.substr(0, 10), "found the end");
+}
 
 TEST_CASE("VTK XML: inline and appended, base64 and raw, compressed or not, lengths and bytes of either kind") {
   for (const auto& style : all_styles()) {
@@ -237,6 +307,30 @@ TEST_CASE("Gmsh, binary: 2.2 and 4.1, both byte orders") {
   check_refused([] { return read("a.msh", gmsh_2(std::endian::little).substr(0, 150)); }, "a.msh:");
 }
 
+TEST_CASE("Gmsh: nodes numbered down, up and in between, one twice") {
+  const auto file = [](const std::string& numbers) {
+    return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n" + numbers +
+           "$EndNodes\n$Elements\n2\n1 4 0 50 -7 3 20\n" + "2 4 0 -7 3 20 8\n$EndElements\n";
+  };
+  check_two(read("a.msh", file("50 0 0 0\n-7 1 0 0\n3 0 1 0\n20 0 0 1\n8 1 1 1\n")));
+  check_refused([&] { return read("a.msh", file("3 0 0 0\n50 1 0 0\n-7 0 1 0\n20 0 0 1\n50 1 1 1\n")); },
+                "a.msh:10: found \"node 50 again\"");
+  check_refused([&] { return read("a.msh", file("3 0 0 0\n50 1 0 0\n-7 0 1 0\n20 0 0 1\n-7 1 1 1\n")); },
+                "a.msh:10: found \"node -7 again\"");
+}
+
+TEST_CASE("many nodes whose numbers a table of remainders could not tell apart are read as fast as any") {
+  std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n100000\n";
+  for (std::int64_t i = 1; i <= 100000; ++i) {
+    text += std::to_string(i * 107897) + (i == 2 ? " 1 0 0\n" : i == 3 ? " 0 1 0\n" : i == 4 ? " 0 0 1\n" : " 0 0 0\n");
+  }
+  text += "$EndNodes\n$Elements\n1\n1 4 0 107897 215794 323691 431588\n$EndElements\n";
+  write_file(folder / "a.msh", text);
+  const std::clock_t begin = std::clock();
+  CHECK(read_volume(folder / "a.msh").vertices.size() == 4);
+  CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 3);
+}
+
 TEST_CASE("Medit and Gmsh: line ends, byte order mark, words in lower case") {
   for (const auto* const name : {"a.mesh", "a.msh"}) {
     write_volume(folder / name, two);
@@ -281,7 +375,7 @@ TEST_CASE("TetGen: markers, attributes, numbers from 0 or 1, extensions in upper
   CHECK(files_of_mesh("m/t.msh") == std::vector<std::filesystem::path>{"m/t.msh"});
 }
 
-TEST_CASE("damaged files are read or refused, never worse; seeds 1 to 8") {
+TEST_CASE("damaged files are read or refused, never worse; seeds 1 to 9") {
   const auto check = [&](const std::string& good, std::uint64_t seed, auto parse) {
     CAPTURE(seed);
     CHECK(count_refused_mutants(good, seed, 4000, [&](const std::string& bad) {
@@ -297,4 +391,5 @@ TEST_CASE("damaged files are read or refused, never worse; seeds 1 to 8") {
   check(vtk(true), 6, parse_vtk);
   check(gmsh_2(std::endian::little), 7, parse_gmsh);
   check(gmsh_4(std::endian::big), 8, parse_gmsh);
+  check(meshb(2, std::endian::little), 9, parse_medit);
 }

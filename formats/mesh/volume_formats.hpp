@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/mesh/mesh_text.hpp"
@@ -62,6 +63,7 @@ void add_vtk_cell(const NumberArray& numbers, const VtkCells& cells, std::size_t
 
 [[nodiscard]] TetrahedralMesh parse_gmsh(const std::filesystem::path& file, std::string content, MeshNotes& notes);
 [[nodiscard]] TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content, MeshNotes& notes);
+[[nodiscard]] TetrahedralMesh parse_binary_medit(const std::filesystem::path& file, std::string_view content);
 [[nodiscard]] TetrahedralMesh parse_vtk(const std::filesystem::path& file, std::string content, MeshNotes& notes);
 [[nodiscard]] TetrahedralMesh parse_vtu(const std::filesystem::path& file, std::string content, MeshNotes& notes);
 [[nodiscard]] TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content, MeshNotes& notes);

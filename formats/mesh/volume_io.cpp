@@ -149,15 +149,15 @@ TetrahedralMesh VolumeBuilder::finish() {
 
 TetrahedralMesh read_volume(const std::filesystem::path& file, MeshNotes& notes) {
   const auto extension = lower_extension(file);
-  auto* const parse = extension == ".msh"                           ? parse_gmsh
-                      : extension == ".mesh"                        ? parse_medit
-                      : extension == ".vtk"                         ? parse_vtk
-                      : extension == ".vtu"                         ? parse_vtu
-                      : extension == ".veg"                         ? parse_vega
-                      : extension == ".node" || extension == ".ele" ? parse_tetgen
-                                                                    : nullptr;
+  auto* const parse = extension == ".msh"                             ? parse_gmsh
+                      : extension == ".mesh" || extension == ".meshb" ? parse_medit
+                      : extension == ".vtk"                           ? parse_vtk
+                      : extension == ".vtu"                           ? parse_vtu
+                      : extension == ".veg"                           ? parse_vega
+                      : extension == ".node" || extension == ".ele"   ? parse_tetgen
+                                                                      : nullptr;
   if (parse == nullptr) {
-    refuse_extension(file, "a file of tetrahedra: .msh, .mesh, .vtk, .vtu, .node, .ele or .veg");
+    refuse_extension(file, "a file of tetrahedra: .msh, .mesh, .meshb, .vtk, .vtu, .node, .ele or .veg");
   }
   return parse(file, read_file(file), notes);
 }

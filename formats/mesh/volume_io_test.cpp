@@ -143,7 +143,7 @@ TEST_CASE("a mesh that is inverted as a whole is turned") {
 TEST_CASE("refused: an unknown extension, with the supported ones") {
   check_refused([] { return read_volume("a.off"); },
                 "a.off: found extension \".off\", expected a file of tetrahedra: .msh, "
-                ".mesh, .vtk, .vtu, .node, .ele or .veg");
+                ".mesh, .meshb, .vtk, .vtu, .node, .ele or .veg");
   check_refused([] { return write_volume("a.vtu", {}), 0; }, "expected a file of tetrahedra: .msh, .mesh or .vtk");
 }
 

@@ -1,4 +1,5 @@
-// Medit (INRIA), ascii: keywords, each followed by a count and that many items; numbers from 1.
+// Medit (INRIA), ascii: keywords, each followed by a count and that many items; numbers from 1. Binary files are told
+// by their first bytes.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -40,6 +41,9 @@ void skip_numbers(MeshText& text) {
 }  // namespace
 
 TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
+  if (content.starts_with(std::string_view("\1\0\0\0", 4)) || content.starts_with(std::string_view("\0\0\0\1", 4))) {
+    return parse_binary_medit(file, content);
+  }
   MeshText text(file, std::move(content), '#');
   VolumeBuilder builder(file);
   text.word("MeshVersionFormatted");

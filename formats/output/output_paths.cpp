@@ -66,6 +66,7 @@ void require_permission(const std::filesystem::path& path, const std::filesystem
 
 void require_place(const std::filesystem::path& path) {
   const auto found = status_of(path);
+  if (!found && errno != ENOENT) throw std::runtime_error(write_fault(path, errno));
   if (found && S_ISDIR(found->st_mode)) throw std::runtime_error(write_fault(path, EISDIR));
   if (found) require_permission(path, path, W_OK);
   if (found && !S_ISREG(found->st_mode)) return;

@@ -177,6 +177,10 @@ TEST_CASE("outputs that are inputs, each other or cannot be made are refused by 
   refused({{"the model", at("none") / "new"}}, "No such file or directory; make its folder");
   refused({{"the model", at("mesh") / "new"}}, "Not a directory");
   refused({{"the model", ""}}, "its name is empty");
+  refused({{"the model", at(std::string(300, 'a').c_str())}}, "File name too long");
+  std::filesystem::create_symlink("second", at("first"));
+  std::filesystem::create_symlink("first", at("second"));
+  refused({{"the model", at("first")}}, "Too many levels of symbolic links");
   CHECK_NOTHROW(require_writable({.inputs = {{"the mesh", at("mesh")}},
                                   .outputs = {{"the model", at("new")}, {"the store", at("folder") / "new"}}}));
   CHECK_NOTHROW(require_writable({.inputs = {}, .outputs = {{"the model", "/dev/null"}, {"the trace", "/dev/null"}}}));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -61,6 +62,13 @@ CArrayFiles c_array_files(const std::filesystem::path& path) {
 
 void require_replaceable(const std::filesystem::path& path) {
   const auto [header, source] = c_array_files(path);
+  const std::string name = header.filename().string();
+  if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == '"' || c == '\\'; })) {
+    throw std::runtime_error(
+        fmt::format("{}: C can include no file with a quote, a backslash or a control character in its name; name "
+                    "another output",
+                    path.string()));
+  }
   for (const auto& [unasked, begin] :
        {std::pair(header, std::string(header_begin)), std::pair(source, source_begin(header.filename().string()))}) {
     if (unasked == path || !std::filesystem::is_regular_file(unasked)) continue;

@@ -109,7 +109,14 @@ constexpr std::string_view taken[] = {"alignas",
                                       "while",
                                       "xor",
                                       "xor_eq",
+                                      "EOF",
+                                      "FILE",
+                                      "INFINITY",
+                                      "NAN",
                                       "NULL",
+                                      "assert",
+                                      "complex",
+                                      "imaginary",
                                       "linux",
                                       "main",
                                       "max_align_t",
@@ -119,6 +126,7 @@ constexpr std::string_view taken[] = {"alignas",
                                       "size_t",
                                       "unix",
                                       "unreachable",
+                                      "va_list",
                                       "abort",
                                       "abs",
                                       "acos",
@@ -323,13 +331,16 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 /// Words that the language or the library keeps for itself by their form: __x, _X, and _x outside of functions.
 bool is_reserved(std::string_view name) { return name.starts_with('_') || name.find("__") != std::string_view::npos; }
 
+/// Names of lengths, and of types as the libraries have them.
+bool is_named_alike(std::string_view name) { return name.ends_with("_size") || name.ends_with("_t"); }
+
 /// Also of a word that another one becomes by "_model", so that no two meet.
 bool is_taken(std::string_view name) {
   constexpr std::string_view suffix = "_model";
   while (name.ends_with(suffix)) {
     name.remove_suffix(suffix.size());
   }
-  return name.ends_with("_size") || std::find(std::begin(taken), std::end(taken), name) != std::end(taken);
+  return is_named_alike(name) || std::find(std::begin(taken), std::end(taken), name) != std::end(taken);
 }
 
 std::uint32_t hash_of(std::string_view text) {

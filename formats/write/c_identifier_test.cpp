@@ -15,7 +15,7 @@ TEST_CASE("C identifiers: a stem that may be a name is one") {
 
 TEST_CASE("C identifiers: words that are taken get _model") {
   for (const auto* const stem :
-       {"switch", "default", "register", "union", "class", "main", "printf", "size_t", "x_size"}) {
+       {"switch", "default", "register", "union", "class", "main", "printf", "size_t", "x_size", "uint8_t", "EOF"}) {
     CHECK(identifier_from(stem) == std::string(stem) + "_model");
   }
 }

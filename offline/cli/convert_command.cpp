@@ -38,7 +38,7 @@ bool is_surface(const std::string& extension) {
   return std::find(surfaces.begin(), surfaces.end(), extension) != surfaces.end();
 }
 bool is_volume(const std::string& extension) {
-  constexpr std::array volumes{".msh", ".mesh", ".vtk", ".vtu", ".node", ".ele", ".veg"};
+  constexpr std::array volumes{".msh", ".mesh", ".meshb", ".vtk", ".vtu", ".node", ".ele", ".veg"};
   return std::find(volumes.begin(), volumes.end(), extension) != volumes.end();
 }
 
@@ -186,7 +186,7 @@ int run_convert(const ConvertArguments& arguments, std::ostream& out) {
   } else {
     refuse(arguments,
            fmt::format("do not know \"{}\"; expected a model (.gloop .gloopz), a surface (.off .obj .stl .ply) or "
-                       "a volume (.msh .mesh .vtk .vtu .node .ele .veg)",
+                       "a volume (.msh .mesh .meshb .vtk .vtu .node .ele .veg)",
                        from));
   }
   say_written(arguments, out);
@@ -200,7 +200,7 @@ void add_convert(CLI::App& parent, int& exit_code) {
   command
       ->add_option("input", arguments->input,
                    "Model (.gloop), its transport form (.gloopz), surface (.off .obj .stl .ply) or volume (.msh .mesh "
-                   ".vtk .vtu .node .ele .veg)")
+                   ".meshb .vtk .vtu .node .ele .veg)")
       ->required();
   command->add_option("-o,--output", arguments->output, "File to write; its extension says what")->required();
   command->add_option(

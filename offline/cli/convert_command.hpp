@@ -23,8 +23,8 @@ struct ConvertArguments {
 /// Converts by the files' extensions: a model (.gloop) to its transport form (.gloopz) and back, either to C source (.h
 /// or .c: both are written), to its undeformed surface, with `levels` to a coarser model, with `ready` to one that is
 /// ready for a loop or, if false, not; a transport form never is, a coarser model only if asked for. A surface (.off
-/// .obj .stl .ply) to another surface format; a volume of tetrahedra (.msh .mesh .vtk .vtu .node .ele .veg) to .msh,
-/// .mesh or .vtk. Of a truncated transport form `levels` gives the levels that are whole; without it the form is
+/// .obj .stl .ply) to another surface format; a volume of tetrahedra (.msh .mesh .meshb .vtk .vtu .node .ele .veg) to
+/// .msh, .mesh or .vtk. Of a truncated transport form `levels` gives the levels that are whole; without it the form is
 /// refused. Says on `out` what was written and returns the exit code. Throws std::runtime_error or
 /// std::invalid_argument naming the file and the reason.
 int run_convert(const ConvertArguments& arguments, std::ostream& out);

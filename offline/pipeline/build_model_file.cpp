@@ -9,6 +9,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "formats/layout.hpp"
@@ -52,8 +54,9 @@ std::string request_fingerprint(const Scene& scene, const std::string& mesh) {
 
 /// The record of the last build if its model is still what `request` asks for.
 json up_to_date_record(const BuildRequest& request, const std::string& wanted) {
-  if (request.force || is_passed_on(request) || !std::filesystem::exists(request.model) ||
-      !std::filesystem::exists(build_record_path(request.model))) {
+  std::error_code unreadable;
+  if (request.force || is_passed_on(request) || !std::filesystem::exists(request.model, unreadable) ||
+      !std::filesystem::exists(build_record_path(request.model), unreadable)) {
     return {};
   }
   try {
@@ -87,9 +90,21 @@ std::optional<GreenStore> open_store(const BuildRequest& request, const std::str
   return std::nullopt;
 }
 
+/// What is wrong with a store, with what there is to be done.
+std::string with_remedy(const std::string& fault) {
+  constexpr std::string_view option = "--overwrite-store";
+  return fault.find(option) != std::string::npos ? fault : fmt::format("{}; pass {} to replace it", fault, option);
+}
+
+std::optional<GreenStore> kept_store(const BuildRequest& request, const std::string& columns) try {
+  return open_store(request, columns);
+} catch (const std::runtime_error& error) {
+  throw std::runtime_error(with_remedy(error.what()));
+}
+
 std::optional<GreenStore> usable_store(const BuildRequest& request, const std::string& columns) {
   if (!std::filesystem::exists(request.store)) return std::nullopt;
-  if (!request.overwrite_store) return open_store(request, columns);
+  if (!request.overwrite_store) return kept_store(request, columns);
   GreenStore::require_free(request.store);
   try {
     return open_store(request, columns);

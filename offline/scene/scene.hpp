@@ -109,7 +109,11 @@ struct Scene {
   std::string store_name;                      ///< as the scene says
 };
 
-/// Reads and checks a scene. Files it names are looked for beside it; none is opened. Throws SceneError.
+/// Longest scene [bytes].
+inline constexpr std::uintmax_t largest_scene_file = 1 << 20;
+
+/// Reads and checks a scene, a regular file of at most largest_scene_file bytes. Files it names are looked for beside
+/// it; none is opened. Throws SceneError.
 [[nodiscard]] Scene read_scene(const std::filesystem::path& file);
 
 /// The same for a scene already in memory; `file` is for messages and for paths relative to it.

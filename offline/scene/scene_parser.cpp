@@ -3,6 +3,8 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "formats/write/describe.hpp"
@@ -367,6 +369,16 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
 }
 
 Scene read_scene(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw SceneError({file.string() + ": no file, but a folder, a pipe or a device; write the scene to a file"});
+  }
+  const auto size = std::filesystem::file_size(file, error);
+  if (!error && size > largest_scene_file) {
+    throw SceneError({file.string() + ": " + std::to_string(size) + " bytes; a scene has at most " +
+                      std::to_string(largest_scene_file)});
+  }
   std::ifstream stream(file, std::ios::binary);
   const std::string text(std::istreambuf_iterator<char>(stream), {});
   if (!stream) {

@@ -1,6 +1,8 @@
 // What a scene may not say, and how it is told.
 #include <doctest/doctest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "offline/scene/scene.hpp"
@@ -315,6 +317,13 @@ TEST_CASE("refused: a store without file") {
 }
 
 TEST_CASE("refused: a scene file that is not there") {
+  CHECK_THROWS_WITH_AS(static_cast<void>(read_scene("/")), doctest::Contains("/: no file"), SceneError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(read_scene("/dev/zero")), doctest::Contains("/dev/zero: no file"), SceneError);
+  const auto long_one = std::filesystem::temp_directory_path() / "greenloop_long_scene.toml";
+  std::ofstream(long_one) << smallest << std::string(largest_scene_file, '#');
+  CHECK_THROWS_WITH_AS(static_cast<void>(read_scene(long_one)), doctest::Contains("a scene has at most 1048576"),
+                       SceneError);
+  std::filesystem::remove(long_one);
   CHECK_THROWS_WITH_AS(static_cast<void>(read_scene("no/such/scene.toml")), "no/such/scene.toml: cannot be read",
                        SceneError);
 }

@@ -275,6 +275,17 @@ TEST_CASE("the examples are accepted: the files, and the one in the documentatio
   CHECK(scene.store == "docs/bear.h5");
 }
 
+TEST_CASE("numbers that TOML would read otherwise are written out as what they are") {
+  for (const std::string value : {"-0", "-0.0"}) {
+    const auto text = canonical_text(parse_scene(with("poisson = 0.4", "poisson = " + value), "s.toml"));
+    CHECK(text.find("poisson = 0\n") != std::string::npos);
+    CHECK(canonical_text(parse_scene(text, "s.toml")) == text);
+  }
+  const auto young = canonical_text(parse_scene(with("20 kPa", "123456789012345680000 Pa"), "s.toml"));
+  CHECK(young.find(".0 Pa") != std::string::npos);
+  CHECK(canonical_text(parse_scene(young, "s.toml")) == young);
+}
+
 TEST_CASE("a mesh is scaled by its unit or to its size") {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-1, 0, 0), Eigen::Vector3d(1, 4, 3));
   CHECK(parse_scene(smallest, "s.toml").mesh.scale(box) == 0.01);

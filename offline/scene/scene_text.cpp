@@ -1,5 +1,6 @@
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <string>
 
 #include "formats/write/describe.hpp"
@@ -8,11 +9,14 @@
 namespace greenloop::offline {
 namespace {
 
-/// The shortest decimal form that reads back as the same double.
+/// The shortest decimal form that reads back as the same double. Zero has no sign, as in TOML's whole numbers, and what
+/// is beyond these has a point.
 std::string number(double value) {
   std::array<char, 32> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), result.ptr};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0);
+  const std::string text(buffer.data(), result.ptr);
+  const bool whole = text.find_first_of(".en") == std::string::npos;
+  return whole && std::abs(value) > 9e15 ? text + ".0" : text;
 }
 
 /// A TOML basic string.

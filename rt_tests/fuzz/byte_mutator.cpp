@@ -57,7 +57,7 @@ void mutate_bytes(Random& random, std::size_t head, Bytes& bytes) {
 void mutate_text(Random& random, std::string& text) {
   for (std::size_t change = 1 + below(random, 3); change > 0 && !text.empty(); --change) {
     const std::size_t at = below(random, text.size());
-    const auto [cell, cell_end] = part_at(text, at, ",:[]{}\n");
+    const auto [cell, cell_end] = part_at(text, at, " ,:[]{}<>=\"\n");
     const auto [line, line_end] = part_at(text, at, "\n");
     switch (below(random, 6)) {
       case 0:

@@ -21,6 +21,8 @@ class Door {
   virtual bool try_one(Random& random) = 0;
 };
 
+[[nodiscard]] std::unique_ptr<Door> mesh_door();       ///< surfaces and volumes of all formats
+[[nodiscard]] std::unique_ptr<Door> scene_door();      ///< scene.toml: read, written out, read again
 [[nodiscard]] std::unique_ptr<Door> model_door();      ///< model files: verify, the view, what a body would take
 [[nodiscard]] std::unique_ptr<Door> transport_door();  ///< transport streams
 [[nodiscard]] std::unique_ptr<Door> store_door();      ///< HDF5 stores, changed through the library

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -47,8 +48,10 @@ struct KnownDoor {
   std::unique_ptr<greenloop::Door> (*make)();
 };
 
-constexpr std::array doors{KnownDoor{"model", greenloop::model_door}, KnownDoor{"transport", greenloop::transport_door},
-                           KnownDoor{"store", greenloop::store_door}, KnownDoor{"report", greenloop::report_door}};
+constexpr std::array doors{
+    KnownDoor{"mesh", greenloop::mesh_door},     KnownDoor{"model", greenloop::model_door},
+    KnownDoor{"report", greenloop::report_door}, KnownDoor{"scene", greenloop::scene_door},
+    KnownDoor{"store", greenloop::store_door},   KnownDoor{"transport", greenloop::transport_door}};
 
 std::unique_ptr<greenloop::Door> door_of(const std::string& name) {
   for (const KnownDoor& known : doors) {

@@ -84,6 +84,7 @@ refused "over the model" greenloop build cube.toml -o m.h5
 refused "mine.build.json" greenloop build cube.toml -o mine.gloop
 refused "controller.c" greenloop convert c.gloop -o controller.h
 refused "over the input" greenloop convert c.gloop -o ./c.gloop --levels 1
+refused "C can include no file" greenloop convert c.gloop -o 'x"y.h'
 refused "over the model" greenloop-loop c.gloop --trace c.gloop
 refused "over the trace" greenloop-loop c.gloop --trace t.csv --snapshot ./t.csv
 refused "over the model" greenloop report c.gloop -o c.gloop
@@ -91,6 +92,11 @@ refused "where standard output goes" greenloop report c.gloop -o out
 refused "No such file or directory; make its folder" greenloop build cube.toml -o nowhere/c.gloop
 refused "No such file or directory" greenloop-loop c.gloop --trace nowhere/t.csv
 refused "Is a directory" greenloop convert c.gloop -o .
+ln -s around.gloop round.gloop
+ln -s round.gloop around.gloop
+refused "Too many levels of symbolic links" greenloop build cube.toml -o round.gloop
+refused "File name too long" greenloop build cube.toml -o "$(printf 'a%.0s' {1..300}).gloop"
+refused "no file, but" greenloop build pipe
 same cube.toml toml.before "the scene"
 same cube.obj obj.before "the mesh"
 same c.gloop reference.gloop "the model"
@@ -145,6 +151,9 @@ says "--overwrite-store" "a truncated store"
 expect 0 "a truncated store is replaced" greenloop build cube.toml -o c.gloop --overwrite-store
 same c.gloop reference.gloop "after a truncated store"
 rm -f c.gloop
+LC_ALL=C sed -i 's/format_version/fXrmat_version/' c.h5
+expect 1 "a store without its version" greenloop build cube.toml -o c.gloop
+says "--overwrite-store" "a store without its version"
 printf 'no store' >c.h5
 expect 0 "what is no store is replaced" greenloop build cube.toml -o c.gloop --overwrite-store
 same c.gloop reference.gloop "after no store"

@@ -24,19 +24,20 @@ HeldBody::HeldBody(const TetrahedralMesh& mesh, const MeshEdges& edges, const Ma
       material_(material),
       held_(std::move(held)),
       free_(held_.vertices),
-      stiffness_(mesh, edges, material),
-      factors_(assemble_stiffness(mesh, material, free_), 3) {
+      stiffness_(mesh, edges, material) {
+  if (free_.count > 0) factors_.emplace(assemble_stiffness(mesh, material, free_), 3);
   for (const auto& block : stiffness_.edge_blocks()) edge_block_.emplace_back(block);
 }
 
 Matrix3Xd HeldBody::relax_vertices(const Matrix3Xd& force) {
+  Matrix3Xd moved = Matrix3Xd::Zero(3, force.cols());
+  if (!factors_) return moved;
   Eigen::VectorXd of_free(Index{3} * free_.count);
   for (std::size_t v = 0; v < free_.number.size(); ++v) {
     if (free_.number[v] >= 0) of_free.segment<3>(Index{3} * free_.number[v]) = force.col(static_cast<Index>(v));
   }
   Eigen::MatrixXd solution;
-  factors_.solve(of_free.sparseView(), solution);
-  Matrix3Xd moved = Matrix3Xd::Zero(3, force.cols());
+  factors_->solve(of_free.sparseView(), solution);
   for (std::size_t v = 0; v < free_.number.size(); ++v) {
     if (free_.number[v] >= 0) {
       moved.col(static_cast<Index>(v)) = solution.col(0).segment<3>(Index{3} * free_.number[v]);
@@ -100,6 +101,7 @@ std::vector<int> tetrahedra_around(const TetrahedralMesh& mesh, std::span<const 
   std::sort(nearest.begin(), nearest.end());
   nearest.resize(std::min(nearest.size(), refined_tetrahedra));
   std::vector<int> tetrahedra;
+  tetrahedra.reserve(nearest.size());
   for (const auto& [squared, t] : nearest) tetrahedra.push_back(t);
   return tetrahedra;
 }

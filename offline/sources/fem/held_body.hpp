@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,7 @@ class HeldBody {
   Held held_;
   FreeVertices free_;
   QuadraticStiffness stiffness_;
-  Factorization factors_;
+  std::optional<Factorization> factors_;  // none if no vertex is free
   std::vector<Eigen::LLT<Eigen::Matrix3d>> edge_block_;
 };
 

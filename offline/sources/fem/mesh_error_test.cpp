@@ -181,6 +181,25 @@ TEST_CASE("the mesh error of a pressed block is near the true one, and falls wit
   }
 }
 
+TEST_CASE("the mesh error of a body whose free vertices are all held") {
+  const auto mesh = testing::box({1, 1, 1}, {1, 1, 1});
+  std::vector<std::uint8_t> fixed;
+  std::vector<int> nodes, touched;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    fixed.push_back(mesh.vertices[v].z() == 0 ? 1 : 0);
+    nodes.push_back(static_cast<int>(v));
+    if (fixed.back() == 0) touched.push_back(static_cast<int>(v));
+  }
+  const auto interpolation = select_first_vertices(static_cast<int>(nodes.size()), static_cast<int>(nodes.size()));
+  const MeshError error = estimate_mesh_error({mesh, fixed, interpolation, {1, 0.3}, nodes, nodes}, touched);
+  REQUIRE(error.patches.size() == 3);
+  for (const PressedPatch& patch : error.patches) {
+    CHECK(patch.linear_force > patch.quadratic_force);
+    CHECK(patch.quadratic_force > patch.limit_force);
+    CHECK(patch.limit_force > 0);
+  }
+}
+
 // vertices of the boundary that are held, the boundary's edges between them, and what is fixed
 Held hold(const TetrahedralMesh& mesh, const MeshEdges& edges, const std::vector<std::uint8_t>& fixed,
           const std::vector<int>& vertices) {
