@@ -9,6 +9,7 @@
 
 #include "formats/write/describe.hpp"
 #include "offline/scene/scene.hpp"
+#include "offline/scene/toml_letters.hpp"
 #include "offline/scene/toml_table.hpp"
 
 namespace greenloop::offline {
@@ -327,6 +328,12 @@ std::string lacking_quotes(const std::string& line) {
 }
 
 toml::table parse_toml(std::string_view text, const std::filesystem::path& file) {
+  if (const auto at = unquoted_letter(text)) {
+    Problems problems(file.string());
+    problems.add({at->line, at->column}, "",
+                 "a letter beyond ASCII stands outside of quotes: put quotes around the text");
+    problems.throw_if_any();
+  }
   try {
     return toml::parse(text, file.string());
   } catch (const toml::parse_error& error) {
