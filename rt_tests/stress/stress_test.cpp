@@ -24,7 +24,7 @@ double declared_over_worst(const StressResult& result) {
   return static_cast<double>(result.declared_work) / static_cast<double>(result.counts.worst_work);
 }
 
-// which neighbours are lifted into a node is not known where work is declared (bound_columns)
+// coefficients that are reached only because others are lifted have more blocks that no functional meets
 double bar_of(layout::Wavelet wavelet) { return layout::is_lifted(wavelet) ? 1.6 : 1.25; }
 
 // as a processor without much cache may have them: what is done once a coefficient is dear, what a block takes is not

@@ -99,9 +99,9 @@ void time_kernels(const TestModel& model) {
   std::printf("touch               %8.0f ns\n", touching);
   std::printf("field               %8.0f ns, %6.3f ns/block\n", field, field / blocks);
   std::printf("inverse transform   %8.0f ns, %6.3f ns/node\n", transform, transform / view.domain_count);
-  std::printf("capacitance column  %8.0f ns, %6.3f ns/block of %.0f\n", capacitance / body.planned.columns,
-              capacitance / static_cast<double>(counts.column.blocks),
-              static_cast<double>(counts.column.blocks) / body.planned.columns);
+  std::printf("capacitance column  %8.0f ns, %6.3f ns/meeting of %.0f\n", capacitance / body.planned.columns,
+              capacitance / static_cast<double>(counts.column.meetings),
+              static_cast<double>(counts.column.meetings) / body.planned.columns);
 }
 
 void run(const TestModel& model) {

@@ -178,7 +178,7 @@ TEST_CASE("what bounds the work of any set bounds that of each, with a panel and
                            .stored = 50000,
                            .visits = 2400,
                            .coefficients = 1200,
-                           .blocks = 200000,
+                           .meetings = 200000,
                            .room = 900 * 8,
                            .bounds = true};
   for (std::uint64_t slots = 1; slots <= bounds.slots; slots += 7) {

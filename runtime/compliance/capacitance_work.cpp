@@ -1,7 +1,8 @@
 #include "runtime/compliance/capacitance_work.hpp"
 
+#include <algorithm>
+
 #include "runtime/algebra/merge_sort.hpp"
-#include "runtime/compliance/couplings.hpp"
 
 namespace greenloop {
 namespace {
@@ -40,17 +41,11 @@ std::uint64_t functionals_work(const CapacitanceCounts& counts) {
          priced(counts.rows * counts.slots, prices.cleared);
 }
 
-// most meetings of a block between two slots and a functional that is not 0 at one of them
-std::uint64_t most_meetings(const CapacitanceCounts& counts) {
-  return smaller(counts.blocks, counts.coefficients * counts.slots);
-}
-
 // of the blocks in the columns of the slots, at most one of each two; those that no functional meets are passed over
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
   const std::uint64_t between = smaller(counts.stored, counts.slots * (counts.slots + 1) / 2);
-  return priced(counts.stored, prices.stored_block) +
-         priced(smaller(between, most_meetings(counts)), prices.scaled_block);
+  return priced(counts.stored, prices.stored_block) + priced(smaller(between, counts.meetings), prices.scaled_block);
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
@@ -101,29 +96,29 @@ std::uint64_t batches(const CapacitanceCounts& counts) {
 
 }  // namespace
 
-void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t end, std::uint32_t* degree) noexcept {
-  const LevelView& level = view.level[q];
-  for (const CouplingsView& couplings : level.couplings) {
-    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
-      const std::uint32_t column = level.domain_begin + j;
-      if (column < end) {
-        degree[column] += column_length(couplings, j);
-      }
-      visit_rows(couplings, j, 0, column < end ? column : end,
-                 [degree](std::uint32_t row, std::uint32_t) { ++degree[row]; });
-    }
+void ColumnSums::add(const ColumnCosts& costs, std::uint32_t column, const Touched& touched) noexcept {
+  const ColumnCost& cost = costs.of(column);
+  const std::uint32_t* const blocks = costs.blocks_of(column);
+  coefficients += cost.coefficients;
+  visits += cost.visits;
+  for (std::uint32_t q = 0; q <= column_level(column); ++q) {
+    meetings += most_meetings(blocks[q], cost.coefficients, touched.count[q]);
   }
 }
 
 ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const std::uint32_t* degree,
-                       Touched& touched) noexcept {
+                       Touched& touched, std::uint32_t* blocks) noexcept {
   touch(refinement, &column, 1, touched);
   ColumnCost cost;
   cost.visits = static_cast<std::uint32_t>(touched.visits);
+  std::fill_n(blocks, column_level(column) + 1, 0);
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     cost.coefficients += touched.count[q];
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      cost.blocks += degree[touched.list[q][k]];
+      const std::uint32_t* const of_levels = degree + std::size_t{refinement.view->levels} * touched.list[q][k];
+      for (std::uint32_t with = 0; with <= column_level(column); ++with) {
+        blocks[with] += of_levels[with];
+      }
     }
   }
   clear(touched);
@@ -141,7 +136,7 @@ std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexc
   const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
   return stored_work(counts) +
          pairs(counts.rows) * sum_pair_work(*counts.prices, counts.prediction, counts.set_visits) +
-         (panel_of(counts) ? 0 : priced(most_meetings(counts), meeting_price(*counts.prices, counts.prediction))) +
+         (panel_of(counts) ? 0 : priced(counts.meetings, meeting_price(*counts.prices, counts.prediction))) +
          (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
 }
 

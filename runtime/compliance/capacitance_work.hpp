@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
+#include "formats/stored_blocks.hpp"
 #include "formats/view.hpp"
 #include "runtime/wavelet/column.hpp"
+#include "runtime/wavelet/domain.hpp"
 #include "runtime/wavelet/prediction.hpp"
 #include "runtime/wavelet/reach.hpp"
 #include "runtime/wavelet/refinement.hpp"
@@ -15,30 +18,37 @@ namespace greenloop {
 /// What a column of the capacitance matrix costs.
 struct ColumnCost {
   std::uint32_t coefficients = 0;  ///< of its functional
-  std::uint32_t blocks = 0;        ///< stored blocks in the lists of those, over all layers
   std::uint32_t visits = 0;        ///< of touch
 };
 
-/// Costs summed over some columns.
-struct ColumnSums {
-  std::uint64_t coefficients = 0;
-  std::uint64_t blocks = 0;
-  std::uint64_t visits = 0;
-
-  void add(const ColumnCost& cost) noexcept {
-    coefficients += cost.coefficients;
-    blocks += cost.blocks;
-    visits += cost.visits;
-  }
-};
+/// Bound of the blocks of some coefficients of a functional with those of one level that a set touches: no more than
+/// there are, and no more than one with each.
+constexpr std::uint64_t most_meetings(std::uint64_t blocks, std::uint64_t coefficients, std::uint64_t touched) {
+  return blocks < coefficients * touched ? blocks : coefficients * touched;
+}
 
 /// The costs of all columns.
 struct ColumnCosts {
-  const ColumnCost* level[layout::max_levels] = {};  ///< [c][domain nodes of K(c)]
+  const ColumnCost* level[layout::max_levels] = {};      ///< [c][domain nodes of K(c)]
+  const std::uint32_t* blocks[layout::max_levels] = {};  ///< [c][domain nodes of K(c)][c + 1] of all layers, by the
+                                                         ///< level of the coefficient that a functional's have it with
 
   [[nodiscard]] const ColumnCost& of(std::uint32_t column) const noexcept {
     return level[column_level(column)][column_place(column)];
   }
+  [[nodiscard]] const std::uint32_t* blocks_of(std::uint32_t column) const noexcept {
+    const std::uint32_t c = column_level(column);
+    return blocks[c] + std::size_t{c + 1} * column_place(column);
+  }
+};
+
+/// Costs summed over some columns of a set.
+struct ColumnSums {
+  std::uint64_t coefficients = 0;
+  std::uint64_t meetings = 0;  ///< bound of the blocks of the functionals' coefficients with those that the set touches
+  std::uint64_t visits = 0;
+
+  void add(const ColumnCosts& costs, std::uint32_t column, const Touched& touched) noexcept;
 };
 
 /// Pairs of so many rows, of which the last may have one.
@@ -52,13 +62,32 @@ constexpr std::uint64_t capacitance_room(std::uint64_t slots, std::uint32_t colu
   return slots * pairs(columns < least_batch ? columns : least_batch);
 }
 
-/// Adds the blocks, of all layers, that level q stores to the counts of both of their coefficients, of those before
-/// `end`. degree: [end]. Start-up.
-void add_degrees(const ModelView& view, std::uint32_t q, std::uint32_t end, std::uint32_t* degree) noexcept;
+/// Calls visit(coefficient, level) for either coefficient before `end` of every block, of all layers, that level q
+/// stores; level: of the other one. Start-up.
+template <class Visit>
+void visit_degrees(const ModelView& view, std::uint32_t q, std::uint32_t end, Visit visit) {
+  const LevelView& level = view.level[q];
+  for (const CouplingsView& couplings : level.couplings) {
+    for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+      const std::uint32_t column = level.domain_begin + j;
+      std::uint32_t row_level = 0;
+      visit_rows(couplings, j, 0, column < end ? column : end, [&](std::uint32_t row, std::uint32_t) {
+        while (row >= domain_up_to(view, row_level)) {
+          ++row_level;
+        }
+        visit(row, q);
+        if (column < end) {
+          visit(column, row_level);
+        }
+      });
+    }
+  }
+}
 
-/// What a column of level c costs. degree: by levels 0..c, as add_degrees counts. Start-up.
+/// What a column of level c costs. degree: [domain][levels] blocks of each coefficient with those of each level;
+/// blocks: [c + 1], as ColumnCosts has them. Start-up.
 [[nodiscard]] ColumnCost column_cost(const Refinement& refinement, std::uint32_t column, const std::uint32_t* degree,
-                                     Touched& touched) noexcept;
+                                     Touched& touched, std::uint32_t* blocks) noexcept;
 
 /// What the work of assemble_capacitance follows from.
 struct CapacitanceCounts {
@@ -69,9 +98,9 @@ struct CapacitanceCounts {
   std::uint64_t slots = 0;         ///< of the set
   std::uint64_t set_visits = 0;    ///< of touching them
   std::uint64_t stored = 0;        ///< blocks in the columns of those in all layers
-  std::uint64_t visits = 0;        ///< ColumnCost summed over the rows that are computed
+  std::uint64_t visits = 0;        ///< ColumnSums of the rows that are computed
   std::uint64_t coefficients = 0;  ///< the same
-  std::uint64_t blocks = 0;        ///< the same
+  std::uint64_t meetings = 0;      ///< the same
   std::uint64_t room = 0;          ///< of the scratch
   bool bounds = false;             ///< of any set, not of one
 };

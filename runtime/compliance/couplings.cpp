@@ -42,16 +42,16 @@ struct Window {
   std::uint32_t blocks[most];
 };
 
-// those in their own columns, with levels 0..other
-void count_own(const ModelView& view, std::uint32_t layer, std::uint32_t other, Window& window) {
+// those in their own columns
+void count_own(const ModelView& view, std::uint32_t layer, LevelRange others, Window& window) {
   const LevelView& level = view.level[window.level];
   for (std::uint32_t j = window.first; j < window.end; ++j) {
     std::uint32_t& blocks = window.blocks[j - window.first];
     const std::uint32_t own = j - level.domain_begin;
-    if (other >= window.level) {
+    if (others.first == 0 && others.last >= window.level) {
       blocks += column_length(level.couplings[layer], own);
     } else {
-      visit_rows(level.couplings[layer], own, 0, domain_up_to(view, other),
+      visit_rows(level.couplings[layer], own, view.level[others.first].domain_begin, domain_up_to(view, others.last),
                  [&](std::uint32_t, std::uint32_t) { ++blocks; });
     }
   }
@@ -120,14 +120,14 @@ void count_stored(const ModelView& view, std::uint32_t q, ValueCounts<>& counts)
   }
 }
 
-void count_blocks(const ModelView& view, std::uint32_t q, std::uint32_t other, const BaseColumns& base,
+void count_blocks(const ModelView& view, std::uint32_t q, LevelRange others, const BaseColumns& base,
                   ValueCounts<>& counts) noexcept {
   const std::uint32_t end = domain_up_to(view, q);
   for (std::uint32_t first = view.level[q].domain_begin; first < end; first += Window::most) {
     Window window{q, first, std::min(first + Window::most, end), {}};
     for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-      count_own(view, layer, other, window);
-      for (std::uint32_t with = q; with <= other; ++with) {
+      count_own(view, layer, others, window);
+      for (std::uint32_t with = std::max(q, others.first); with <= others.last; ++with) {
         count_rows(view, layer, with, base.holds[layer] ? base.columns : 0, window);
       }
     }

@@ -43,10 +43,16 @@ struct CouplingCounts {
 /// Blocks in the columns of level q's coefficients, in all layers. Start-up; linear in the coefficients.
 void count_stored(const ModelView& view, std::uint32_t q, ValueCounts<>& counts) noexcept;
 
-/// Blocks of level q's coefficients with those of levels 0..other, in all layers, without those that tiles of `base`
+/// Levels first..last.
+struct LevelRange {
+  std::uint32_t first;
+  std::uint32_t last;
+};
+
+/// Blocks of level q's coefficients with those of other levels, in all layers, without those that tiles of `base`
 /// hold. A block within level q counts for both of its coefficients. Start-up; linear in the blocks and, for every
 /// 1,024 coefficients, in the coefficients.
-void count_blocks(const ModelView& view, std::uint32_t q, std::uint32_t other, const BaseColumns& base,
+void count_blocks(const ModelView& view, std::uint32_t q, LevelRange others, const BaseColumns& base,
                   ValueCounts<>& counts) noexcept;
 
 }  // namespace greenloop

@@ -119,14 +119,14 @@ TEST_CASE("the largest numbers of blocks of a level are counted, from both sides
     check_largest(stored, of_level(own));
     for (std::uint32_t other = 0; other < view.levels; ++other) {
       ValueCounts<> all;
-      count_blocks(view, q, other, {}, all);
+      count_blocks(view, q, {0, other}, {}, all);
       check_largest(all, of_level(blocks[other]));
     }
     std::vector<std::uint32_t> without_tiles = of_level(blocks[view.levels - 1]);
     const std::vector<std::uint32_t> left_out = of_level(in_tiles);
     std::transform(without_tiles.begin(), without_tiles.end(), left_out.begin(), without_tiles.begin(), std::minus<>());
     ValueCounts<> beside_tiles;
-    count_blocks(view, q, view.levels - 1, base, beside_tiles);
+    count_blocks(view, q, {0, view.levels - 1}, base, beside_tiles);
     check_largest(beside_tiles, without_tiles);
   }
 }

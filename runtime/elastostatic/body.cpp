@@ -108,11 +108,12 @@ struct Tables {
   FactorTools<3>* factor_tools = nullptr;
   RefinementTables refinement;
   ColumnCost* cost[layout::max_levels] = {};
+  std::uint32_t* column_blocks[layout::max_levels] = {};
   PredictionOffsets<3> offsets;
   BaseColumnsMaker<3> base;
   MirroredCouplingsMaker<3> mirrored;
   std::uint8_t* read = nullptr;
-  std::uint32_t* field_blocks = nullptr;
+  std::uint32_t* field_blocks = nullptr;  // and before they are counted, the degrees that the costs follow from
 };
 
 void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, Tables& tables) {
@@ -121,7 +122,9 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.refinement.carve(arena, view);
   for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
     tables.cost[c] = arena.take<ColumnCost>(domain_up_to(view, c));
+    tables.column_blocks[c] = arena.take<std::uint32_t>((std::uint64_t{1} + c) * domain_up_to(view, c));
   }
+  tables.field_blocks = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels);
   if (sizes.counts.forces_only) {
     return;
   }
@@ -129,7 +132,6 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.base.carve(arena, view);
   tables.mirrored.carve(arena, view, tables.base.columns());
   tables.read = arena.take<std::uint8_t>(view.domain_count);
-  tables.field_blocks = arena.take<std::uint32_t>(std::uint64_t{view.domain_count} * view.levels);
 }
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
@@ -173,14 +175,21 @@ void count_stored(const ModelView& view, std::uint32_t* stored) {
   }
 }
 
-// degree: [domain] scratch
-void fill_costs(const ModelView& view, const Tables& tables, std::uint32_t* degree, Body& body) {
-  std::memset(degree, 0, sizeof(std::uint32_t) * view.domain_count);
-  for (std::uint32_t c = 0; c < view.levels; ++c) {
-    add_degrees(view, c, view.domain_count, degree);
-    for (std::uint32_t place = 0; tables.cost[c] != nullptr && place < domain_up_to(view, c); ++place) {
-      tables.cost[c][place] = column_cost(body.refinement, make_column(c, place), degree, body.touched);
+void fill_costs(const ModelView& view, const Tables& tables, Body& body) {
+  std::uint32_t* const degree = tables.field_blocks;
+  std::memset(degree, 0, sizeof(std::uint32_t) * view.domain_count * view.levels);
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    visit_degrees(view, q, view.domain_count, [&](std::uint32_t coefficient, std::uint32_t with) {
+      ++degree[std::size_t{view.levels} * coefficient + with];
+    });
+  }
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    for (std::uint32_t place = 0; place < domain_up_to(view, c); ++place) {
+      tables.cost[c][place] = column_cost(body.refinement, make_column(c, place), degree, body.touched,
+                                          tables.column_blocks[c] + std::size_t{c + 1} * place);
     }
+    body.cost.level[c] = tables.cost[c];
+    body.cost.blocks[c] = tables.column_blocks[c];
   }
 }
 
@@ -188,7 +197,7 @@ void fill_tables(const ModelView& view, Tables& tables, Body& body) {
   tables.refinement.fill(view);
   list_node_facts(view, body.facts);
   count_stored(view, body.stored);
-  fill_costs(view, tables, body.resolution.index_of_place, body);
+  fill_costs(view, tables, body);
   for (std::uint32_t j = 0; j < view.domain_count; ++j) {
     body.resolution.index_of_place[j] = layout::none;
     body.capacitance.slot[j] = layout::none;
@@ -228,9 +237,6 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
   body.view = tables.view;
   body.counts = sizes.counts;
   body.capacitance.prices = &body.counts.prices;
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    body.cost.level[q] = tables.cost[q];
-  }
   body.refinement = tables.refinement.refinement(*body.view, body.lifting);
   body.tools =
       new (tables.factor_tools) FactorTools<3>{body.counts,    body.refinement, body.cost,

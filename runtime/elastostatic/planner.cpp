@@ -59,7 +59,7 @@ void choose_factor(Body& body, Plan& plan) {
   plan.factor = factor_work(body.counts, plan.counts);
   plan.bounded = factor_bounded_work(body.counts, plan.counts);
   if (body.changes.base != nullptr) {
-    const ChangeCounts changes = count_changes(body.changes, body.cost);
+    const ChangeCounts changes = count_changes(body.changes, body.cost, body.touched);
     const std::uint64_t update = update_factor_work(body.counts, plan.counts, changes);
     plan.update = update < plan.factor;
     if (plan.update) {

@@ -32,7 +32,7 @@ void visit_touching(const ModelView& view, std::uint32_t q, MostCounts* most_of,
                                         std::uint32_t details, std::uint64_t MostCounts::*field_blocks,
                                         MostCounts* most_of) {
   ValueCounts<> blocks;
-  count_blocks(view, q, details, base, blocks);
+  count_blocks(view, q, {0, details}, base, blocks);
   const std::uint32_t tiles = q == 0 && base.columns > 0 ? tiles_of(domain_up_to(view, details)) : 0;
   const std::uint64_t diagonal = q <= details ? 1 : 0;
   const std::uint64_t of_each = diagonal + std::uint64_t{tiles} * FieldBlocks::of_tile<3>;
@@ -95,10 +95,10 @@ MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max
   counts.bounds = true;
   counts.contacts = max_contacts;
   counts.columns = smaller(bounds.columns, max_contacts);
-  counts.column = {counts.columns * bounds.all_coefficients, bounds.blocks, counts.columns * bounds.visits};
+  counts.column = {counts.columns * bounds.all_coefficients, bounds.meetings, counts.columns * bounds.visits};
   counts.visits = counts.columns;
   for (std::uint32_t q = 0; q <= c; ++q) {
-    most.touched[q] = smaller(bounds.reached[q], bounds.coefficients[q]);
+    most.touched[q] = bounds.touched[q];
     counts.coefficients += most.touched[q];
     // a coefficient of level 0 is predicted by none, and without lifting a force is on every other one
     const std::uint64_t forced = q > 0 ? smaller(most.touched[q], counts.columns * bounds.forced[q]) : 0;

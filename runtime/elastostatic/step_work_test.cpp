@@ -73,7 +73,7 @@ void check_set(Rooms<3>& rooms, const MostCounts& most, const std::vector<std::u
   CHECK(set.stored <= most.set.stored);
   CHECK(set.column.visits <= most.set.column.visits);
   CHECK(set.column.coefficients <= most.set.column.coefficients);
-  CHECK(set.column.blocks <= most.set.column.blocks);
+  CHECK(set.column.meetings <= most.set.column.meetings);
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     CHECK(rooms.touched.count[q] <= most.touched[q]);
   }

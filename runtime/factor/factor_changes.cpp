@@ -57,12 +57,12 @@ void find_changes(const FactorCache& cache, ColumnSet set, FactorChanges& neares
   }
 }
 
-ChangeCounts count_changes(const FactorChanges& changes, const ColumnCosts& cost) noexcept {
+ChangeCounts count_changes(const FactorChanges& changes, const ColumnCosts& cost, const Touched& touched) noexcept {
   ChangeCounts counts;
   counts.added = changes.added;
   counts.removed = changes.removed;
   for (std::uint32_t t = 0; t < changes.added; ++t) {
-    counts.entering.add(cost.of(changes.in[t]));
+    counts.entering.add(cost, changes.in[t], touched);
   }
   return counts;
 }

@@ -44,7 +44,8 @@ struct ChangeCounts {
   ColumnSums entering;  ///< over the new nodes
 };
 
-/// cost: of each column. For the loop; work: within find_changes'.
-[[nodiscard]] ChangeCounts count_changes(const FactorChanges& changes, const ColumnCosts& cost) noexcept;
+/// cost: of each column; touched: by the set. For the loop; work: within find_changes'.
+[[nodiscard]] ChangeCounts count_changes(const FactorChanges& changes, const ColumnCosts& cost,
+                                         const Touched& touched) noexcept;
 
 }  // namespace greenloop

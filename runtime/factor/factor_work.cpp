@@ -23,7 +23,7 @@ CapacitanceCounts entering_counts(const FactorCounts& model, const SetCounts& se
   counts.rows = changes.added;
   counts.visits = changes.entering.visits;
   counts.coefficients = changes.entering.coefficients;
-  counts.blocks = changes.entering.blocks;
+  counts.meetings = changes.entering.meetings;
   return counts;
 }
 
@@ -47,7 +47,7 @@ CapacitanceCounts capacitance_counts(const FactorCounts& model, const SetCounts&
           .stored = set.stored,
           .visits = set.column.visits,
           .coefficients = set.column.coefficients,
-          .blocks = set.column.blocks,
+          .meetings = set.column.meetings,
           .room = model.capacitance_room,
           .bounds = set.bounds};
 }
@@ -70,7 +70,7 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
   counts.visits = touched.visits;
   counts.slots = count_slots(set, touched);
   for (std::uint32_t k = 0; k < set.count; ++k) {
-    counts.column.add(cost.of(set.column[k]));
+    counts.column.add(cost, set.column[k], touched);
   }
   for (std::uint32_t q = 0; q <= touched.finest; ++q) {
     for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
@@ -113,7 +113,7 @@ std::uint64_t most_in_a_slice(const FactorCounts& model, const SetCounts& whole,
     CapacitanceCounts counts = capacitance_counts(model, whole);
     counts.rows = rows;
     counts.visits = counts.visits * rows / whole.columns;
-    counts.blocks = counts.blocks * rows / whole.columns;
+    counts.meetings = counts.meetings * rows / whole.columns;
     return add_capacitance_blocks_work(counts) + rows * enter_work(model, whole, whole.columns);
   };
   const std::uint64_t one = batch_of(1);
@@ -161,7 +161,7 @@ std::uint64_t pending_work(const FactorCounts& model, const SetCounts& whole, co
   CapacitanceCounts counts = batch_counts(model, whole);
   const std::uint64_t once = add_capacitance_blocks_work(counts);
   counts.rows = 0;  // each row is in one batch
-  counts.blocks = counts.stored;
+  counts.meetings = counts.stored;
   const std::uint64_t blocks = adding > 0 ? once + (adding - 1) * add_capacitance_blocks_work(counts) : 0;
   return batches * begin_batch_work(model, whole, changes.removed) + blocks +
          missing * enter_work(model, whole, whole.columns);

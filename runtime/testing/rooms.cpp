@@ -67,19 +67,26 @@ void Rooms<N>::carve(Arena& arena, std::uint32_t set_columns) {
 
 template <unsigned N>
 void Rooms<N>::list_costs() {
-  std::vector<std::uint32_t> degree(view.domain_count);
-  for (std::uint32_t c = 0; c < view.levels; ++c) {
-    const LevelView& level = view.level[c];
+  std::vector<std::uint32_t> degree(std::size_t{view.domain_count} * view.levels);
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const LevelView& level = view.level[q];
     for (const CouplingsView& couplings : level.couplings) {
       for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
         stored[level.domain_begin + i] += column_length(couplings, i);
       }
     }
-    add_degrees(view, c, view.domain_count, degree.data());
+    visit_degrees(view, q, view.domain_count, [&](std::uint32_t coefficient, std::uint32_t with) {
+      ++degree[std::size_t{view.levels} * coefficient + with];
+    });
+  }
+  for (std::uint32_t c = 0; c < view.levels; ++c) {
+    column_blocks_[c].resize(std::size_t{c + 1} * domain_up_to(view, c));
     for (std::uint32_t place = 0; place < domain_up_to(view, c); ++place) {
-      costs_[c].push_back(column_cost(refinement, make_column(c, place), degree.data(), touched));
+      costs_[c].push_back(column_cost(refinement, make_column(c, place), degree.data(), touched,
+                                      column_blocks_[c].data() + std::size_t{c + 1} * place));
     }
     cost.level[c] = costs_[c].data();
+    cost.blocks[c] = column_blocks_[c].data();
   }
 }
 

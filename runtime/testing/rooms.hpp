@@ -65,6 +65,7 @@ class Rooms {
   BaseColumnsMaker<N> base_maker_;
   MirroredCouplingsMaker<N> mirrored_maker_;
   std::vector<ColumnCost> costs_[layout::max_levels];
+  std::vector<std::uint32_t> column_blocks_[layout::max_levels];
   std::vector<std::uint32_t> up_to_;
   AlignedBytes memory_;
 };
