@@ -70,7 +70,7 @@ struct ReachBatch {
 };
 
 /// Fills in what the columns reach, and adds the coefficients to `reached`. bound_reach must have bounded their level.
-/// With lifted wavelets whose next coarser level has more than 2,560 coefficients, those that are lifted are not
+/// With lifted wavelets whose next coarser level has more than 640 coefficients, those that are lifted are not
 /// listed: as many of the largest counts stand for them, and all count as reached. Start-up; work: a unit a node of
 /// each support; with lifted wavelets one for every coefficient besides.
 void follow(const ModelView& view, const LiftingCounts* lifting, const Degrees& degrees, ReachBatch& batch,
