@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,7 @@
 #include "offline/remesh/feature_curves.hpp"
 #include "offline/remesh/ground.hpp"
 #include "offline/remesh/midpoint_refinement.hpp"
+#include "offline/remesh/self_parameterization.hpp"
 #include "offline/remesh/subdivision_connectivity.hpp"
 
 namespace greenloop::offline {
@@ -30,6 +32,8 @@ constexpr int kMostGrowth = 8;
 /// Attempts that keep the drawing's edges, each over this many times the base of the one before.
 constexpr int kFeatureAttempts = 4;
 constexpr double kFeatureGrowth = 1.4;
+/// Edges that need more than this many times the base asked for are kept only if no base without them will do.
+constexpr int kFeatureBase = 2;
 
 /// Turn of the surface at an edge of the drawing, degrees; and the least length of a line of them, in diagonals.
 constexpr double kSharp = 40, kShortestLine = 0.1;
@@ -90,8 +94,7 @@ std::string failure(const RemeshQuality& reached, const RemeshOptions& options) 
       "smallest angle %.3g degrees at %s, Hausdorff distance %.3g %% of the diagonal at %s, %zu flipped "
       "triangles%s, %zu self-intersections; wanted: at least %.3g degrees, at most %.3g %%, none and none "
       "(places are fractions of the bounding box). Raise remesh.levels (now %d) or remesh.base_vertices (now "
-      "%d; the next that was not tried is %d); where a part is thinner than a finest triangle, thicken it, or "
-      "set surface.wrap for an even surface around it",
+      "%d; the next that was not tried is %d); where a part is thinner than a finest triangle, thicken it",
       options.levels, options.base_vertices, reached.base_vertices, reached.smallest_angle_degrees,
       place(reached.smallest_angle_at).c_str(), 100 * reached.hausdorff_relative, place(reached.hausdorff_at).c_str(),
       reached.flipped, reached.flipped > 0 ? (" around " + place(reached.flipped_at)).c_str() : "",
@@ -166,22 +169,27 @@ bool is_drawn(const Features& features) {
 class Search {
  public:
   Search(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress)
-      : input_(input), options_(options), progress_(progress), normalization_(input) {}
+      : input_(input),
+        options_(options),
+        progress_(progress),
+        normalization_(input),
+        feature_base_(options.base_vertices) {}
 
   std::optional<Remeshed> run() {
-    const auto normalized = normalization_.apply(input_);
     if (auto found = exactly(options_.base_vertices)) return found;
+    const auto normalized = normalization_.apply(input_);
     const auto features = find_features(normalized, kSharp, kShortestLine);
+    std::unique_ptr<Ground> drawn;
     if (is_drawn(features)) {
-      const Ground ground(normalized, features, even_edge(normalized, options_));
-      if (auto found = with_features(ground)) return found;
+      drawn = std::make_unique<Ground>(normalized, features, even_edge(normalized, options_));
+      if (auto found = with_features(*drawn, std::min(kFeatureBase * options_.base_vertices, most_base())))
+        return found;
     }
-    if (smallest_angle(input_) >= kNeedle) {
-      if (auto found = on_own_triangles()) return found;
-    }
+    if (auto found = on_own_triangles()) return found;
     const Features none{{}, std::vector<char>(input_.vertices.size(), 0)};
-    const Ground ground(normalized, none, even_edge(normalized, options_));
-    return on_even_triangles(ground);
+    const Ground even(normalized, none, even_edge(normalized, options_));
+    if (auto found = on_even_triangles(even)) return found;
+    return drawn ? with_features(*drawn, most_base()) : std::nullopt;
   }
 
   void report(double fraction, std::string_view stage) const {
@@ -191,9 +199,9 @@ class Search {
   [[nodiscard]] const RemeshQuality& best() const { return *best_; }
 
  private:
-  [[nodiscard]] bool within_limit(int base_vertices) const {
+  [[nodiscard]] int most_base() const {
     const int most = options_.most_base_vertices.value_or(kMostGrowth * options_.base_vertices);
-    return base_vertices <= std::max(most, options_.base_vertices);
+    return std::max(most, options_.base_vertices);
   }
 
   /// The input's own triangles as the base, if it has no more vertices than that.
@@ -208,13 +216,15 @@ class Search {
     return result;
   }
 
-  /// The least base that keeps the features, and larger ones.
-  std::optional<Remeshed> with_features(const Ground& ground) {
-    int base_vertices = options_.base_vertices;
-    for (int k = 0; k < kFeatureAttempts && within_limit(base_vertices); ++k) {
-      if (auto found = over(ground, input_, base_vertices)) return found;
-      if (last_.self_intersections > kHopeless || !within_limit(last_.base_vertices)) break;
-      base_vertices = static_cast<int>(std::lround(kFeatureGrowth * std::max(base_vertices, last_.base_vertices)));
+  /// The least base that keeps the features, and larger ones, of at most `most` vertices; goes on where it stopped.
+  std::optional<Remeshed> with_features(const Ground& ground, int most) {
+    while (feature_attempts_ < kFeatureAttempts && feature_base_ <= most) {
+      const auto base = ground.base(feature_base_);
+      feature_base_ = static_cast<int>(base.base_vertices.size());
+      if (feature_base_ > most) break;
+      if (auto found = over(ground, input_, base)) return found;
+      feature_base_ = static_cast<int>(std::lround(kFeatureGrowth * feature_base_));
+      feature_attempts_ = last_.self_intersections > kHopeless ? kFeatureAttempts : feature_attempts_ + 1;
     }
     return std::nullopt;
   }
@@ -224,13 +234,13 @@ class Search {
     TriangleMesh fine;
     for (const double growth : kGrowth) {
       const int base_vertices = static_cast<int>(std::lround(growth * options_.base_vertices));
-      if (!within_limit(base_vertices)) break;
+      if (base_vertices > most_base()) break;
       if (auto found = exactly(base_vertices)) return found;
       if (!ground || fine.vertices.size() < 2 * static_cast<std::size_t>(base_vertices)) {
         fine = with_enough_vertices(input_, base_vertices);
         ground = std::make_unique<Ground>(normalization_.apply(fine));
       }
-      if (auto found = over(*ground, fine, base_vertices)) return found;
+      if (auto found = over(*ground, fine, ground->base(base_vertices))) return found;
       if (last_.self_intersections > kHopeless) break;
     }
     return std::nullopt;
@@ -239,17 +249,19 @@ class Search {
   std::optional<Remeshed> on_even_triangles(const Ground& ground) {
     for (const double growth : kEvenGrowth) {
       const int base_vertices = static_cast<int>(std::lround(growth * options_.base_vertices));
-      if (!within_limit(base_vertices)) break;
-      if (auto found = over(ground, input_, base_vertices)) return found;
+      if (base_vertices > most_base()) break;
+      if (auto found = over(ground, input_, ground.base(base_vertices))) return found;
       if (last_.self_intersections > kHopeless) break;
     }
     return std::nullopt;
   }
 
   /// One attempt; `own` has the triangles that the ground's places refer to.
-  std::optional<Remeshed> over(const Ground& ground, const TriangleMesh& own, int base_vertices) {
+  std::optional<Remeshed> over(const Ground& ground, const TriangleMesh& own, const SelfParameterization& base) {
+    const auto base_vertices = base.base_vertices.size();
     const double share = (1 - done_) / 2;  // how many attempts there will be is not known
-    auto attempt = ground.attempt(base_vertices, options_.levels, [&](double fraction) {
+    const double least = options_.smallest_angle * std::numbers::pi / 180;
+    auto attempt = ground.attempt(base, options_.levels, least, [&](double fraction) {
       report(done_ + share * fraction, "sliding " + std::to_string(base_vertices) + " base vertices and their splits");
     });
     auto& positions = attempt.mesh.positions;
@@ -281,6 +293,7 @@ class Search {
   Normalization normalization_;
   double done_ = 0;
   bool tried_exactly_ = false;
+  int feature_base_, feature_attempts_ = 0;  ///< the next to be tried, and how many were
   RemeshQuality last_;
   std::optional<RemeshQuality> best_;
 };
