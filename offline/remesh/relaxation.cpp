@@ -4,12 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
 
-#include "offline/remesh/quality.hpp"
 #include "offline/remesh/triangle_tree.hpp"
 
 namespace greenloop::offline {
@@ -164,14 +164,17 @@ class Relaxation {
     for (std::size_t t = 0; t < rise.size(); ++t) weights_[t] = std::min(weights_[t] * std::exp(rise[t]), kMostWeight);
   }
 
-  /// Moves vertices one by one until no angle is below `least`, radians, or none gets wider.
+  /// Moves vertices one by one until no angle is below `least`, radians, or none gets wider; nothing where so many
+  /// triangles are narrow that this would take long.
   void widen(double least) {
-    const double wanted = kWider * least;
-    for (int pass = 0; pass < kWidenings && smallest_angle({positions_, triangles_}) < least * 180 / std::numbers::pi;
-         ++pass) {
+    const auto few = static_cast<std::ptrdiff_t>(triangles_.size() / kNarrowOneIn);
+    for (int pass = 0; pass < kWidenings; ++pass) {
+      const auto narrow = std::count_if(triangles_.begin(), triangles_.end(),
+                                        [&](const auto& corners) { return shortfall(corners, least) > 0; });
+      if (narrow == 0 || narrow > few) return;
       bool any = false;
       for (const auto& patch : patches_.back()) {
-        if (widen(patch, wanted)) any = true;
+        if (widen(patch, kWider * least)) any = true;
       }
       if (!any) return;
     }
@@ -182,23 +185,28 @@ class Relaxation {
  private:
   /// Angles are widened to this many times the least wanted, in this many passes.
   static constexpr double kWider = 1.25;
-  static constexpr int kWidenings = 40;
+  static constexpr int kWidenings = 40, kNarrowOneIn = 20;
 
   static constexpr double kMostRise = 1.5;
   static constexpr int kRisePasses = 6;
 
-  /// How far the angles around a vertex are below `wanted`, squared and summed; nothing where a triangle is turned
-  /// over.
+  /// How far the angles of a triangle are below `wanted`, squared and summed.
+  [[nodiscard]] double shortfall(const std::array<int, 3>& corners, double wanted) const {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) {
+      const auto& tip = positions_[corners[c]];
+      const Eigen::Vector3d u = positions_[corners[(c + 1) % 3]] - tip, v = positions_[corners[(c + 2) % 3]] - tip;
+      sum += std::pow(std::max(0.0, wanted - std::atan2(u.cross(v).norm(), u.dot(v))), 2);
+    }
+    return sum;
+  }
+
+  /// The same of all triangles around a vertex; nothing where one is turned over.
   [[nodiscard]] std::optional<double> shortfall(const Patch& ring, double wanted) const {
     double sum = 0;
     for (const int t : ring.triangles) {
       if (!(signed_share(t) > 0)) return std::nullopt;
-      for (int c = 0; c < 3; ++c) {
-        const auto& tip = positions_[triangles_[t][c]];
-        const Eigen::Vector3d u = positions_[triangles_[t][(c + 1) % 3]] - tip;
-        const Eigen::Vector3d v = positions_[triangles_[t][(c + 2) % 3]] - tip;
-        sum += std::pow(std::max(0.0, wanted - std::atan2(u.cross(v).norm(), u.dot(v))), 2);
-      }
+      sum += shortfall(triangles_[t], wanted);
     }
     return sum;
   }
