@@ -25,11 +25,11 @@ namespace greenloop::offline {
 namespace {
 
 /// By what the base grows from attempt to attempt, against the size asked for: on the input's own triangles, and on
-/// even ones. Steps below kBigStep follow only a miss of the accuracy by less than kNearMiss; one by more than kFarMiss
-/// is followed by a base of twice the size.
+/// even ones. No step below kBigStep follows an attempt that crosses itself or is turned over; a base of twice the size
+/// follows one that misses the accuracy by more than kFarMiss.
 constexpr std::array kGrowth{1.0, 1.1, 1.19, 1.4, 2.0, 2.8, 4.0};
 constexpr std::array kEvenGrowth{1.0, 1.4, 2.0, 2.8};
-constexpr double kBigStep = 1.4, kNearMiss = 1.25, kFarMiss = 2;
+constexpr double kBigStep = 1.4, kFarMiss = 2;
 constexpr int kMostGrowth = 8;
 
 /// Attempts that keep the drawing's edges, each over this many times the base of the one before.
@@ -237,7 +237,7 @@ class Search {
     for (; feature_attempts_ < kFeatureAttempts; ++feature_attempts_) {
       if (!feature_base_) feature_base_ = ground.base(options_.base_vertices);
       const int vertices = feature_vertices();
-      if (vertices > most) break;
+      if (vertices > most || !affords(ground, vertices)) break;
       if (auto found = over(ground, input_, *feature_base_)) return found;
       if (last_.self_intersections > kHopeless) {
         feature_attempts_ = kFeatureAttempts;
@@ -269,6 +269,7 @@ class Search {
         own_mesh_ = with_enough_vertices(input_, base_vertices);
         own_ = std::make_unique<Ground>(normalization_.apply(own_mesh_));
       }
+      if (!affords(*own_, base_vertices)) break;
       if (auto found = over(*own_, own_mesh_, own_->base(base_vertices))) return found;
       own_attempts_ = after(own_attempts_, kGrowth);
       if (last_.self_intersections > (needles ? kHopelessNeedles : kHopeless)) own_attempts_ = kGrowth.size();
@@ -282,7 +283,9 @@ class Search {
         const Features none{{}, std::vector<char>(input_.vertices.size(), 0)};
         even_ = std::make_unique<Ground>(normalized, none, even_edge(normalized, options_));
       }
-      if (auto found = over(*even_, input_, even_->base(grown(kEvenGrowth[even_attempts_])))) return found;
+      const int base_vertices = grown(kEvenGrowth[even_attempts_]);
+      if (!affords(*even_, base_vertices)) break;
+      if (auto found = over(*even_, input_, even_->base(base_vertices))) return found;
       even_attempts_ = after(even_attempts_, kEvenGrowth);
       if (last_.self_intersections > kHopeless) even_attempts_ = kEvenGrowth.size();
     }
@@ -293,19 +296,26 @@ class Search {
   [[nodiscard]] std::size_t after(std::size_t k, std::span<const double> growth) const {
     const bool crosses = last_.flipped > 0 || last_.self_intersections > 0;
     const double miss = last_.hausdorff_relative / accuracy_of(options_);
-    const double least = miss > kFarMiss ? 2 * growth[k] : crosses || miss > kNearMiss ? kBigStep : 0;
+    const double least = miss > kFarMiss ? 2 * growth[k] : crosses ? kBigStep : 0;
     ++k;
     while (k < growth.size() && growth[k] < least) ++k;
     return k;
   }
 
-  /// One attempt, unless the work is spent; `own` has the triangles that the ground's places refer to.
+  [[nodiscard]] double work_over(const Ground& ground, int base_vertices) const {
+    return work_of_attempt(base_vertices, options_.levels,
+                           static_cast<double>(ground.surface().mesh().vertices.size()));
+  }
+
+  /// Whether an attempt is within the work allowed; the first one is.
+  [[nodiscard]] bool affords(const Ground& ground, int base_vertices) const {
+    return !best_ || work_ + work_over(ground, base_vertices) <= most_work(input_, options_);
+  }
+
+  /// One attempt; `own` has the triangles that the ground's places refer to.
   std::optional<Remeshed> over(const Ground& ground, const TriangleMesh& own, const SelfParameterization& base) {
     const auto base_vertices = base.base_vertices.size();
-    const double work = work_of_attempt(static_cast<double>(base_vertices), options_.levels,
-                                        static_cast<double>(ground.surface().mesh().vertices.size()));
-    if (best_ && work_ + work > most_work(input_, options_)) return std::nullopt;
-    work_ += work;
+    work_ += work_over(ground, static_cast<int>(base_vertices));
     largest_base_ = std::max(largest_base_, static_cast<int>(base_vertices));
     const double share = (1 - done_) / 2;  // how many attempts there will be is not known
     const double least = options_.smallest_angle * std::numbers::pi / 180;
