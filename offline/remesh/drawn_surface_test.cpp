@@ -7,6 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/mesh/triangle_mesh.hpp"
@@ -151,6 +154,42 @@ TEST_CASE("an L keeps its edges") {
   check_accepted(remeshed);
   CHECK(remeshed.quality.hausdorff < 1e-9);  // flat faces between straight edges: nothing is lost
   CHECK(std::abs(remeshed.quality.volume_change) < 1e-9);
+}
+
+TEST_CASE("an angle too narrow is widened, so that edges need no larger base") {
+  const auto remeshed = remesh(box_with_hole({40, 30, 3}, 28, 48), {});
+  check_accepted(remeshed);
+  MESSAGE(remeshed.quality.base_vertices << " base vertices, " << remeshed.quality.smallest_angle_degrees
+                                         << " degrees");
+}
+
+TEST_CASE("the work of a search in vain is bounded, and the next base to try is one that was not") {
+  RemeshOptions options;
+  options.base_vertices = 24;
+  options.smallest_angle = 59;
+  std::vector<std::string> attempts;
+  std::string message;
+  try {
+    (void)remesh(box_with_hole({40, 30, 10}, 12, 32), options, [&](double, std::string_view stage) {
+      if (stage.starts_with("sliding") && (attempts.empty() || attempts.back() != stage)) attempts.emplace_back(stage);
+    });
+    FAIL("triangles all but equilateral");
+  } catch (const std::runtime_error& error) {
+    message = error.what();
+  }
+  int finest = 0, largest = 0;
+  for (const auto& stage : attempts) {
+    const int base = std::stoi(stage.substr(std::string("sliding ").size()));
+    finest += 64 * base;
+    largest = std::max(largest, base);
+  }
+  CHECK(attempts.size() >= 2);
+  // Seven at most are over the few triangles of the input, the others over a ground of about 10,000 vertices, each of
+  // which counts as a quarter of a vertex moved in all 60 sweeps.
+  const int over_many = std::max(0, static_cast<int>(attempts.size()) - 7);
+  CHECK(finest + 2000 * over_many <= 10 * (64 * 24 + 2500));
+  CHECK(message.find("the next that was not tried is " + std::to_string(std::lround(1.4 * largest))) !=
+        std::string::npos);
 }
 
 }  // namespace greenloop::offline

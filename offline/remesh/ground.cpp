@@ -8,7 +8,6 @@
 
 #include "offline/remesh/midpoint_refinement.hpp"
 #include "offline/remesh/relaxation.hpp"
-#include "offline/remesh/self_parameterization.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -69,8 +68,12 @@ Ground::Ground(TriangleMesh input, const Features& features, double edge_length)
   even_curves_.emplace(even_surface_->mesh(), even_->features.chains);
 }
 
-Ground::Attempt Ground::attempt(int base_vertices, int levels, const std::function<void(double)>& progress) const {
-  const auto parameterization = decimate(surface().mesh(), base_vertices, even_ ? even_->features : Features{});
+SelfParameterization Ground::base(int vertices) const {
+  return decimate(surface().mesh(), vertices, even_ ? even_->features : Features{});
+}
+
+Ground::Attempt Ground::attempt(const SelfParameterization& parameterization, int levels, double least_angle,
+                                const std::function<void(double)>& progress) const {
   auto refinement =
       refine_midpoints(parameterization.base_triangles, static_cast<int>(parameterization.base_vertices.size()),
                        std::max(levels, kWorkingLevels));
@@ -88,7 +91,8 @@ Ground::Attempt Ground::attempt(int base_vertices, int levels, const std::functi
       points.push_back({curves().point(curve), curve});
     }
   }
-  points = relax(surface(), curves(), refinement.mesh, std::move(points), parameterization.base_planes, progress);
+  points = relax(surface(), curves(), refinement.mesh, std::move(points), parameterization.base_planes,
+                 levels < kWorkingLevels ? 0 : least_angle, progress);
   Attempt result{truncated(std::move(refinement.mesh), levels), {}};
   for (std::size_t v = 0; v < result.mesh.positions.size(); ++v) {
     result.places.push_back(even_ ? even_->on_original(points[v], input_curves_, *input_tree_) : points[v].point);

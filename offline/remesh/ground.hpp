@@ -8,6 +8,7 @@
 #include "formats/mesh/triangle_mesh.hpp"
 #include "offline/remesh/even_mesh.hpp"
 #include "offline/remesh/feature_curves.hpp"
+#include "offline/remesh/self_parameterization.hpp"
 #include "offline/remesh/surface.hpp"
 #include "offline/remesh/triangle_tree.hpp"
 
@@ -23,13 +24,17 @@ class Ground {
   Ground(const Ground&) = delete;
   Ground& operator=(const Ground&) = delete;
 
-  /// A base of `base_vertices`, or as few as keep features and topology, split `levels` times: its connectivity, and
-  /// every vertex's place on the input. `progress` gets the fraction done.
+  /// A base of `vertices`, or as few as keep features and topology.
+  [[nodiscard]] SelfParameterization base(int vertices) const;
+
+  /// A base split `levels` times: its connectivity, and every vertex's place on the input.
   struct Attempt {
     SemiRegularMesh mesh;
     std::vector<SurfacePoint> places;
   };
-  [[nodiscard]] Attempt attempt(int base_vertices, int levels, const std::function<void(double)>& progress) const;
+  /// `progress` gets the fraction done.
+  [[nodiscard]] Attempt attempt(const SelfParameterization& base, int levels, double least_angle,
+                                const std::function<void(double)>& progress) const;
 
   [[nodiscard]] const Surface& surface() const { return even_ ? *even_surface_ : input_; }
 

@@ -1,13 +1,16 @@
 #include "offline/remesh/relaxation.hpp"
 
-#include "offline/remesh/triangle_tree.hpp"
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <numbers>
+#include <optional>
 #include <utility>
+
+#include "offline/remesh/triangle_tree.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -161,11 +164,83 @@ class Relaxation {
     for (std::size_t t = 0; t < rise.size(); ++t) weights_[t] = std::min(weights_[t] * std::exp(rise[t]), kMostWeight);
   }
 
+  /// Moves vertices one by one until no angle is below `least`, radians, or none gets wider; nothing where so many
+  /// triangles are narrow that this would take long.
+  void widen(double least) {
+    const auto few = static_cast<std::ptrdiff_t>(triangles_.size() / kNarrowOneIn);
+    for (int pass = 0; pass < kWidenings; ++pass) {
+      const auto narrow = std::count_if(triangles_.begin(), triangles_.end(),
+                                        [&](const auto& corners) { return shortfall(corners, least) > 0; });
+      if (narrow == 0 || narrow > few) return;
+      bool any = false;
+      for (const auto& patch : patches_.back()) {
+        if (widen(patch, kWider * least)) any = true;
+      }
+      if (!any) return;
+    }
+  }
+
   [[nodiscard]] std::vector<BoundPoint> points() && { return std::move(points_); }
 
  private:
+  /// Angles are widened to this many times the least wanted, in this many passes.
+  static constexpr double kWider = 1.25;
+  static constexpr int kWidenings = 40, kNarrowOneIn = 20;
+
   static constexpr double kMostRise = 1.5;
   static constexpr int kRisePasses = 6;
+
+  /// How far the angles of a triangle are below `wanted`, squared and summed.
+  [[nodiscard]] double shortfall(const std::array<int, 3>& corners, double wanted) const {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) {
+      const auto& tip = positions_[corners[c]];
+      const Eigen::Vector3d u = positions_[corners[(c + 1) % 3]] - tip, v = positions_[corners[(c + 2) % 3]] - tip;
+      sum += std::pow(std::max(0.0, wanted - std::atan2(u.cross(v).norm(), u.dot(v))), 2);
+    }
+    return sum;
+  }
+
+  /// The same of all triangles around a vertex; nothing where one is turned over.
+  [[nodiscard]] std::optional<double> shortfall(const Patch& ring, double wanted) const {
+    double sum = 0;
+    for (const int t : ring.triangles) {
+      if (!(signed_share(t) > 0)) return std::nullopt;
+      sum += shortfall(triangles_[t], wanted);
+    }
+    return sum;
+  }
+
+  /// Tries places around a vertex of the finest level for one at which the angles around it are wider.
+  bool widen(const Patch& ring, double wanted) {
+    const int v = ring.center;
+    const auto start = shortfall(ring, wanted);
+    if (points_[v].curve.chain == CurvePoint::kCorner || !start || *start == 0) return false;
+    const BoundPoint from = points_[v];
+    BoundPoint best = from;
+    double least = *start;
+    const auto try_at = [&](const Eigen::Vector3d& displacement) {
+      place(v, displaced(from, displacement));
+      const auto reached = shortfall(ring, wanted);
+      if (reached && *reached < least) {
+        least = *reached;
+        best = points_[v];
+      }
+    };
+    const double edge = std::sqrt(ideal_area_ * 4 / std::sqrt(3.0));
+    const Eigen::Vector3d normal = normals_[v];
+    const Eigen::Vector3d t1 = is_free(v) ? normal.unitOrthogonal().eval() : curves_.tangent(from.curve);
+    const Eigen::Vector3d t2 = normal.cross(t1);
+    for (const double step : {0.4 * edge, 0.1 * edge, 0.025 * edge}) {
+      constexpr int kDirections = 8;
+      for (int k = 0; k < kDirections; ++k) {
+        const double turn = 2 * std::numbers::pi * k / kDirections;
+        try_at(step * (std::cos(turn) * t1 + std::sin(turn) * t2));
+      }
+    }
+    place(v, best);
+    return least < 0.999 * *start;
+  }
 
   /// A triangle at a corner without a free vertex takes its normal from the free one beyond the edge that lies on no
   /// chain.
@@ -354,7 +429,7 @@ class Relaxation {
 
 std::vector<BoundPoint> relax(const Surface& surface, const FeatureCurves& curves, const SemiRegularMesh& connectivity,
                               std::vector<BoundPoint> points, const std::vector<Quadric>& base_planes,
-                              const std::function<void(double)>& progress) {
+                              double least_angle, const std::function<void(double)>& progress) {
   Relaxation relaxation(surface, curves, connectivity, std::move(points), base_planes);
   for (int k = 0; k < kSweeps; ++k) {
     if (k >= kFirstLook && k < kSweeps - kFirstLook && k % kLookEvery == 0) {
@@ -364,6 +439,7 @@ std::vector<BoundPoint> relax(const Surface& surface, const FeatureCurves& curve
     relaxation.sweep();
     progress((k + 1.0) / kSweeps);
   }
+  relaxation.widen(least_angle);
   return std::move(relaxation).points();
 }
 

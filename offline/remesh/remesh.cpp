@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <memory>
+#include <numbers>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,20 +18,29 @@
 #include "offline/remesh/feature_curves.hpp"
 #include "offline/remesh/ground.hpp"
 #include "offline/remesh/midpoint_refinement.hpp"
+#include "offline/remesh/self_parameterization.hpp"
 #include "offline/remesh/subdivision_connectivity.hpp"
 
 namespace greenloop::offline {
 namespace {
 
 /// By what the base grows from attempt to attempt, against the size asked for: on the input's own triangles, and on
-/// even ones.
+/// even ones. No step below kBigStep follows an attempt that crosses itself or is turned over; a base of twice the size
+/// follows one that misses the accuracy by more than kFarMiss.
 constexpr std::array kGrowth{1.0, 1.1, 1.19, 1.4, 2.0, 2.8, 4.0};
 constexpr std::array kEvenGrowth{1.0, 1.4, 2.0, 2.8};
+constexpr double kBigStep = 1.4, kFarMiss = 2;
 constexpr int kMostGrowth = 8;
 
 /// Attempts that keep the drawing's edges, each over this many times the base of the one before.
 constexpr int kFeatureAttempts = 4;
 constexpr double kFeatureGrowth = 1.4;
+/// Edges that need more than this many times the base asked for, and than a base without them that will do, are left.
+constexpr int kFeatureBase = 2;
+
+/// All attempts together, in attempts at the base asked for over an even ground. An attempt's work is counted in
+/// vertices moved; a vertex of the ground is worth kGroundWork of them.
+constexpr double kMostWork = 10, kSweeps = 60, kGroundWork = 15;
 
 /// Turn of the surface at an edge of the drawing, degrees; and the least length of a line of them, in diagonals.
 constexpr double kSharp = 40, kShortestLine = 0.1;
@@ -38,8 +49,9 @@ constexpr double kDrawnLine = 0.15;
 
 /// Angles below this, in degrees, make needles.
 constexpr double kNeedle = 1;
-/// A ground over which an attempt crosses itself in more places than this will not do with a larger base either.
-constexpr std::size_t kHopeless = 1000;
+/// A ground over which an attempt crosses itself in more places than this, or this many if it has needles, will not do
+/// with a larger base either.
+constexpr std::size_t kHopeless = 1000, kHopelessNeedles = 100;
 
 double accuracy_of(const RemeshOptions& options) {
   constexpr double at_base = 0.16;
@@ -82,7 +94,7 @@ std::string place(const Eigen::Vector3d& p) {
   return text;
 }
 
-std::string failure(const RemeshQuality& reached, const RemeshOptions& options) {
+std::string failure(const RemeshQuality& reached, int largest, const RemeshOptions& options) {
   char text[1024];
   std::snprintf(
       text, sizeof text,
@@ -90,14 +102,12 @@ std::string failure(const RemeshQuality& reached, const RemeshOptions& options) 
       "smallest angle %.3g degrees at %s, Hausdorff distance %.3g %% of the diagonal at %s, %zu flipped "
       "triangles%s, %zu self-intersections; wanted: at least %.3g degrees, at most %.3g %%, none and none "
       "(places are fractions of the bounding box). Raise remesh.levels (now %d) or remesh.base_vertices (now "
-      "%d; the next that was not tried is %d); where a part is thinner than a finest triangle, thicken it, or "
-      "set surface.wrap for an even surface around it",
+      "%d; the next that was not tried is %d); where a part is thinner than a finest triangle, thicken it",
       options.levels, options.base_vertices, reached.base_vertices, reached.smallest_angle_degrees,
       place(reached.smallest_angle_at).c_str(), 100 * reached.hausdorff_relative, place(reached.hausdorff_at).c_str(),
       reached.flipped, reached.flipped > 0 ? (" around " + place(reached.flipped_at)).c_str() : "",
       reached.self_intersections, options.smallest_angle, 100 * accuracy_of(options), options.levels,
-      options.base_vertices,
-      static_cast<int>(std::lround(1.4 * std::max(reached.base_vertices, options.base_vertices))));
+      options.base_vertices, static_cast<int>(std::lround(kBigStep * std::max(largest, options.base_vertices))));
   return text;
 }
 
@@ -148,11 +158,26 @@ double area_of(const TriangleMesh& mesh) {
   return area;
 }
 
-/// Edges of an even ground whose triangles are a few times smaller than the finest ones.
-double even_edge(const TriangleMesh& normalized, const RemeshOptions& options) {
+/// Vertices of the finest level over a base, of three levels at least.
+double finest_vertices(double base_vertices, int levels) { return std::ldexp(base_vertices, 2 * std::max(levels, 3)); }
+
+/// Triangles of an even ground: a few times smaller than the finest ones.
+double even_triangles(const RemeshOptions& options) {
   constexpr double kFiner = 6, kFewest = 2e4, kMost = 2e5;
-  const double finest = 2.0 * options.base_vertices * std::ldexp(1.0, 2 * std::max(options.levels, 3));
-  return std::sqrt(4 / std::sqrt(3.0) * area_of(normalized) / std::clamp(kFiner * finest, kFewest, kMost));
+  return std::clamp(kFiner * 2 * finest_vertices(options.base_vertices, options.levels), kFewest, kMost);
+}
+
+double even_edge(const TriangleMesh& normalized, const RemeshOptions& options) {
+  return std::sqrt(4 / std::sqrt(3.0) * area_of(normalized) / even_triangles(options));
+}
+
+double work_of_attempt(double base_vertices, int levels, double ground_vertices) {
+  return kSweeps * finest_vertices(base_vertices, levels) + kGroundWork * ground_vertices;
+}
+
+double most_work(const TriangleMesh& input, const RemeshOptions& options) {
+  const double ground = std::max(even_triangles(options) / 2, static_cast<double>(input.vertices.size()));
+  return kMostWork * work_of_attempt(options.base_vertices, options.levels, ground);
 }
 
 /// Whether the surface is made of faces that meet in edges, as drawings are.
@@ -169,19 +194,17 @@ class Search {
       : input_(input), options_(options), progress_(progress), normalization_(input) {}
 
   std::optional<Remeshed> run() {
-    const auto normalized = normalization_.apply(input_);
     if (auto found = exactly(options_.base_vertices)) return found;
+    const auto normalized = normalization_.apply(input_);
     const auto features = find_features(normalized, kSharp, kShortestLine);
     if (is_drawn(features)) {
-      const Ground ground(normalized, features, even_edge(normalized, options_));
-      if (auto found = with_features(ground)) return found;
+      const Ground drawn(normalized, features, even_edge(normalized, options_));
+      if (auto found = with_features(drawn, std::min(kFeatureBase * options_.base_vertices, most_base()))) return found;
+      if (auto found = without_features(normalized, std::min(feature_vertices() / kFeatureBase, most_base())))
+        return found;
+      if (auto found = with_features(drawn, most_base())) return found;
     }
-    if (smallest_angle(input_) >= kNeedle) {
-      if (auto found = on_own_triangles()) return found;
-    }
-    const Features none{{}, std::vector<char>(input_.vertices.size(), 0)};
-    const Ground ground(normalized, none, even_edge(normalized, options_));
-    return on_even_triangles(ground);
+    return without_features(normalized, most_base());
   }
 
   void report(double fraction, std::string_view stage) const {
@@ -189,11 +212,12 @@ class Search {
   }
 
   [[nodiscard]] const RemeshQuality& best() const { return *best_; }
+  [[nodiscard]] int largest_base() const { return largest_base_; }
 
  private:
-  [[nodiscard]] bool within_limit(int base_vertices) const {
+  [[nodiscard]] int most_base() const {
     const int most = options_.most_base_vertices.value_or(kMostGrowth * options_.base_vertices);
-    return base_vertices <= std::max(most, options_.base_vertices);
+    return std::max(most, options_.base_vertices);
   }
 
   /// The input's own triangles as the base, if it has no more vertices than that.
@@ -208,48 +232,94 @@ class Search {
     return result;
   }
 
-  /// The least base that keeps the features, and larger ones.
-  std::optional<Remeshed> with_features(const Ground& ground) {
-    int base_vertices = options_.base_vertices;
-    for (int k = 0; k < kFeatureAttempts && within_limit(base_vertices); ++k) {
-      if (auto found = over(ground, input_, base_vertices)) return found;
-      if (last_.self_intersections > kHopeless || !within_limit(last_.base_vertices)) break;
-      base_vertices = static_cast<int>(std::lround(kFeatureGrowth * std::max(base_vertices, last_.base_vertices)));
-    }
-    return std::nullopt;
-  }
-
-  std::optional<Remeshed> on_own_triangles() {
-    std::unique_ptr<Ground> ground;
-    TriangleMesh fine;
-    for (const double growth : kGrowth) {
-      const int base_vertices = static_cast<int>(std::lround(growth * options_.base_vertices));
-      if (!within_limit(base_vertices)) break;
-      if (auto found = exactly(base_vertices)) return found;
-      if (!ground || fine.vertices.size() < 2 * static_cast<std::size_t>(base_vertices)) {
-        fine = with_enough_vertices(input_, base_vertices);
-        ground = std::make_unique<Ground>(normalization_.apply(fine));
+  /// The least base that keeps the features, and larger ones, of at most `most` vertices; goes on where it stopped.
+  std::optional<Remeshed> with_features(const Ground& ground, int most) {
+    for (; feature_attempts_ < kFeatureAttempts; ++feature_attempts_) {
+      if (!feature_base_) feature_base_ = ground.base(options_.base_vertices);
+      const int vertices = feature_vertices();
+      if (vertices > most || !affords(ground, vertices)) break;
+      if (auto found = over(ground, input_, *feature_base_)) return found;
+      if (last_.self_intersections > kHopeless) {
+        feature_attempts_ = kFeatureAttempts;
+        break;
       }
-      if (auto found = over(*ground, fine, base_vertices)) return found;
-      if (last_.self_intersections > kHopeless) break;
+      feature_base_ = ground.base(static_cast<int>(std::lround(kFeatureGrowth * vertices)));
     }
     return std::nullopt;
   }
 
-  std::optional<Remeshed> on_even_triangles(const Ground& ground) {
-    for (const double growth : kEvenGrowth) {
-      const int base_vertices = static_cast<int>(std::lround(growth * options_.base_vertices));
-      if (!within_limit(base_vertices)) break;
-      if (auto found = over(ground, input_, base_vertices)) return found;
-      if (last_.self_intersections > kHopeless) break;
+  [[nodiscard]] int feature_vertices() const { return static_cast<int>(feature_base_->base_vertices.size()); }
+
+  /// Bases of at most `most` vertices on the input's own triangles, then on even ones; goes on where it stopped.
+  std::optional<Remeshed> without_features(const TriangleMesh& normalized, int most) {
+    if (auto found = on_own_triangles(most)) return found;
+    return on_even_triangles(normalized, most);
+  }
+
+  [[nodiscard]] int grown(double growth) const {
+    return static_cast<int>(std::lround(growth * options_.base_vertices));
+  }
+
+  std::optional<Remeshed> on_own_triangles(int most) {
+    const bool needles = smallest_angle(input_) < kNeedle;
+    while (own_attempts_ < kGrowth.size() && grown(kGrowth[own_attempts_]) <= most) {
+      const int base_vertices = grown(kGrowth[own_attempts_]);
+      if (auto found = exactly(base_vertices)) return found;
+      if (!own_ || own_mesh_.vertices.size() < 2 * static_cast<std::size_t>(base_vertices)) {
+        own_mesh_ = with_enough_vertices(input_, base_vertices);
+        own_ = std::make_unique<Ground>(normalization_.apply(own_mesh_));
+      }
+      if (!affords(*own_, base_vertices)) break;
+      if (auto found = over(*own_, own_mesh_, own_->base(base_vertices))) return found;
+      own_attempts_ = after(own_attempts_, kGrowth);
+      if (last_.self_intersections > (needles ? kHopelessNeedles : kHopeless)) own_attempts_ = kGrowth.size();
     }
     return std::nullopt;
+  }
+
+  std::optional<Remeshed> on_even_triangles(const TriangleMesh& normalized, int most) {
+    while (even_attempts_ < kEvenGrowth.size() && grown(kEvenGrowth[even_attempts_]) <= most) {
+      if (!even_) {
+        const Features none{{}, std::vector<char>(input_.vertices.size(), 0)};
+        even_ = std::make_unique<Ground>(normalized, none, even_edge(normalized, options_));
+      }
+      const int base_vertices = grown(kEvenGrowth[even_attempts_]);
+      if (!affords(*even_, base_vertices)) break;
+      if (auto found = over(*even_, input_, even_->base(base_vertices))) return found;
+      even_attempts_ = after(even_attempts_, kEvenGrowth);
+      if (last_.self_intersections > kHopeless) even_attempts_ = kEvenGrowth.size();
+    }
+    return std::nullopt;
+  }
+
+  /// The attempt to follow the last one, which was number k.
+  [[nodiscard]] std::size_t after(std::size_t k, std::span<const double> growth) const {
+    const bool crosses = last_.flipped > 0 || last_.self_intersections > 0;
+    const double miss = last_.hausdorff_relative / accuracy_of(options_);
+    const double least = miss > kFarMiss ? 2 * growth[k] : crosses ? kBigStep : 0;
+    ++k;
+    while (k < growth.size() && growth[k] < least) ++k;
+    return k;
+  }
+
+  [[nodiscard]] double work_over(const Ground& ground, int base_vertices) const {
+    return work_of_attempt(base_vertices, options_.levels,
+                           static_cast<double>(ground.surface().mesh().vertices.size()));
+  }
+
+  /// Whether an attempt is within the work allowed; the first one is.
+  [[nodiscard]] bool affords(const Ground& ground, int base_vertices) const {
+    return !best_ || work_ + work_over(ground, base_vertices) <= most_work(input_, options_);
   }
 
   /// One attempt; `own` has the triangles that the ground's places refer to.
-  std::optional<Remeshed> over(const Ground& ground, const TriangleMesh& own, int base_vertices) {
+  std::optional<Remeshed> over(const Ground& ground, const TriangleMesh& own, const SelfParameterization& base) {
+    const auto base_vertices = base.base_vertices.size();
+    work_ += work_over(ground, static_cast<int>(base_vertices));
+    largest_base_ = std::max(largest_base_, static_cast<int>(base_vertices));
     const double share = (1 - done_) / 2;  // how many attempts there will be is not known
-    auto attempt = ground.attempt(base_vertices, options_.levels, [&](double fraction) {
+    const double least = options_.smallest_angle * std::numbers::pi / 180;
+    auto attempt = ground.attempt(base, options_.levels, least, [&](double fraction) {
       report(done_ + share * fraction, "sliding " + std::to_string(base_vertices) + " base vertices and their splits");
     });
     auto& positions = attempt.mesh.positions;
@@ -281,6 +351,13 @@ class Search {
   Normalization normalization_;
   double done_ = 0;
   bool tried_exactly_ = false;
+  std::optional<SelfParameterization> feature_base_;  ///< the next to be tried
+  int feature_attempts_ = 0;
+  TriangleMesh own_mesh_;
+  std::unique_ptr<Ground> own_, even_;
+  std::size_t own_attempts_ = 0, even_attempts_ = 0;
+  double work_ = 0;  ///< of all attempts
+  int largest_base_ = 0;
   RemeshQuality last_;
   std::optional<RemeshQuality> best_;
 };
@@ -309,7 +386,7 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const P
     }
   }
   if (auto found = search.run()) return *std::move(found);
-  throw std::runtime_error(failure(search.best(), options));
+  throw std::runtime_error(failure(search.best(), search.largest_base(), options));
 }
 
 }  // namespace greenloop::offline
