@@ -187,7 +187,7 @@ TEST_CASE("the work of a search in vain is bounded, and the next base to try is 
   // Seven at most are over the few triangles of the input, the others over a ground of about 10,000 vertices, each of
   // which counts as a quarter of a vertex moved in all 60 sweeps.
   const int over_many = std::max(0, static_cast<int>(attempts.size()) - 7);
-  CHECK(finest + 2000 * over_many <= 10 * (64 * 24 + 2500));
+  CHECK(finest + 2000 * over_many <= 9 * (64 * 24 + 2500));
   CHECK(message.find("the next that was not tried is " + std::to_string(std::lround(1.4 * largest))) !=
         std::string::npos);
 }

@@ -40,7 +40,7 @@ constexpr int kFeatureBase = 2;
 
 /// All attempts together, in attempts at the base asked for over an even ground. An attempt's work is counted in
 /// vertices moved; a vertex of the ground is worth kGroundWork of them.
-constexpr double kMostWork = 10, kSweeps = 60, kGroundWork = 15;
+constexpr double kMostWork = 9, kSweeps = 60, kGroundWork = 15;
 
 /// Turn of the surface at an edge of the drawing, degrees; and the least length of a line of them, in diagonals.
 constexpr double kSharp = 40, kShortestLine = 0.1;
