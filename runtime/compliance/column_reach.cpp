@@ -15,7 +15,7 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint32_t most_even = 640;
+constexpr std::uint32_t most_even = 576;
 
 [[gnu::noinline]] std::uint32_t largest_degree(const ModelView& view, std::uint32_t level, std::uint32_t with) {
   ValueCounts<> blocks;

@@ -12,7 +12,7 @@ namespace greenloop {
 
 /// Bounds of the blocks that coefficients of levels 0..c have with those of each of these levels.
 struct Degrees {
-  static constexpr std::uint32_t entries = 2560;
+  static constexpr std::uint32_t entries = 2304;
   std::uint32_t levels = 0;
   std::uint32_t exact = 0;                                          ///< coefficients, the first, that are counted each
   std::uint16_t first[entries] = {};                                ///< [exact][levels]
@@ -63,14 +63,14 @@ struct Reach {
 
 /// Columns that are followed together.
 struct ReachBatch {
-  static constexpr std::uint32_t most = 8;
+  static constexpr std::uint32_t most = 4;
   std::uint32_t count = 0;
   std::uint32_t column[most] = {};
   Reach reach[most];
 };
 
 /// Fills in what the columns reach, and adds the coefficients to `reached`. bound_reach must have bounded their level.
-/// With lifted wavelets whose next coarser level has more than 640 coefficients, those that are lifted are not
+/// With lifted wavelets whose next coarser level has more than 576 coefficients, those that are lifted are not
 /// listed: as many of the largest counts stand for them, and all count as reached. Start-up; work: a unit a node of
 /// each support; with lifted wavelets one for every coefficient besides.
 void follow(const ModelView& view, const LiftingCounts* lifting, const Degrees& degrees, ReachBatch& batch,
