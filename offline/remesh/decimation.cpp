@@ -10,6 +10,7 @@
 
 #include "offline/remesh/quadric.hpp"
 #include "offline/remesh/self_parameterization.hpp"
+#include "offline/remesh/triangle_fans.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -57,9 +58,7 @@ class Decimation {
  public:
   Decimation(const TriangleMesh& mesh, const Features& features)
       : positions_(mesh.vertices),
-        corners_(mesh.triangles),
-        alive_(mesh.triangles.size(), 1),
-        around_(mesh.vertices.size()),
+        fans_(mesh.triangles, mesh.vertices.size()),
         planes_(mesh.vertices.size()),
         scatter_(mesh.vertices.size()),
         stamps_(mesh.vertices.size(), 0),
@@ -70,7 +69,7 @@ class Decimation {
     for (const auto& [a, b, c] : mesh.triangles) {
       area += (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]).norm() / 2;
     }
-    for (std::size_t t = 0; t < corners_.size(); ++t) add_triangle(static_cast<int>(t), area);
+    for (const auto& corners : mesh.triangles) add_triangle(corners, area);
   }
 
   void run(int target) {
@@ -85,17 +84,17 @@ class Decimation {
     SelfParameterization parameterization;
     std::vector<int> renumbered(positions_.size(), -1);
     for (std::size_t v = 0; v < positions_.size(); ++v) {
-      if (around_[v].empty()) continue;
+      if (!fans_.has_vertex(static_cast<int>(v))) continue;
       renumbered[v] = static_cast<int>(parameterization.base_vertices.size());
       parameterization.base_vertices.push_back(positions_[v]);
       parameterization.base_origin.push_back(static_cast<int>(v));
       parameterization.base_planes.push_back(1 / scatter_[v].a(0, 0) * planes_[v]);
     }
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
-      if (!alive_[t]) continue;
-      const auto& [a, b, c] = corners_[t];
+    for (int t = 0; t < static_cast<int>(fans_.triangles()); ++t) {
+      if (!fans_.has_triangle(t)) continue;
+      const auto& [a, b, c] = fans_.corners(t);
       parameterization.base_triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
-      parameterization.base_ids.push_back(static_cast<int>(t));
+      parameterization.base_ids.push_back(t);
     }
     parameterization.changes = std::move(changes_);
     parameterization.base_features = links_.features(renumbered, parameterization.base_vertices);
@@ -103,33 +102,17 @@ class Decimation {
   }
 
  private:
-  void add_triangle(int t, double whole_area) {
-    const auto& [a, b, c] = corners_[t];
+  void add_triangle(const std::array<int, 3>& corners, double whole_area) {
+    const auto& [a, b, c] = corners;
     const Eigen::Vector3d normal = (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]);
     const double area = normal.norm() / 2;
     const Eigen::Vector3d n = normal.stableNormalized();
     // a sliver must not make the system singular
-    const double weight = area / whole_area / 3 + 1e-12 / static_cast<double>(corners_.size());
-    for (const int v : corners_[t]) {
-      around_[v].push_back(t);
+    const double weight = area / whole_area / 3 + 1e-12 / static_cast<double>(fans_.triangles());
+    for (const int v : corners) {
       planes_[v] += Quadric::to_plane(weight, n, n.dot(positions_[a]));
       scatter_[v] += Quadric::to_point(weight, positions_[v]);
     }
-  }
-
-  [[nodiscard]] int valence(int v) const { return static_cast<int>(around_[v].size()); }
-
-  /// Neighbours in increasing order.
-  [[nodiscard]] std::vector<int> neighbors(int v) const {
-    std::vector<int> found;
-    for (const int t : around_[v]) {
-      for (const int w : corners_[t]) {
-        if (w != v) found.push_back(w);
-      }
-    }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
   }
 
   [[nodiscard]] Quadric cost_of(int v) const { return planes_[v] + kEvenness * scatter_[v]; }
@@ -164,14 +147,14 @@ class Decimation {
   void collapse_down_to(int target) {
     queue_ = {};
     for (std::size_t v = 0; v < positions_.size(); ++v) {
-      for (const int w : neighbors(static_cast<int>(v))) {
+      for (const int w : fans_.neighbors(static_cast<int>(v))) {
         if (static_cast<int>(v) < w) push(static_cast<int>(v), w);
       }
     }
     while (remaining_ > target && !queue_.empty()) {
       Candidate candidate = queue_.top();
       queue_.pop();
-      if (around_[candidate.from].empty() || around_[candidate.to].empty() ||
+      if (!fans_.has_vertex(candidate.from) || !fans_.has_vertex(candidate.to) ||
           candidate.stamp != stamps_[candidate.from] + stamps_[candidate.to]) {
         continue;
       }
@@ -183,11 +166,11 @@ class Decimation {
         continue;
       }
       // whatever was refused near here may be allowed now
-      const auto ring = neighbors(candidate.to);
+      const auto ring = fans_.neighbors(candidate.to);
       for (const int v : ring) ++stamps_[v];
       ++stamps_[candidate.to];
       for (const int v : ring) {
-        for (const int w : neighbors(v)) {
+        for (const int w : fans_.neighbors(v)) {
           if (v < w || !std::binary_search(ring.begin(), ring.end(), w)) push(v, w);
         }
       }
@@ -196,12 +179,12 @@ class Decimation {
 
   /// Collapses `from` into `to`; false, and nothing changed, where the rule or the topology forbids it.
   bool collapse(int from, int to, const CollapseRule& rule) {
-    const auto shared = common_neighbors(from, to);
+    const auto shared = fans_.common_neighbors(from, to);
     if (shared.size() != 2 || remaining_ <= 4) return false;
-    const int merged_valence = valence(from) + valence(to) - 4;
+    const int merged_valence = fans_.valence(from) + fans_.valence(to) - 4;
     if (merged_valence < rule.least_valence || merged_valence > rule.most_valence) return false;
     for (const int side : shared) {
-      if (valence(side) - 1 < rule.least_valence) return false;
+      if (fans_.valence(side) - 1 < rule.least_valence) return false;
     }
     const bool free = links_.is_free(from) && links_.is_free(to);
     if (!free && !links_.may_collapse(from, to)) return false;
@@ -239,8 +222,8 @@ class Decimation {
       return links_.chain(v, w) >= 0 || (other >= 0 && std::minmax(v, w) == std::minmax(to, other));
     };
     for (const int start : {from, to}) {
-      for (const int t : around_[start]) {
-        auto corners = corners_[t];
+      for (const int t : fans_.around(start)) {
+        auto corners = fans_.corners(t);
         std::replace(corners.begin(), corners.end(), from, to);
         const auto& [a, b, c] = corners;
         if (a == b || b == c || c == a) continue;
@@ -255,23 +238,16 @@ class Decimation {
     return is_ear({a, b, c}, {linked(a, b), linked(b, c), linked(c, a)});
   }
 
-  [[nodiscard]] std::vector<int> common_neighbors(int v, int w) const {
-    const auto of_v = neighbors(v), of_w = neighbors(w);
-    std::vector<int> common;
-    std::set_intersection(of_v.begin(), of_v.end(), of_w.begin(), of_w.end(), std::back_inserter(common));
-    return common;
-  }
-
   [[nodiscard]] CollapsePatch patch_of(int from, int to, const Eigen::Vector3d& merged) const {
-    std::vector<int> triangles = around_[from];
-    for (const int t : around_[to]) {
+    std::vector<int> triangles = fans_.around(from);
+    for (const int t : fans_.around(to)) {
       if (std::find(triangles.begin(), triangles.end(), t) == triangles.end()) triangles.push_back(t);
     }
     const auto inner = [&](int v) { return v == from || v == to; };
     std::vector<std::array<int, 2>> rim;
     for (const int t : triangles) {
       for (int e = 0; e < 3; ++e) {
-        const int a = corners_[t][e], b = corners_[t][(e + 1) % 3];
+        const int a = fans_.corners(t)[e], b = fans_.corners(t)[(e + 1) % 3];
         if (!inner(a) && !inner(b)) rim.push_back({a, b});
       }
     }
@@ -294,7 +270,7 @@ class Decimation {
     };
     if (!links_.is_free(from)) patch.line = index(links_.beyond(from, to));
     for (const int t : triangles) {
-      PatchTriangle triangle{t, {index(corners_[t][0]), index(corners_[t][1]), index(corners_[t][2])}};
+      PatchTriangle triangle{t, {index(fans_.corners(t)[0]), index(fans_.corners(t)[1]), index(fans_.corners(t)[2])}};
       patch.before.push_back(triangle);
       int inner_corners = 0;
       for (int& corner : triangle.corners) {
@@ -326,19 +302,7 @@ class Decimation {
   }
 
   void apply(int from, int to, const Eigen::Vector3d& merged) {
-    for (const int t : around_[from]) {
-      auto& corners = corners_[t];
-      if (std::find(corners.begin(), corners.end(), to) != corners.end()) {
-        alive_[t] = 0;
-        for (const int v : corners) {
-          if (v != from) std::erase(around_[v], t);
-        }
-      } else {
-        std::replace(corners.begin(), corners.end(), from, to);
-        around_[to].push_back(t);
-      }
-    }
-    around_[from].clear();
+    fans_.collapse(from, to);
     positions_[to] = merged;
     --remaining_;
   }
@@ -349,35 +313,26 @@ class Decimation {
     for (int pass = 0; pass < kPasses && flipped; ++pass) {
       flipped = false;
       for (int v = 0; v < static_cast<int>(positions_.size()); ++v) {
-        for (const int w : neighbors(v)) {
+        for (const int w : fans_.neighbors(v)) {
           if (v < w && flip(v, w)) flipped = true;
         }
       }
     }
   }
 
-  /// The corner after `v` counter-clockwise in triangle t.
-  [[nodiscard]] int following(int t, int v) const {
-    const auto& corners = corners_[t];
-    return corners[(std::find(corners.begin(), corners.end(), v) - corners.begin() + 1) % 3];
-  }
-
   /// Exchanges the edge (v, w) for the other diagonal of its two triangles if that serves valence and shape.
   bool flip(int v, int w) {
-    int left = -1, right = -1;
-    for (const int t : around_[v]) {
-      if (following(t, v) == w) left = t;
-      if (following(t, following(t, v)) == w) right = t;
-    }
-    const int above = following(left, w), below = following(right, v);
+    const auto [left, right] = fans_.sides(v, w);
+    const int above = fans_.following(left, w), below = fans_.following(right, v);
     if (links_.chain(v, w) != CurvePoint::kFree) return false;
-    if (valence(v) < 5 || valence(w) < 5 || common_neighbors(v, w).size() != 2) return false;
-    const auto ring = neighbors(above);
+    if (fans_.valence(v) < 5 || fans_.valence(w) < 5 || fans_.common_neighbors(v, w).size() != 2) return false;
+    const auto ring = fans_.neighbors(above);
     if (std::binary_search(ring.begin(), ring.end(), below)) return false;
     if (is_ear(above, v, below) || is_ear(below, w, above)) return false;
     const double now = unevenness(v, w, above) + unevenness(w, v, below) + crease(v, w, above, below);
     const double then = unevenness(above, v, below) + unevenness(below, w, above) + crease(above, below, w, v);
-    const double valences = 2.0 * (valence(above) + valence(below) - valence(v) - valence(w) + 2);
+    const double valences =
+        2.0 * (fans_.valence(above) + fans_.valence(below) - fans_.valence(v) - fans_.valence(w) + 2);
     if (!(then + valences < now - 1e-9)) return false;
 
     const auto flat = flattened_quad(v, w, above, below);
@@ -386,19 +341,14 @@ class Decimation {
     for (const int t : {left, right}) {
       FlatTriangle triangle{t, {}};
       for (int c = 0; c < 3; ++c) {
-        const int corner = corners_[t][c];
+        const int corner = fans_.corners(t)[c];
         triangle.corners[c] = corner == v ? at_v : corner == w ? at_w : corner == above ? at_above : at_below;
       }
       patch.before.push_back(triangle);
     }
     patch.after = {{left, {at_above, at_v, at_below}}, {right, {at_below, at_w, at_above}}};
     changes_.push_back(std::move(patch));
-    corners_[left] = {above, v, below};
-    corners_[right] = {below, w, above};
-    std::erase(around_[v], right);
-    std::erase(around_[w], left);
-    around_[above].push_back(right);
-    around_[below].push_back(left);
+    fans_.flip(v, w);
     return true;
   }
 
@@ -432,9 +382,7 @@ class Decimation {
   }
 
   std::vector<Eigen::Vector3d> positions_;
-  std::vector<std::array<int, 3>> corners_;
-  std::vector<char> alive_;
-  std::vector<std::vector<int>> around_;   ///< triangles around each vertex; empty once it is gone
+  TriangleFans fans_;
   std::vector<Quadric> planes_, scatter_;  ///< of all the input area that a vertex stands for
   std::vector<long> stamps_;               ///< raised whenever a vertex or its ring changes: older candidates are void
   std::priority_queue<Candidate> queue_;

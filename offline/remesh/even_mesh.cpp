@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "offline/remesh/triangle_fans.hpp"
 #include "offline/remesh/triangle_tree.hpp"
 
 namespace greenloop::offline {
@@ -30,15 +31,13 @@ class Evening {
         tree_(original.mesh()),
         length_(edge_length),
         positions_(original.mesh().vertices),
-        corners_(original.mesh().triangles),
-        around_(positions_.size()),
+        fans_(original.mesh().triangles, positions_.size()),
         places_(positions_.size()),
         links_(features, positions_.size()) {
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
+    for (int t = 0; t < static_cast<int>(fans_.triangles()); ++t) {
       for (int c = 0; c < 3; ++c) {
-        const int v = corners_[t][c];
-        around_[v].push_back(static_cast<int>(t));
-        places_[v].point = {static_cast<int>(t), Eigen::Vector3d::Unit(c)};
+        const int v = fans_.corners(t)[c];
+        places_[v].point = {t, Eigen::Vector3d::Unit(c)};
         if (links_.is_corner(v)) places_[v].curve = {CurvePoint::kCorner, 0, v};
       }
     }
@@ -69,13 +68,14 @@ class Evening {
     EvenMesh even;
     std::vector<int> renumbered(positions_.size(), -1);
     for (std::size_t v = 0; v < positions_.size(); ++v) {
-      if (around_[v].empty()) continue;
+      if (!fans_.has_vertex(static_cast<int>(v))) continue;
       renumbered[v] = static_cast<int>(even.mesh.vertices.size());
       even.mesh.vertices.push_back(positions_[v]);
       even.origin.push_back(places_[v]);
     }
-    for (const auto& [a, b, c] : corners_) {
-      if (a >= 0) even.mesh.triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
+    for (int t = 0; t < static_cast<int>(fans_.triangles()); ++t) {
+      const auto& [a, b, c] = fans_.corners(t);
+      if (fans_.has_triangle(t)) even.mesh.triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
     }
     even.features = links_.features(renumbered, even.mesh.vertices);
     return even;
@@ -83,40 +83,6 @@ class Evening {
 
  private:
   [[nodiscard]] double distance(int v, int w) const { return (positions_[v] - positions_[w]).norm(); }
-
-  [[nodiscard]] std::vector<int> neighbors(int v) const {
-    std::vector<int> found;
-    for (const int t : around_[v]) {
-      for (const int w : corners_[t]) {
-        if (w != v) found.push_back(w);
-      }
-    }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
-  }
-
-  [[nodiscard]] std::vector<int> common_neighbors(int v, int w) const {
-    const auto of_v = neighbors(v), of_w = neighbors(w);
-    std::vector<int> common;
-    std::set_intersection(of_v.begin(), of_v.end(), of_w.begin(), of_w.end(), std::back_inserter(common));
-    return common;
-  }
-
-  [[nodiscard]] int following(int t, int v) const {
-    const auto& corners = corners_[t];
-    return corners[(std::find(corners.begin(), corners.end(), v) - corners.begin() + 1) % 3];
-  }
-
-  /// The triangles left and right of the edge from v to w.
-  [[nodiscard]] std::array<int, 2> sides(int v, int w) const {
-    std::array<int, 2> found{-1, -1};
-    for (const int t : around_[v]) {
-      if (following(t, v) == w) found[0] = t;
-      if (following(t, following(t, v)) == w) found[1] = t;
-    }
-    return found;
-  }
 
   [[nodiscard]] Eigen::Vector3d cross(int a, int b, int c) const {
     return (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]);
@@ -147,13 +113,13 @@ class Evening {
     bool any = true;
     while (any) {
       any = false;
-      for (std::size_t t = 0; t < corners_.size(); ++t) {
-        if (corners_[t][0] < 0) continue;
+      for (int t = 0; t < static_cast<int>(fans_.triangles()); ++t) {
+        if (!fans_.has_triangle(t)) continue;
         for (int e = 0; e < 3; ++e) {
-          const int v = corners_[t][e], w = corners_[t][(e + 1) % 3];
+          const int v = fans_.corners(t)[e], w = fans_.corners(t)[(e + 1) % 3];
           const bool bare_chain = links_.is_corner(v) && links_.is_corner(w) && links_.chain(v, w) >= 0;
           if (!bare_chain && distance(v, w) <= longest) continue;
-          if (!is_longest(static_cast<int>(t), e) && !bare_chain) continue;
+          if (!is_longest(t, e) && !bare_chain) continue;
           split(v, w);
           any = true;
           break;
@@ -163,40 +129,26 @@ class Evening {
   }
 
   [[nodiscard]] bool is_longest(int t, int e) const {
-    const auto& c = corners_[t];
+    const auto& c = fans_.corners(t);
     const double here = distance(c[e], c[(e + 1) % 3]);
     return here >= distance(c[(e + 1) % 3], c[(e + 2) % 3]) && here >= distance(c[(e + 2) % 3], c[e]);
   }
 
   void split(int v, int w) {
-    const auto [left, right] = sides(v, w);
-    const int middle = static_cast<int>(positions_.size());
     const auto at = halfway(v, w);
+    const int middle = fans_.split(v, w);
     links_.split(v, w, middle);
     positions_.emplace_back();
     places_.emplace_back();
-    around_.emplace_back();
     place(middle, at);
-    for (const int t : {left, right}) {
-      const int fresh = static_cast<int>(corners_.size());
-      auto other = corners_[t];
-      std::replace(corners_[t].begin(), corners_[t].end(), w, middle);
-      std::replace(other.begin(), other.end(), v, middle);
-      corners_.push_back(other);
-      std::replace(around_[w].begin(), around_[w].end(), t, fresh);
-      around_[middle].insert(around_[middle].end(), {t, fresh});
-      for (const int u : other) {
-        if (u != middle && u != w) around_[u].push_back(fresh);
-      }
-    }
   }
 
   void collapse_short_edges() {
     for (int v = 0; v < static_cast<int>(positions_.size()); ++v) {
       bool collapsed = true;
-      while (collapsed && !around_[v].empty()) {
+      while (collapsed && fans_.has_vertex(v)) {
         collapsed = false;
-        for (const int w : neighbors(v)) {
+        for (const int w : fans_.neighbors(v)) {
           if (distance(v, w) >= kShortest * length_) continue;
           if (collapse(w, v) || collapse(v, w)) {
             collapsed = true;
@@ -208,28 +160,16 @@ class Evening {
   }
 
   bool collapse(int removed, int kept) {
-    if (!links_.may_collapse(removed, kept) || common_neighbors(removed, kept).size() != 2) return false;
+    if (!links_.may_collapse(removed, kept) || fans_.common_neighbors(removed, kept).size() != 2) return false;
     if (!links_.is_free(removed) && ends_at_corners(removed)) return false;
-    for (const int u : neighbors(removed)) {
+    for (const int u : fans_.neighbors(removed)) {
       if (u != kept && distance(u, kept) > std::max(kLongest * length_, distance(u, removed))) return false;
     }
     if (!keeps_orientation(removed, positions_[kept], kept)) return false;
-    for (const int side : common_neighbors(removed, kept)) {
-      if (around_[side].size() < 4) return false;
+    for (const int side : fans_.common_neighbors(removed, kept)) {
+      if (fans_.valence(side) < 4) return false;
     }
-    for (const int t : around_[removed]) {
-      auto& corners = corners_[t];
-      if (std::find(corners.begin(), corners.end(), kept) != corners.end()) {
-        for (const int v : corners) {
-          if (v != removed) std::erase(around_[v], t);
-        }
-        corners = {-1, -1, -1};
-      } else {
-        std::replace(corners.begin(), corners.end(), removed, kept);
-        around_[kept].push_back(t);
-      }
-    }
-    around_[removed].clear();
+    fans_.collapse(removed, kept);
     links_.collapse(removed, kept);
     return true;
   }
@@ -243,9 +183,9 @@ class Evening {
   /// Whether the triangles around v, but those with `but`, still look the same way with v at `there`.
   [[nodiscard]] bool keeps_orientation(int v, const Eigen::Vector3d& there, int but = -1) const {
     Eigen::Vector3d around = Eigen::Vector3d::Zero();
-    for (const int t : around_[v]) around += cross(corners_[t][0], corners_[t][1], corners_[t][2]);
-    for (const int t : around_[v]) {
-      const int b = following(t, v), c = following(t, b);
+    for (const int t : fans_.around(v)) around += cross(fans_.corners(t)[0], fans_.corners(t)[1], fans_.corners(t)[2]);
+    for (const int t : fans_.around(v)) {
+      const int b = fans_.following(t, v), c = fans_.following(t, b);
       if (b == but || c == but) continue;
       Eigen::Vector3d before = cross(v, b, c);
       if (before.norm() < kNeedle * distance(v, b) * distance(v, c)) before = around;
@@ -263,9 +203,9 @@ class Evening {
     bool flipped = true;
     for (int pass = 0; pass < kPasses && flipped; ++pass) {
       flipped = false;
-      for (std::size_t t = 0; t < corners_.size(); ++t) {
-        for (int e = 0; e < 3 && corners_[t][0] >= 0; ++e) {
-          if (flip(corners_[t][e], corners_[t][(e + 1) % 3])) flipped = true;
+      for (int t = 0; t < static_cast<int>(fans_.triangles()); ++t) {
+        for (int e = 0; e < 3 && fans_.has_triangle(t); ++e) {
+          if (flip(fans_.corners(t)[e], fans_.corners(t)[(e + 1) % 3])) flipped = true;
         }
       }
     }
@@ -279,28 +219,23 @@ class Evening {
   /// Exchanges the edge (v, w) for the other diagonal where the angles across it sum to more than a half turn.
   bool flip(int v, int w) {
     if (links_.chain(v, w) >= 0) return false;
-    const auto [left, right] = sides(v, w);
-    const int above = following(left, w), below = following(right, v);
+    const auto [left, right] = fans_.sides(v, w);
+    const int above = fans_.following(left, w), below = fans_.following(right, v);
     if (angle(above, v, w) + angle(below, v, w) < std::numbers::pi + 1e-6) return false;
-    if (around_[v].size() < 4 || around_[w].size() < 4) return false;
-    const auto ring = neighbors(above);
+    if (fans_.valence(v) < 4 || fans_.valence(w) < 4) return false;
+    const auto ring = fans_.neighbors(above);
     if (std::binary_search(ring.begin(), ring.end(), below)) return false;
     const Eigen::Vector3d now = cross(v, w, above) + cross(w, v, below);
     const Eigen::Vector3d first = cross(above, v, below), second = cross(below, w, above);
     const double least = std::max(flattest_, 0.7) * now.norm();
     if (first.dot(now) < least * first.norm() || second.dot(now) < least * second.norm()) return false;
-    corners_[left] = {above, v, below};
-    corners_[right] = {below, w, above};
-    std::erase(around_[v], right);
-    std::erase(around_[w], left);
-    around_[above].push_back(right);
-    around_[below].push_back(left);
+    fans_.flip(v, w);
     return true;
   }
 
   void smooth() {
     for (int v = 0; v < static_cast<int>(positions_.size()); ++v) {
-      if (around_[v].empty() || links_.is_corner(v)) continue;
+      if (!fans_.has_vertex(v) || links_.is_corner(v)) continue;
       const auto at = links_.is_free(v) ? centred(v) : centred_on_chain(v);
       if (keeps_orientation(v, original_.position(at.point))) place(v, at);
     }
@@ -309,8 +244,8 @@ class Evening {
   [[nodiscard]] BoundPoint centred(int v) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double weight = 0;
-    for (const int t : around_[v]) {
-      const auto& [a, b, c] = corners_[t];
+    for (const int t : fans_.around(v)) {
+      const auto& [a, b, c] = fans_.corners(t);
       const double area = cross(a, b, c).norm();
       sum += area * (positions_[a] + positions_[b] + positions_[c]) / 3;
       weight += area;
@@ -334,8 +269,7 @@ class Evening {
   double length_;
   double flattest_ = kFlat;
   std::vector<Eigen::Vector3d> positions_;
-  std::vector<std::array<int, 3>> corners_;  ///< of a triangle that is gone, all -1
-  std::vector<std::vector<int>> around_;     ///< triangles around each vertex; empty once it is gone
+  TriangleFans fans_;
   std::vector<BoundPoint> places_;
   FeatureLinks links_;
 };
