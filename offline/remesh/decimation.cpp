@@ -11,6 +11,7 @@
 #include "offline/remesh/quadric.hpp"
 #include "offline/remesh/self_parameterization.hpp"
 #include "offline/remesh/triangle_fans.hpp"
+#include "offline/surface/area_and_volume.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -65,10 +66,7 @@ class Decimation {
         links_(features, mesh.vertices.size()),
         rules_(features.chains.empty() ? std::span<const CollapseRule>(kRules) : kFeatureRules),
         remaining_(static_cast<int>(mesh.vertices.size())) {
-    double area = 0;
-    for (const auto& [a, b, c] : mesh.triangles) {
-      area += (positions_[b] - positions_[a]).cross(positions_[c] - positions_[a]).norm() / 2;
-    }
+    const double area = surface_area(mesh);
     for (const auto& corners : mesh.triangles) add_triangle(corners, area);
   }
 

@@ -7,6 +7,7 @@
 
 #include "offline/remesh/surface.hpp"
 #include "offline/remesh/triangle_tree.hpp"
+#include "offline/surface/area_and_volume.hpp"
 #include "offline/surface/triangle_intersection.hpp"
 
 namespace greenloop::offline {
@@ -66,14 +67,6 @@ Extreme one_sided_distance(const TriangleMesh& from, const TriangleTree& to, dou
   return greatest;
 }
 
-double volume(const TriangleMesh& mesh, const Eigen::Vector3d& origin) {
-  double six = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    six += (mesh.vertices[a] - origin).cross(mesh.vertices[b] - origin).dot(mesh.vertices[c] - origin);
-  }
-  return six / 6;
-}
-
 }  // namespace
 
 double smallest_angle(const TriangleMesh& mesh) { return sharpest(mesh).value; }
@@ -98,7 +91,7 @@ RemeshQuality measure_quality(const TriangleMesh& input, const SemiRegularMesh& 
   const auto& distance = of_input.value > of_mesh.value ? of_input : of_mesh;
   quality.farthest_of_mesh = of_mesh.value;
   quality.farthest_of_input = of_input.value;
-  quality.volume_change = volume(finest, box.center()) / volume(input, box.center()) - 1;
+  quality.volume_change = enclosed_volume(finest) / enclosed_volume(input) - 1;
   quality.hausdorff = distance.value;
   quality.hausdorff_at = fraction(distance.place);
   quality.hausdorff_relative = quality.hausdorff / diagonal;

@@ -20,6 +20,7 @@
 #include "offline/remesh/midpoint_refinement.hpp"
 #include "offline/remesh/self_parameterization.hpp"
 #include "offline/remesh/subdivision_connectivity.hpp"
+#include "offline/surface/area_and_volume.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -150,14 +151,6 @@ TriangleMesh with_enough_vertices(TriangleMesh input, int base_vertices) {
   return input;
 }
 
-double area_of(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    area += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm() / 2;
-  }
-  return area;
-}
-
 /// Vertices of the finest level over a base, of three levels at least.
 double finest_vertices(double base_vertices, int levels) { return std::ldexp(base_vertices, 2 * std::max(levels, 3)); }
 
@@ -168,7 +161,7 @@ double even_triangles(const RemeshOptions& options) {
 }
 
 double even_edge(const TriangleMesh& normalized, const RemeshOptions& options) {
-  return std::sqrt(4 / std::sqrt(3.0) * area_of(normalized) / even_triangles(options));
+  return std::sqrt(4 / std::sqrt(3.0) * surface_area(normalized) / even_triangles(options));
 }
 
 double work_of_attempt(double base_vertices, int levels, double ground_vertices) {

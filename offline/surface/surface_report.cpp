@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "offline/surface/area_and_volume.hpp"
 #include "offline/surface/coincident_vertices.hpp"
 #include "offline/surface/surface_edges.hpp"
 #include "offline/surface/triangle_intersection.hpp"
@@ -139,14 +140,6 @@ void measure_faces(const TriangleMesh& mesh, SurfaceReport& report) {
   }
 }
 
-double signed_volume(const TriangleMesh& mesh, const Eigen::Vector3d& origin) {
-  double sixfold = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    sixfold += (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));
-  }
-  return sixfold / 6;
-}
-
 }  // namespace
 
 bool is_closed_manifold(const TriangleMesh& mesh) {
@@ -169,7 +162,7 @@ SurfaceReport check_connectivity(const TriangleMesh& mesh) {
   find_duplicate_faces(mesh, report);
   measure_faces(mesh, report);
   if (report.closed() && report.non_manifold_edges.empty() && report.oriented() && !mesh.triangles.empty()) {
-    report.volume = signed_volume(mesh, report.box.center());
+    report.volume = enclosed_volume(mesh);
   }
   return report;
 }

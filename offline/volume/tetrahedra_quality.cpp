@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "offline/surface/area_and_volume.hpp"
+
 namespace greenloop::offline {
 namespace {
 
@@ -124,19 +126,6 @@ std::vector<std::array<int, 3>> boundary_triangles(const TetrahedralMesh& mesh) 
   std::erase_if(faces,
                 [&](const Triangle& f) { return std::binary_search(sorted.begin(), sorted.end(), reversed(f)); });
   return faces;
-}
-
-double enclosed_volume(const TriangleMesh& surface) {
-  if (surface.vertices.empty()) return 0.0;
-  const Eigen::Vector3d origin = surface.vertices.front();
-  double volume = 0.0;
-  for (const auto& t : surface.triangles) {
-    const Eigen::Vector3d a = surface.vertices[t[0]] - origin;
-    const Eigen::Vector3d b = surface.vertices[t[1]] - origin;
-    const Eigen::Vector3d c = surface.vertices[t[2]] - origin;
-    volume += a.dot(b.cross(c)) / 6.0;
-  }
-  return volume;
 }
 
 void require_fills_surface(const TetrahedralMesh& mesh, const TriangleMesh& surface) {

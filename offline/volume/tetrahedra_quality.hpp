@@ -27,9 +27,6 @@ struct TetrahedraQuality {
 /// Throws std::runtime_error when a face belongs to more than two tetrahedra.
 [[nodiscard]] std::vector<std::array<int, 3>> boundary_triangles(const TetrahedralMesh& mesh);
 
-/// Volume enclosed by a closed surface (divergence theorem); negative when its triangles face inwards.
-[[nodiscard]] double enclosed_volume(const TriangleMesh& surface);
-
 /// Throws std::runtime_error, naming the triangle, vertex or tetrahedron, unless `mesh` fills `surface` exactly: its
 /// first vertices are the surface's, bit for bit; its boundary triangles are the surface's; every tetrahedron has
 /// positive volume; the volumes agree to 1e-9.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "offline/surface/area_and_volume.hpp"
 #include "offline/surface/triangle_intersection.hpp"
 #include "offline/volume/netgen_mesher.hpp"
 #include "offline/volume/tetgen_mesher.hpp"

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "offline/surface/area_and_volume.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/testing/shapes.hpp"
 #include "offline/volume/tetgen_mesher.hpp"

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "offline/remesh/triangle_tree.hpp"
+#include "offline/surface/area_and_volume.hpp"
 #include "offline/surface/coincident_vertices.hpp"
 #include "offline/surface/surface_edges.hpp"
 #include "offline/surface/surface_report.hpp"
@@ -70,19 +71,11 @@ double median_edge(const TriangleMesh& mesh) {
   return *middle;
 }
 
-double area_of(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    area += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm() / 2;
-  }
-  return area;
-}
-
 double automatic_length(const TriangleMesh& mesh, const Vector3d& sides) {
   const double longest = sides.maxCoeff();
   const double flattest = sides.minCoeff() > 0 ? sides.minCoeff() / 4 : longest;
   const double coarsest = longest / 64;
-  const double finest = std::max(longest / 160, std::sqrt(area_of(mesh) / 25'000));  // some 70,000 triangles
+  const double finest = std::max(longest / 160, std::sqrt(surface_area(mesh) / 25'000));  // some 70,000 triangles
   return std::clamp(std::min(median_edge(mesh) / 2, flattest), std::min(finest, coarsest), coarsest);
 }
 
@@ -231,15 +224,6 @@ void require_one_piece(const Pieces& pieces, bool largest_piece, double length) 
   }
 }
 
-double volume_of(const TriangleMesh& mesh) {
-  double sixfold = 0;
-  const Vector3d origin = mesh.vertices.front();
-  for (const auto& [a, b, c] : mesh.triangles) {
-    sixfold += (mesh.vertices[a] - origin).dot((mesh.vertices[b] - origin).cross(mesh.vertices[c] - origin));
-  }
-  return sixfold / 6;
-}
-
 }  // namespace
 
 Wrapped wrap(const TriangleMesh& input, const WrapOptions& options) {
@@ -287,7 +271,7 @@ Wrapped wrap(const TriangleMesh& input, const WrapOptions& options) {
   report.from_original = in_unit(deviation(places_on_skin(mesh, crossings, field, lattice), wrapped, offset));
   report.to_original = in_unit(deviation(places_on(result.mesh, sharp.follows), tree, offset));
   frame.from_lattice(result.mesh);
-  report.volume = volume_of(result.mesh);
+  report.volume = enclosed_volume(result.mesh);
   return result;
 }
 

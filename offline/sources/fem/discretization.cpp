@@ -70,10 +70,10 @@ Interpolation restricted(const Interpolation& all, const FreePoints& free) {
 }  // namespace
 
 FreePoints free_points(const FemProblem& problem, const MeshEdges& edges) {
-  FreePoints free;
-  for (const std::uint8_t fixed : problem.fixed) free.vertex.push_back(fixed == 0 ? free.count++ : -1);
-  free.edge.assign(edges.ends.size(), problem.elements == Elements::quadratic ? 0 : -1);
+  const FreeVertices vertices(problem.fixed);
+  FreePoints free{.vertex = vertices.number, .edge = std::vector<int>(edges.ends.size(), -1), .count = vertices.count};
   if (problem.elements == Elements::linear) return free;
+  free.edge.assign(edges.ends.size(), 0);
   for (const auto& triangle : boundary_of(problem.volume, edges)) {
     for (const int edge : triangle.edges) {
       const auto [a, b] = edges.ends[edge];

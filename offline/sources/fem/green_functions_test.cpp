@@ -15,6 +15,7 @@
 #include "offline/sources/fem/fem_source.hpp"
 #include "offline/sources/fem/rigid_motion.hpp"
 #include "offline/sources/reciprocity.hpp"
+#include "offline/surface/area_and_volume.hpp"
 #include "offline/surface/lumped_areas.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/testing/shapes.hpp"
