@@ -48,33 +48,31 @@ Json rough_error(const LevelView& finest) {
   return known(worst);
 }
 
-// `goal`: null if nobody knows
-Json pair(const std::optional<AccuracyGoal>& asked, double AccuracyGoal::*goal, const Json& reached) {
-  return {{"asked", asked ? Json((*asked).*goal) : Json(nullptr)}, {"reached", reached}};
+// what is not known is null
+Json judged(const std::optional<AccuracyGoal>& asked, double AccuracyGoal::*goal, const Json& reached) {
+  constexpr double of_single_precision = 1 + 1e-6;
+  Json error = {{"asked", nullptr}, {"reached", reached}, {"held", nullptr}};
+  if (!asked) return error;
+  error["asked"] = (*asked).*goal;
+  if (reached.is_number()) error["held"] = reached.get<double>() <= of_single_precision * (*asked).*goal;
+  return error;
 }
 
 Json compression_errors(const LevelView& finest, const std::optional<AccuracyGoal>& asked) {
   const layout::Level& level = *finest.counts;
   const auto of_patterns = [&](double error) { return finest.patterns.empty() ? Json(nullptr) : Json(error); };
-  return {{"rms", pair(asked, &AccuracyGoal::rms, level.rms_error)},
-          {"worst_column", pair(asked, &AccuracyGoal::worst_column, level.worst_column_error)},
-          {"patch_force", pair(asked, &AccuracyGoal::patch_force, level.patch_force_error)},
-          {"field", pair(asked, &AccuracyGoal::field, of_patterns(level.field_error))},
-          {"field_peak", pair(asked, &AccuracyGoal::field_peak, of_patterns(level.field_peak))},
-          {"field_rough", pair(asked, &AccuracyGoal::field_rough, rough_error(finest))}};
+  return {{"rms", judged(asked, &AccuracyGoal::rms, level.rms_error)},
+          {"worst_column", judged(asked, &AccuracyGoal::worst_column, level.worst_column_error)},
+          {"patch_force", judged(asked, &AccuracyGoal::patch_force, level.patch_force_error)},
+          {"field", judged(asked, &AccuracyGoal::field, of_patterns(level.field_error))},
+          {"field_peak", judged(asked, &AccuracyGoal::field_peak, of_patterns(level.field_peak))},
+          {"field_rough", judged(asked, &AccuracyGoal::field_rough, rough_error(finest))}};
 }
 
 Json mesh_error(const Json& provenance, const std::optional<AccuracyGoal>& asked) {
   const auto force = Json::json_pointer("/mesh_error/force");
   const bool known = provenance.is_object() && provenance.contains(force) && provenance[force].is_number();
-  return pair(asked, &AccuracyGoal::patch_force, known ? provenance[force] : Json(nullptr));
-}
-
-bool is_judged(const Json& error) { return error["asked"].is_number() && error["reached"].is_number(); }
-
-bool holds(const Json& error) {
-  constexpr double of_single_precision = 1 + 1e-6;
-  return error["reached"].get<double>() <= of_single_precision * error["asked"].get<double>();
+  return judged(asked, &AccuracyGoal::patch_force, known ? provenance[force] : Json(nullptr));
 }
 
 std::string percent(const Json& value) {
@@ -89,9 +87,9 @@ Named judged_errors(const Json& quality) {
   Named errors;
   for (const std::string name : names) {
     const Json& error = quality["compression_error"][name];
-    if (is_judged(error)) errors.emplace_back("compression error (" + name + ")", error);
+    if (error["held"].is_boolean()) errors.emplace_back("compression error (" + name + ")", error);
   }
-  if (is_judged(quality["mesh_error"])) errors.emplace_back("mesh error", quality["mesh_error"]);
+  if (quality["mesh_error"]["held"].is_boolean()) errors.emplace_back("mesh error", quality["mesh_error"]);
   return errors;
 }
 
@@ -99,7 +97,7 @@ void judge(Json& quality) {
   const Named errors = judged_errors(quality);
   std::vector<std::string> violated;
   for (const auto& [name, error] : errors) {
-    if (!holds(error)) {
+    if (!error["held"].get<bool>()) {
       violated.push_back(
           fmt::format("the {} is {} where {} is asked", name, percent(error["reached"]), percent(error["asked"])));
     }

@@ -32,7 +32,7 @@ class Ground {
     SemiRegularMesh mesh;
     std::vector<SurfacePoint> places;
   };
-  /// `progress` gets the fraction done.
+  /// Triangles of less than `least_angle`, radians, are widened where few are. `progress` gets the fraction done.
   [[nodiscard]] Attempt attempt(const SelfParameterization& base, int levels, double least_angle,
                                 const std::function<void(double)>& progress) const;
 

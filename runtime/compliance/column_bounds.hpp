@@ -29,7 +29,7 @@ constexpr std::uint64_t neighbour_visits(const LiftingCounts& lifting, std::uint
 /// Of sets of at most `set_columns` columns of level c. lifting: of every level. bound_reach must have bounded the
 /// level. The largest of exact counts, but for the blocks of coefficients that Degrees does not count each, for
 /// coefficients after the first 4,096, which count as reached, and for lifted ones that `follow` does not list.
-/// Start-up; work: that of fill_degrees, and that of `follow` for every eight columns, twice.
+/// Start-up; work: that of fill_degrees, and that of `follow` for every ReachBatch of columns, twice.
 [[nodiscard]] ColumnBounds bound_columns(const ModelView& view, std::uint32_t c, std::uint32_t set_columns,
                                          const LiftingCounts* lifting) noexcept;
 
