@@ -1,12 +1,15 @@
+#include <cblas.h>
+
 #include <Eigen/SparseCore>
-#include <algorithm>
-#include <chrono>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "offline/sources/fem/factorization.hpp"
 #include "offline/sources/fem/fem_source.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
+#include "rt_tests/bench/median.hpp"
+#include "rt_tests/harness/time_of.hpp"
 
 #ifdef GREENLOOP_HAS_CHOLMOD
 #include <Eigen/CholmodSupport>
@@ -20,13 +23,8 @@ constexpr int repetitions = 9;
 template <class Solve>
 double median_seconds(Solve solve) {
   std::vector<double> seconds;
-  for (int i = 0; i < repetitions; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    solve();
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  std::nth_element(seconds.begin(), seconds.begin() + repetitions / 2, seconds.end());
-  return seconds[repetitions / 2];
+  for (int i = 0; i < repetitions; ++i) seconds.push_back(1e-6 * time_of(1, solve));
+  return median(std::move(seconds));
 }
 
 }  // namespace
@@ -37,6 +35,7 @@ BackSubstitution time_back_substitution(const GreenStore& store) {
     throw std::runtime_error(store.path().string() +
                              ": holds no volume, so there is no stiffness matrix to solve with");
   }
+  openblas_set_num_threads(1);
   const offline::FemProblem problem = offline::fem_problem(contents);
   const offline::MeshEdges edges = offline::list_edges(problem.volume);
   const auto stiffness = offline::assemble_stiffness(problem, edges, offline::free_points(problem, edges));

@@ -37,7 +37,8 @@ class ExactColumns {
   std::map<std::uint32_t, Eigen::Index> row_;
 };
 
-/// Seconds of one back-substitution with the stiffness matrix's Cholesky factor, median of several.
+/// Seconds of processor time, on one thread, of one back-substitution with the stiffness matrix's Cholesky factor,
+/// median of several.
 struct BackSubstitution {
   double seconds = 0;
   const char* solver = "";

@@ -28,7 +28,7 @@ attempt() {
     >"$out/$2.json" 2>"$out/$2.err"
   status=$?
   seconds=$((SECONDS - begin))
-  words=$(tail -n 1 "$out/$2.err" | tr '|' '/')
+  words=$(grep -m 1 '^greenloop: ' "$out/$2.err" | sed 's/^greenloop: [^:]*: //' | tr '|' '/')
   [ "$status" -ne 124 ] || words="longer than $seconds_each s"
   [ "$status" -ne 0 ] || words=
   rm -f "$out/$2.h5"
