@@ -157,7 +157,9 @@ struct QuadraticBody {
         edges(list_edges(of.volume)),
         stiffness(of.volume, edges, of.material) {
     for (const auto& block : stiffness.edge_blocks()) edge_block.emplace_back(block);
-    for (const auto& [a, b] : edges.ends) fixed_edge.push_back(of.fixed[a] != 0 && of.fixed[b] != 0 ? 1 : 0);
+    FemProblem quadratic = of;
+    quadratic.elements = Elements::quadratic;
+    for (const int number : free_points(quadratic, edges).edge) fixed_edge.push_back(number < 0 ? 1 : 0);
   }
 
   [[nodiscard]] Matrix3Xd by_vertex(const VectorXd& of_free) const {
@@ -169,8 +171,7 @@ struct QuadraticBody {
   }
 };
 
-// the patch, what is fixed, and edges between them: of the skin between two vertices of the patch, all between fixed
-// ones
+// the patch, what is fixed, and the edges of the skin between two vertices of either
 Held held_with(const QuadraticBody& body, const std::vector<int>& patch) {
   Held held{body.problem.fixed, body.fixed_edge};
   std::vector<std::uint8_t> in_patch(body.free.number.size(), 0);
