@@ -18,4 +18,19 @@ struct Constraint {
   Kind kind = Kind::hold;  ///< Elastostatic knows `hold` and refuses the others
 };
 
+/// A rigid surface at a node: it may push the node and rub against it, but not pull it (Signorini's and Coulomb's laws).
+struct UnilateralContact {
+  std::uint32_t node = 0;  ///< file index of a touchable node
+  float value[3] = {};     ///< m, the displacement at which the node touches the surface and has not slid along it
+  float normal[3] = {};    ///< unit vector out of the surface, to where the node may be
+  float friction = 0;      ///< Coulomb's coefficient, 0 or more
+};
+
+/// What a unilateral contact does.
+enum class ContactState : std::uint8_t {
+  open,   ///< no force
+  stick,  ///< it does not slide
+  slip,   ///< it slides, or is about to: the force is on the cone of friction
+};
+
 }  // namespace greenloop

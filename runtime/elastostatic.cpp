@@ -15,6 +15,18 @@ namespace greenloop {
 
 namespace {
 
+// What a step is asked: contacts that are held, or what unilateral ones would be if they were.
+struct Request {
+  std::span<const Constraint> contacts;
+  Budget budget;
+  const Elastostatic::Response& response;
+  std::span<const UnilateralContact> surfaces;  // as many as contacts; none: these are held
+  ContactAnswer* found = nullptr;               // by solving for them
+  std::uint64_t checking = 0;                   // work spent so far
+
+  [[nodiscard]] bool holds() const { return found == nullptr; }
+};
+
 // the finest level of the nodes that the response has room for; none if that is no level
 std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& response) {
   for (std::uint32_t q = body.counts.levels; q-- > 0 && !body.counts.forces_only;) {
@@ -67,6 +79,15 @@ void to_set_order(const Factor& factor, std::uint32_t columns, const float* of_f
   }
 }
 
+// whether forces of columns would overflow the answer
+bool can_overflow(const Body& body, const ContactSet& set, const float* force) {
+  float sum = 0;
+  for (std::uint32_t i = 0; i < 3 * set.columns; ++i) {
+    sum += std::fabs(force[i]);
+  }
+  return !(sum <= body.force_limit);
+}
+
 // forces of the columns of a set by its factor, in `force`; false if they would overflow the answer
 bool solve_forces(const Body& body, std::span<const Constraint> contacts, const ContactSet& set, const Factor& factor,
                   float* force) {
@@ -79,18 +100,15 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   to_factor_order(factor, set.columns, force, solution);
   cholesky_solve(order, body.cache.stride(), factor.matrix, body.solution);
   to_set_order(factor, set.columns, solution, force);
-  float sum = 0;
-  for (std::uint32_t i = 0; i < order; ++i) {
-    sum += std::fabs(force[i]);
-  }
-  return sum <= body.force_limit;
+  return !can_overflow(body, set, force);
 }
 
 // displacements by the forces of the planned set; apart, so that what makes a factor does not stand on its stack
-[[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
-                                   const FieldLevels& levels, std::span<Vec4> displacement) {
-  auto* x = reinterpret_cast<Float4*>(displacement.data());
+[[gnu::noinline]] void reconstruct(const Body& body, const Request& request, const ColumnForces& forces,
+                                   const FieldLevels& levels) {
+  auto* x = reinterpret_cast<Float4*>(request.response.displacement.data());
   compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
+  const std::span<const Constraint> contacts = request.holds() ? request.contacts : std::span<const Constraint>();
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].value;
@@ -124,6 +142,42 @@ Elastostatic::StepReport held(Status status, std::uint64_t work) {
   return report;
 }
 
+// a solution for unilateral contacts whose error is below this is as good as the compliance is
+constexpr float unilateral_residual = 2e-4F;
+
+// iterations that the budget holds, needed being what it holds for sure
+std::uint32_t most_iterations(const Body& body, const Plan& plan, std::uint64_t spare) {
+  const std::uint64_t one = ContactProblem::iteration_work(plan.counts.contacts);
+  const std::uint64_t most = plan.counts.iterations + spare / one;
+  return static_cast<std::uint32_t>(most < body.counts.iterations ? most : body.counts.iterations);
+}
+
+// the forces of the planned set's columns and of the contacts; false, and none written, if they could overflow the
+// answer. spare: what is left of the budget. work: grows by that of iterations beyond the least
+bool find_forces(Body& body, const Request& request, const Plan& plan, const Factor& factor, std::uint64_t spare,
+                 std::uint64_t& work) {
+  const ContactSet& set = body.planned;
+  float* const force = as_floats(request.response.force).data();
+  if (request.holds()) {
+    if (!solve_forces(body, request.contacts, set, factor, body.column_force)) {
+      return false;
+    }
+    share_forces(body.column_force, request.contacts.size(), set, force);
+    return true;
+  }
+  ContactAnswer& found = *request.found;
+  found =
+      solve_unilateral(request.surfaces, set, factor, body.cache.stride(), body.last,
+                       {unilateral_residual, most_iterations(body, plan, spare)}, body.unilateral, body.column_force);
+  const std::uint64_t more = found.iterations > plan.counts.iterations ? found.iterations - plan.counts.iterations : 0;
+  work += more * ContactProblem::iteration_work(plan.counts.contacts);
+  if (!found.valid || can_overflow(body, set, body.column_force)) {
+    return false;
+  }
+  unilateral_forces(body.unilateral, set, request.surfaces.size(), force);
+  return true;
+}
+
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
 const float* solve_older_level(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
                                std::uint64_t& work) {
@@ -148,11 +202,16 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
 }
 
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
-void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, float* force,
-                  Elastostatic::StepReport& report) {
+void glide_forces(Body& body, const Request& request, Elastostatic::StepReport& report) {
+  const std::span<const Constraint> contacts = request.contacts;
+  float* const force = as_floats(request.response.force).data();
   body.glide.advance(contacts, body.planned, body.last);
-  const float* const older = solve_older_level(body, contacts, budget, report.work);
+  const float* const older =
+      request.holds() ? solve_older_level(body, contacts, request.budget.work, report.work) : nullptr;
   const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
+  if (glide.share < 1 && !request.holds()) {
+    push_only(request.surfaces, force);
+  }
   body.last.remember(contacts, body.planned, force);
   report.details.glide = glide.share;
   report.details.level_difference = glide.difference;
@@ -170,17 +229,19 @@ void foresee_finer_level(Body& body, std::span<const Constraint> contacts) {
 
 // what is left of the budget goes into the factor that the finest level lacked. moving: the contacts are not the last
 // step's
-void prepare_factor(Body& body, std::span<const Constraint> contacts, const Plan& plan, bool moving,
-                    std::uint64_t budget, Elastostatic::StepReport& report) {
+void prepare_factor(Body& body, const Request& request, const Plan& plan, bool moving,
+                    Elastostatic::StepReport& report) {
+  const std::span<const Constraint> contacts = request.contacts;
   const bool waits = body.planned.waiting > 0;
   if (!plan.wanted.exists || (plan.wanted.level <= report.constraint_level && !waits)) {
     return;
   }
   const SetCounts& whole = plan.wanted.counts;
   const std::uint64_t resolving = resolve_contacts_work(body.counts.prices, contacts.size());
-  const bool glides = !waits && body.counts.glide_cycles > 1;
+  const bool glides = !waits && body.counts.glide_cycles > 1 && request.holds();
   const std::uint64_t foreseeing = glides ? force_work(body.counts.prices, whole) : 0;
-  const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
+  const std::uint64_t limit =
+      request.budget.work < body.counts.refining_work ? request.budget.work : body.counts.refining_work;
   if (report.work + resolving + foreseeing > limit) {
     report.details.pending_work = pending_work(body.counts, whole);
     return;
@@ -221,9 +282,11 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
   return report.details.glide < 1 ? larger(error, body.last.error()) : error;
 }
 
-Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t work,
-                                std::uint64_t budget, const Elastostatic::Response& response) {
+Elastostatic::StepReport answer(Body& body, const Request& request, const Plan& plan) {
   const ContactSet& set = body.planned;
+  const std::span<const Constraint> contacts = request.contacts;
+  const bool with_field = !request.response.displacement.empty();
+  std::uint64_t work = request.checking + plan.work;
   const std::uint64_t needed = work + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
   body.factoring.spent = 0;
   Factor* const factor = find_factor(body, plan);
@@ -232,14 +295,12 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
     return held(Status::held_singular, work);
   }
   work += force_work(body.counts.prices, plan.counts);
-  if (!solve_forces(body, contacts, set, *factor, body.column_force)) {
+  if (!find_forces(body, request, plan, *factor, request.budget.work - needed, work)) {
     return held(Status::held_overflow, work);
   }
-  float* const force = as_floats(response.force).data();
-  share_forces(body.column_force, contacts.size(), set, force);
-  if (!response.displacement.empty()) {
+  if (with_field) {
     work += plan.field;
-    reconstruct(body, contacts, {set.columns, set.column, body.column_force}, plan.field_levels, response.displacement);
+    reconstruct(body, request, {set.columns, set.column, body.column_force}, plan.field_levels);
   }
   Elastostatic::StepReport report;
   report.work = work;
@@ -249,11 +310,11 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   report.details.held_contacts = static_cast<std::uint16_t>(contacts.size() - set.waiting);
   report.details.waiting_contacts = static_cast<std::uint16_t>(set.waiting);
   const bool moving = !body.last.stays(contacts);
-  glide_forces(body, contacts, budget, force, report);
-  report.error = answer_error(body, plan, !response.displacement.empty(), report);
+  glide_forces(body, request, report);
+  report.error = answer_error(body, plan, with_field, report);
   body.last.set_error(report.error);
   body.cache.use(*factor);
-  prepare_factor(body, contacts, plan, moving, budget, report);
+  prepare_factor(body, request, plan, moving, report);
   report.details.cached_factor = plan.cached != nullptr;
   report.details.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
   const bool finest = report.constraint_level + 1 == body.view->levels && set.waiting == 0 &&
@@ -263,28 +324,66 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   return report;
 }
 
+Elastostatic::StepReport refuse(const CheckedContacts& checked, std::uint64_t work) {
+  Elastostatic::StepReport report = held(checked.status, work);
+  report.refused = checked.refused;
+  return report;
+}
+
+// request: checked but for its contacts
+Elastostatic::StepReport take_step(Body& body, Request& request) {
+  request.checking += check_contacts_work(body.counts.prices, request.contacts.size());
+  const CheckedContacts checked = check_contacts(request.contacts, body.view->node_count, body.facts);
+  if (checked.status != Status::ok) {
+    return refuse(checked, request.checking);
+  }
+  if (request.contacts.empty()) {
+    return release(body, request.response, request.checking);
+  }
+  const bool wants_field = !request.response.displacement.empty();
+  const std::uint32_t displaced = wants_field ? finest_displaced(body, request.response) : body.counts.levels - 1;
+  const std::uint32_t iterations = request.holds() ? 0 : least_iterations(body.counts.iterations);
+  const Plan plan =
+      make_plan(body, request.contacts, {request.budget.work - request.checking, wants_field, displaced, iterations});
+  return plan.fits ? answer(body, request, plan) : held(Status::held_over_budget, request.checking + plan.work);
+}
+
 Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> contacts, Budget budget,
                                    const Elastostatic::Response& response) {
   body.answered = false;
-  const Status request = check_request(body, contacts.size(), budget, response);
-  if (request != Status::ok) {
-    return held(request, 0);
+  const Status status = check_request(body, contacts.size(), budget, response);
+  if (status != Status::ok) {
+    return held(status, 0);
   }
-  const std::uint64_t checking = check_contacts_work(body.counts.prices, contacts.size());
-  const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
-  if (checked != Status::ok) {
-    Elastostatic::StepReport report = held(checked, checking);
-    report.refused = refused;
-    return report;
+  Request request{contacts, budget, response, {}};
+  return take_step(body, request);
+}
+
+Elastostatic::UnilateralReport take_step(Body& body, std::span<const UnilateralContact> contacts, Budget budget,
+                                         const Elastostatic::UnilateralResponse& response) {
+  body.answered = false;
+  Status status = check_request(body, contacts.size(), budget, response);
+  if (status == Status::ok && !response.state.empty() && response.state.size() != contacts.size()) {
+    status = Status::held_response_size;
   }
-  if (contacts.empty()) {
-    return release(body, response, checking);
+  if (status == Status::ok && body.counts.iterations == 0 && !contacts.empty()) {
+    status = Status::held_unsupported;
   }
-  const bool wants_field = !response.displacement.empty();
-  const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
-  const Plan plan = make_plan(body, contacts, budget.work - checking, wants_field, displaced);
-  return plan.fits ? answer(body, contacts, plan, checking + plan.work, budget.work, response)
-                   : held(Status::held_over_budget, checking + plan.work);
+  if (status != Status::ok) {
+    return {held(status, 0)};
+  }
+  const std::uint64_t checking = check_unilateral_work(body.counts.prices, contacts.size());
+  const CheckedContacts checked = check_unilateral(contacts, body.unilateral.hold);
+  if (checked.status != Status::ok) {
+    return {refuse(checked, checking)};
+  }
+  ContactAnswer found;
+  Request request{{body.unilateral.hold, contacts.size()}, budget, response, contacts, &found, checking};
+  const Elastostatic::StepReport report = take_step(body, request);
+  if (answered(report.status)) {
+    list_states(contacts, as_floats(response.force).data(), response.state);
+  }
+  return {report, found.residual, found.iterations};
 }
 
 }  // namespace
@@ -351,6 +450,13 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
   const StepReport report = take_step(*body_, contacts, budget, response);
+  assert(Arena::intact(body_->last_red_zone));
+  return report;
+}
+
+Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralContact> contacts, Budget budget,
+                                                  const UnilateralResponse& response) noexcept {
+  const UnilateralReport report = take_step(*body_, contacts, budget, response);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }

@@ -26,6 +26,7 @@ class Elastostatic {
     std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
     Prices prices{};                                  ///< that make work units of what a step does
+    std::uint32_t iterations = 0;  ///< 0..1024 for unilateral contacts, at most 256 of them; 0: they are refused
   };
 
   /// The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md).
@@ -72,6 +73,16 @@ class Elastostatic {
     StepDetails details;
   };
 
+  /// The answer to unilateral contacts.
+  struct UnilateralResponse : Response {
+    std::span<ContactState> state;  ///< [contacts] what each does; empty: not wanted
+  };
+
+  struct UnilateralReport : StepReport {
+    float residual = 0;            ///< of the contact laws, relative: docs/loop.md, "Unilateral contacts"
+    std::uint32_t iterations = 0;  ///< that were made
+  };
+
   struct Created;
 
   /// What the scene asked for. Start-up; work: constant.
@@ -91,6 +102,13 @@ class Elastostatic {
   /// node, as finely as fits the budget by closed-form work (docs/budgets.md). No heap, lock, system call, exception or
   /// clock; same model, limits, history, constraints and budget give the same bits. Work: at most budget.work.
   StepReport step(std::span<const Constraint> constraints, Budget budget, const Response& response) noexcept;
+
+  /// The same for rigid surfaces that push nodes and rub against them, but do not pull: finds forces and displacements
+  /// that obey the laws of Signorini and Coulomb (James & Pai 2001, section 6; docs/loop.md). Forces of what answers
+  /// short of budget obey these laws too: each pushes and lies within its cone of friction; what is not exact then is
+  /// where the nodes are. Refuses contacts unless Limits::iterations is positive. Work: at most budget.work.
+  UnilateralReport step(std::span<const UnilateralContact> contacts, Budget budget,
+                        const UnilateralResponse& response) noexcept;
 
   /// The compliance between two constraints, by their places among those of the last answer, at the levels that it was
   /// answered at: the displacement of i per force at j, m/N, of nodes that share a column the column's. While a glide

@@ -31,8 +31,9 @@ enum class Status : std::uint8_t {
   held_singular,       ///< the capacitance matrix is not positive definite to working precision
   held_overflow,       ///< the answer would not be finite, or comes too near the largest float
   held_unsupported,    ///< a constraint is of a kind that the solver does not know
+  held_bad_surface,    ///< the normal of a unilateral contact is not of unit length, or its friction is negative
 };
-inline constexpr std::size_t statuses = 11;
+inline constexpr std::size_t statuses = 12;
 
 /// Whether a step was answered, so that its buffers hold this step's answer.
 constexpr bool answered(Status status) { return status <= Status::coarser; }

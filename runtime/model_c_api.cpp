@@ -49,7 +49,8 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
               same(GREENLOOP_HELD_OVER_BUDGET, Status::held_over_budget) &&
               same(GREENLOOP_HELD_SINGULAR, Status::held_singular) &&
               same(GREENLOOP_HELD_OVERFLOW, Status::held_overflow) &&
-              same(GREENLOOP_HELD_UNSUPPORTED, Status::held_unsupported) && GREENLOOP_HELD_UNSUPPORTED + 1 == statuses);
+              same(GREENLOOP_HELD_UNSUPPORTED, Status::held_unsupported) &&
+              same(GREENLOOP_HELD_BAD_SURFACE, Status::held_bad_surface) && GREENLOOP_HELD_BAD_SURFACE + 1 == statuses);
 static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
               same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
 static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic) &&
@@ -79,6 +80,7 @@ constexpr const char* status_texts[] = {
     "held: the capacitance matrix is not positive definite to working precision",
     "held: the forces are too large for a finite field",
     "held: a constraint is of a kind that the solver does not know",
+    "held: the normal of a unilateral contact is not of unit length, or its friction is negative",
 };
 
 template <std::size_t count>

@@ -161,6 +161,9 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.job.carve<3>(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
   body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);
+  if (sizes.counts.iterations > 0) {
+    body.unilateral.carve(arena, sizes.counts.max_contacts);
+  }
 }
 
 void count_stored(const ModelView& view, std::uint32_t* stored) {

@@ -12,6 +12,7 @@
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/elastostatic/last_answer.hpp"
 #include "runtime/elastostatic/requirement.hpp"
+#include "runtime/elastostatic/unilateral.hpp"
 #include "runtime/factor/factor_cache.hpp"
 #include "runtime/factor/factor_job.hpp"
 #include "runtime/memory/arena.hpp"
@@ -57,6 +58,7 @@ struct Body {
   LastAnswer last;
   bool answered = false;  ///< `planned` is the set of the last answer
   Glide glide;
+  UnilateralScratch unilateral;  ///< without room unless unilateral contacts are allowed
   const std::byte* last_red_zone = nullptr;
 
   [[nodiscard]] const FactorTools<3>& factor_tools() const { return *tools; }

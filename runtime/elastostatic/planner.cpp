@@ -6,10 +6,8 @@ namespace greenloop {
 namespace {
 
 // what the planner knows of a step
-struct Task {
+struct Task : Wants {
   std::span<const Constraint> contacts;
-  std::uint64_t budget = 0;
-  bool wants_field = false;
 };
 
 // as much of the field as a plan asks for
@@ -35,14 +33,15 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
   plan.counts = {};
   plan.counts.contacts = task.contacts.size();
   plan.counts.columns = body.planned.columns;
+  plan.counts.iterations = task.iterations;
   plan.cached = body.cache.find(body.planned.all());
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;
   plan.update = false;
-  if (task.wants_field || plan.cached == nullptr) {
+  if (task.field || plan.cached == nullptr) {
     touch_set(body, plan);
   }
-  plan.field = task.wants_field ? planned_field_work(body, plan) : 0;
+  plan.field = task.field ? planned_field_work(body, plan) : 0;
   plan.fits = false;
 }
 
@@ -126,7 +125,7 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   const ChangeCounts leaving{0, changes.removed, {}};
   plan.factor = plan.update ? update_factor_work(body.counts, plan.counts, leaving) : 0;
   plan.bounded = plan.update ? update_bounded_work(body.counts, plan.counts, leaving) : 0;
-  if (task.wants_field) {
+  if (task.field) {
     touch_set(body, plan);
     plan.field = planned_field_work(body, plan);
   }
@@ -147,13 +146,12 @@ std::uint64_t plan_part_work(const ModelCounts& model, const SetCounts& set) noe
   return resolve_contacts_work(model.prices, set.contacts) + (model.forces_only ? 0 : touch_work(model.prices, set));
 }
 
-Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, bool wants_field,
-               std::uint32_t finest_displaced) noexcept {
-  const Task task{contacts, budget, wants_field};
+Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wants) noexcept {
+  const Task task{wants, contacts};
   const std::uint32_t finest = body.counts.levels - 1;
   const std::uint32_t coarsest = body.view->info->coarsest_constraint_level;
   Plan plan;
-  plan.field_levels = {finest_displaced, finest_displaced};
+  plan.field_levels = {wants.finest_displaced, wants.finest_displaced};
   for (std::uint32_t c = finest + 1; !plan.fits && c-- > coarsest;) {
     plan_set(body, task, c, plan);
     if (holds_answer(body, task, plan) || c == coarsest) {
@@ -163,11 +161,11 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t b
       plan_without_new(body, task, plan);
     }
   }
-  while (!plan.fits && wants_field && plan.field_levels.details > 0) {
+  while (!plan.fits && wants.field && plan.field_levels.details > 0) {
     --plan.field_levels.details;
     plan.work += count_field_work(body.counts.prices, plan.counts);
     plan.field = planned_field_work(body, plan);
-    plan.fits = planned_work(body, plan) <= budget;
+    plan.fits = planned_work(body, plan) <= wants.budget;
   }
   return plan;
 }

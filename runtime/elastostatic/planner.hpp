@@ -8,6 +8,14 @@
 
 namespace greenloop {
 
+/// What a step asks for.
+struct Wants {
+  std::uint64_t budget = 0;
+  bool field = false;
+  std::uint32_t finest_displaced = 0;  ///< level of the nodes that are displaced
+  std::uint32_t iterations = 0;        ///< at least, over unilateral contacts; 0: contacts are held
+};
+
 /// How a step will be answered. Its contacts are resolved in body.planned, whose coefficients are touched if a field is
 /// wanted or nodes enter its factor.
 struct Plan {
@@ -39,9 +47,7 @@ struct Plan {
 /// Chooses by closed-form work the finest level whose answer fits, with the field as it was asked for: by its cached
 /// factor, an update of another one or a fresh one. Where only the factor of the finest level is too dear, contacts
 /// that are new may wait, and the others be answered there by what a factor at hand has of them. If no level fits, the
-/// coarsest with as many details in the field as fit. finest_displaced: level of the nodes that are displaced. For the
-/// loop; work: Plan::work.
-[[nodiscard]] Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, bool wants_field,
-                             std::uint32_t finest_displaced) noexcept;
+/// coarsest with as many details in the field as fit. For the loop; work: Plan::work.
+[[nodiscard]] Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wants) noexcept;
 
 }  // namespace greenloop

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/elastostatic/planner.hpp"
+#include "runtime/elastostatic/unilateral.hpp"
 #include "runtime/wavelet/domain.hpp"
 #include "runtime/wavelet/point_support.hpp"
 
@@ -22,7 +23,8 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.prices = limits.prices;
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
-  counts.keeps_capacitance = limits.keep_capacitance;
+  counts.keeps_capacitance = limits.keep_capacitance || limits.iterations > 0;
+  counts.iterations = limits.iterations;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
       sizes.lifting[q] = count_lifting(view, q);
@@ -57,6 +59,13 @@ std::uint64_t functional_of(const ModelView& view, const ReachBound& reach) {
   return functional;
 }
 
+// of holds and of unilateral contacts, whichever is more
+std::uint64_t most_force_work(const ModelCounts& counts, SetCounts set, std::uint32_t iterations) {
+  const std::uint64_t holds = force_work(counts.prices, set);
+  set.iterations = iterations;
+  return larger(holds, force_work(counts.prices, set));
+}
+
 // most_of: by constraint level
 void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const MostCounts* most_of,
                 const BodySizes& sizes, Elastostatic::Requirement& requirement) {
@@ -67,7 +76,9 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     const std::uint64_t blocks = details == 0 && finest > 0 ? most.least_field_blocks : most.field_blocks;
     return limits.forces_only ? 0 : field_work(counts, most.set, {finest, details}, blocks);
   };
-  const std::uint64_t checking = check_contacts_work(counts.prices, limits.max_contacts);
+  const std::uint64_t checking =
+      check_contacts_work(counts.prices, limits.max_contacts) +
+      (limits.iterations > 0 ? check_unilateral_work(counts.prices, limits.max_contacts) : 0);
   const std::uint64_t older = limits.glide_cycles > 1 ? older_forces_work(counts, sizes.set_columns) : 0;
   std::uint64_t dropped = 0;
   for (std::uint32_t c = coarsest; c < view.levels; ++c) {
@@ -80,8 +91,9 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     const SetCounts& most = most_of[c].set;
     planned += plan_set_work(counts, most);
-    const std::uint64_t forces = planned + part + dropped + factor_work(counts, most) + force_work(counts.prices, most);
-    const std::uint64_t answer = forces + field(most_of[c], finest);
+    const std::uint64_t factors = planned + part + dropped + factor_work(counts, most);
+    const std::uint64_t forces = factors + most_force_work(counts, most, least_iterations(limits.iterations));
+    const std::uint64_t answer = factors + most_force_work(counts, most, limits.iterations) + field(most_of[c], finest);
     if (c == finest) {
       requirement.worst_work[c] = answer + older;
     } else {
@@ -92,7 +104,7 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     }
     const std::uint64_t cuts = finest * count_field_work(counts.prices, most);
     // with few contacts a finer level may take less than planning it and answering at a coarser one
-    least_answer = smaller(least_answer, answer);
+    least_answer = smaller(least_answer, forces + field(most_of[c], finest));
     requirement.least_work = smaller(least_answer, forces + cuts + field(most_of[c], 0));
     part = limits.glide_cycles > 1 ? larger(part, plan_part_work(counts, most)) : 0;
     finer_answer = answer;
@@ -103,7 +115,9 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
 
 bool in_range(const Elastostatic::Limits& limits) noexcept {
   return limits.max_contacts >= 1 && limits.max_contacts <= 4096 && limits.cached_factors >= 1 &&
-         limits.cached_factors <= 1024 && limits.glide_cycles >= 1 && limits.glide_cycles <= 256;
+         limits.cached_factors <= 1024 && limits.glide_cycles >= 1 && limits.glide_cycles <= 256 &&
+         limits.iterations <= 1024 &&
+         (limits.iterations == 0 || limits.max_contacts <= ContactProblem::most_candidates);
 }
 
 void measure_body(const ModelView& view, const Elastostatic::Limits& limits, BodySizes& sizes,

@@ -4,6 +4,7 @@
 #include "runtime/compliance/couplings.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
+#include "runtime/elastostatic/unilateral.hpp"
 #include "runtime/factor/factor_cache.hpp"
 #include "runtime/wavelet/domain.hpp"
 
@@ -61,7 +62,9 @@ std::uint64_t solve_work(const Prices& prices, std::uint64_t contacts, std::uint
 }
 
 std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept {
-  return solve_work(prices, set.contacts, set.columns) + Glide::blend_work(prices, set.contacts);
+  const std::uint64_t solving = set.iterations == 0 ? solve_work(prices, set.contacts, set.columns)
+                                                    : unilateral_work(prices, set.contacts, set.iterations);
+  return solving + Glide::blend_work(prices, set.contacts);
 }
 
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,

@@ -15,6 +15,7 @@ struct ModelCounts : FactorCounts {
   std::uint32_t levels = 0;
   std::uint32_t max_contacts = 0;
   std::uint32_t glide_cycles = 1;
+  std::uint32_t iterations = 0;
   bool forces_only = false;
   std::uint64_t refining_work = 0;
   std::uint64_t nodes[layout::max_levels] = {};  ///< of levels 0..F
@@ -29,6 +30,9 @@ struct ModelCounts : FactorCounts {
 
 /// Bound of the work units of the forces of the level before, if their factor is cached.
 [[nodiscard]] std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept;
+
+/// Iterations over unilateral contacts that an answer has at least, of so many that it may have.
+constexpr std::uint32_t least_iterations(std::uint32_t iterations) { return iterations < 4 ? iterations : 4; }
 
 /// Work units of the forces, given the factor, and of their glide.
 [[nodiscard]] std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept;

@@ -29,6 +29,8 @@ namespace greenloop {
       return "held_overflow";
     case Status::held_unsupported:
       return "held_unsupported";
+    case Status::held_bad_surface:
+      return "held_bad_surface";
   }
   return "unknown";
 }
