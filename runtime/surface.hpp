@@ -85,6 +85,9 @@ class Surface {
   /// the same work, as nearest_node.
   [[nodiscard]] NearestPoint nearest_point(Vec3 position) const noexcept;
 
+  /// What it keeps, for the rooms of the library.
+  [[nodiscard]] const SurfaceParts& parts() const noexcept { return *parts_; }
+
  private:
   [[nodiscard]] bool fits(std::uint32_t level, std::span<const Vec4> displacement, std::size_t written) const noexcept;
 

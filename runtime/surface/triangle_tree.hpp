@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <span>
 
 #include "formats/layout.hpp"
 #include "runtime/algebra/double3.hpp"
@@ -49,6 +50,13 @@ class TriangleTree {
   template <class Look>
   void visit(const Double3& position, Look look) const noexcept;
 
+  /// Halvings that lead from all triangles to a leaf.
+  [[nodiscard]] std::uint32_t depth() const noexcept { return depth_; }
+  /// The triangles of a box.
+  [[nodiscard]] std::span<const std::uint32_t> in(std::uint32_t box) const noexcept {
+    return {order_ + begin(box), order_ + end(box)};
+  }
+
  private:
   // its triangles' places in `order_`: a box at depth d is the k-th of 2^d, which share them out equally
   [[nodiscard]] std::uint32_t begin(std::uint32_t box) const noexcept;
@@ -66,6 +74,29 @@ class TriangleTree {
 
 [[nodiscard]] double squared_distance(const TriangleBox& box, const Double3& position) noexcept;
 
+/// Calls look(leaf) for every leaf of a balanced tree of boxes whose squared distance from a position is within(it), as
+/// the boxes around it, nearer ones first; what `look` finds may leave less within. For the loop; work: at most all
+/// boxes.
+template <class Within, class Look>
+void visit_nearest(const TriangleBox* boxes, std::uint32_t first_leaf, const Double3& position, Within within,
+                   Look look) {
+  std::uint32_t waiting[32];
+  std::uint32_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t box = waiting[--count];
+    if (!within(squared_distance(boxes[box], position))) continue;
+    if (box < first_leaf) {
+      const std::uint32_t left = 2 * box + 1;
+      const bool left_first = squared_distance(boxes[left], position) <= squared_distance(boxes[left + 1], position);
+      waiting[count++] = left_first ? left + 1 : left;
+      waiting[count++] = left_first ? left : left + 1;
+    } else {
+      look(box);
+    }
+  }
+}
+
 inline std::uint32_t TriangleTree::begin(std::uint32_t box) const noexcept {
   const auto depth = static_cast<std::uint32_t>(std::bit_width(box + 1) - 1);
   const std::uint64_t k = std::uint64_t{box} + 1 - (std::uint64_t{1} << depth);
@@ -75,21 +106,10 @@ inline std::uint32_t TriangleTree::begin(std::uint32_t box) const noexcept {
 template <class Look>
 void TriangleTree::visit(const Double3& position, Look look) const noexcept {
   Reach reach(position, extent_);
-  std::uint32_t waiting[32];
-  std::uint32_t count = 0;
-  waiting[count++] = 0;
-  while (count > 0) {
-    const std::uint32_t box = waiting[--count];
-    if (!reach.covers(squared_distance(boxes_[box], position))) continue;
-    if (box < first_leaf()) {
-      const std::uint32_t left = 2 * box + 1;
-      const bool left_first = squared_distance(boxes_[left], position) <= squared_distance(boxes_[left + 1], position);
-      waiting[count++] = left_first ? left + 1 : left;
-      waiting[count++] = left_first ? left : left + 1;
-    } else {
-      for (std::uint32_t i = begin(box), last = end(box); i < last; ++i) look(order_[i], reach);
-    }
-  }
+  const auto within = [&](double squared_distance) { return reach.covers(squared_distance); };
+  visit_nearest(boxes_, first_leaf(), position, within, [&](std::uint32_t box) {
+    for (const std::uint32_t t : in(box)) look(t, reach);
+  });
 }
 
 }  // namespace greenloop
