@@ -1,6 +1,7 @@
 #include "runtime/elastostatic.hpp"
 
 #include <cassert>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -8,8 +9,10 @@
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/body.hpp"
+#include "runtime/elastostatic/loads.hpp"
 #include "runtime/elastostatic/planner.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 
@@ -25,17 +28,28 @@ std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& r
   return layout::none;
 }
 
-Status check_request(const Body& body, std::size_t contacts, Budget budget, const Elastostatic::Response& response) {
+// of Young's modulus
+constexpr float least_stiffness = 0x1p-20F;
+constexpr float most_stiffness = 0x1p20F;
+
+Status check_request(const Body& body, std::size_t constraints, const Elastostatic::Loads& loads, Budget budget,
+                     const Elastostatic::Response& response) {
   if (budget.work < body.least_work) {
     return Status::held_over_budget;
   }
-  if (contacts > body.counts.max_contacts) {
+  if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
+    return Status::held_out_of_range;
+  }
+  if (!std::isfinite(loads.stiffness)) {
+    return Status::held_not_finite;
+  }
+  if (loads.stiffness < least_stiffness || loads.stiffness > most_stiffness) {
     return Status::held_out_of_range;
   }
   const bool field_fits = response.displacement.empty() ||
                           (finest_displaced(body, response) != layout::none &&
                            reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
-  return response.force.size() == contacts && field_fits ? Status::ok : Status::held_response_size;
+  return response.force.size() == constraints && field_fits ? Status::ok : Status::held_response_size;
 }
 
 // the factor of the planned set; null if its capacitance matrix is not positive definite
@@ -67,12 +81,16 @@ void to_set_order(const Factor& factor, std::uint32_t columns, const float* of_f
   }
 }
 
-// forces of the columns of a set by its factor, in `force`; false if they would overflow the answer
+// forces of the columns of a set by its factor, in `force`; displaced: what of them is there without these forces, or
+// null; false if they would overflow the answer
 bool solve_forces(const Body& body, std::span<const Constraint> contacts, const ContactSet& set, const Factor& factor,
-                  float* force) {
+                  const float* displaced, float* force) {
   const std::uint32_t order = 3 * set.columns;
   auto* solution = reinterpret_cast<float*>(body.solution);
   average_displacements(contacts, set, force);
+  for (std::uint32_t i = 0; i < order && displaced != nullptr; ++i) {
+    force[i] = without_tiny(force[i] - displaced[i]);
+  }
   for (std::uint32_t i = order; i < padded_order(order); ++i) {
     solution[i] = 0;
   }
@@ -83,13 +101,18 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   for (std::uint32_t i = 0; i < order; ++i) {
     sum += std::fabs(force[i]);
   }
-  return sum <= body.force_limit;
+  return sum <= body.force_limit && sum * body.stiffness <= FLT_MAX;
 }
 
-// displacements by the forces of the planned set; apart, so that what makes a factor does not stand on its stack
+// displacements by the forces of the planned set, and what acts besides; apart, so that what makes a factor does not
+// stand on its stack
 [[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
                                    const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
+  if (body.is_loaded) {
+    sum_forces<3>(body.field_model(), body.forces.on_columns(), body.forces.touched,
+                  domain_up_to(*body.view, levels.details), body.field_scratch());
+  }
   compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -127,7 +150,8 @@ Elastostatic::StepReport held(Status status, std::uint64_t work) {
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
 const float* solve_older_level(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
                                std::uint64_t& work) {
-  if (!body.glide.follows() || work + older_forces_work(body.counts, contacts.size()) > budget) {
+  // where loads act it would take their displacements at that level, too: the last known difference does then
+  if (!body.glide.follows() || body.is_loaded || work + older_forces_work(body.counts, contacts.size()) > budget) {
     return nullptr;
   }
   ContactSet& set = body.other;
@@ -140,7 +164,7 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
   }
   body.cache.use(*factor);
   work += solve_work(body.counts.prices, contacts.size(), set.columns);
-  if (!solve_forces(body, contacts, set, *factor, body.other_column_force)) {
+  if (!solve_forces(body, contacts, set, *factor, nullptr, body.other_column_force)) {
     return nullptr;
   }
   share_forces(body.other_column_force, contacts.size(), set, body.older_force);
@@ -162,7 +186,7 @@ void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_
 // what the glide to a finer level begins with, if its factor has just been completed
 void foresee_finer_level(Body& body, std::span<const Constraint> contacts) {
   Factor* const factor = body.cache.find(body.other.all());
-  if (factor != nullptr && solve_forces(body, contacts, body.other, *factor, body.other_column_force)) {
+  if (factor != nullptr && solve_forces(body, contacts, body.other, *factor, nullptr, body.other_column_force)) {
     share_forces(body.other_column_force, contacts.size(), body.other, body.older_force);
     body.glide.foresee(body.other.level(), body.last, body.older_force);
   }
@@ -178,7 +202,7 @@ void prepare_factor(Body& body, std::span<const Constraint> contacts, const Plan
   }
   const SetCounts& whole = plan.wanted.counts;
   const std::uint64_t resolving = resolve_contacts_work(body.counts.prices, contacts.size());
-  const bool glides = !waits && body.counts.glide_cycles > 1;
+  const bool glides = !waits && !body.is_loaded && body.counts.glide_cycles > 1;
   const std::uint64_t foreseeing = glides ? force_work(body.counts.prices, whole) : 0;
   const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
   if (report.work + resolving + foreseeing > limit) {
@@ -221,21 +245,46 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
   return report.details.glide < 1 ? larger(error, body.last.error()) : error;
 }
 
-Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t work,
+// no contacts, but known forces
+Elastostatic::StepReport answer_loads(Body& body, const Plan& plan, std::uint64_t work,
+                                      const Elastostatic::Response& response) {
+  Elastostatic::StepReport report;
+  report.work = report.details.needed_work = work + force_work(body.counts.prices, plan.counts) + plan.field;
+  report.constraint_level = plan.level;
+  report.field_level = plan.field_levels.details;
+  if (!response.displacement.empty()) {
+    reconstruct(body, {}, {}, plan.field_levels, response.displacement);
+  }
+  report.error = answer_error(body, plan, !response.displacement.empty(), report);
+  const bool whole = plan.field_levels.details == plan.field_levels.nodes;
+  report.status = plan.level + 1 == body.view->levels && whole ? Status::ok : Status::coarser;
+  body.last.release();
+  body.answered = true;
+  return report;
+}
+
+Elastostatic::StepReport answer(Body& body, const Contacts& all, const Plan& plan, std::uint64_t work,
                                 std::uint64_t budget, const Elastostatic::Response& response) {
+  const std::span<const Constraint> contacts = all.held;
   const ContactSet& set = body.planned;
-  const std::uint64_t needed = work + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+  const std::uint64_t needed =
+      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
   body.factoring.spent = 0;
   Factor* const factor = find_factor(body, plan);
   work += plan.cached != nullptr ? 0 : plan.factor - plan.bounded + body.factoring.spent;
   if (factor == nullptr) {
     return held(Status::held_singular, work);
   }
+  const float* displaced = nullptr;
+  if (body.is_loaded) {
+    work += displace_by_loads_work(body.counts, plan.counts, plan.loads, displace_by_loads(body));
+    displaced = body.column_displaced;
+  }
   work += force_work(body.counts.prices, plan.counts);
-  if (!solve_forces(body, contacts, set, *factor, body.column_force)) {
+  if (!solve_forces(body, contacts, set, *factor, displaced, body.column_force)) {
     return held(Status::held_overflow, work);
   }
-  float* const force = as_floats(response.force).data();
+  float* const force = all.force;
   share_forces(body.column_force, contacts.size(), set, force);
   if (!response.displacement.empty()) {
     work += plan.field;
@@ -263,28 +312,47 @@ Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts
   return report;
 }
 
-Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> contacts, Budget budget,
+Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> constraints,
+                                   const Elastostatic::Loads& loads, Budget budget,
                                    const Elastostatic::Response& response) {
   body.answered = false;
-  const Status request = check_request(body, contacts.size(), budget, response);
+  const Status request = check_request(body, constraints.size(), loads, budget, response);
   if (request != Status::ok) {
     return held(request, 0);
   }
-  const std::uint64_t checking = check_contacts_work(body.counts.prices, contacts.size());
-  const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
+  const Prices& prices = body.counts.prices;
+  const std::uint32_t most_forces = body.counts.max_forces;
+  const std::uint64_t forces = most_forces > 0 ? count_forces(constraints, loads.masks) : 0;
+  const std::uint64_t masked = forces < most_forces ? forces : most_forces;
+  std::uint64_t work = check_contacts_work(prices, constraints.size() + masked);
+  const auto [checked, refused] = check_contacts(constraints, body.view->node_count, body.facts,
+                                                 {body.counts.max_contacts, most_forces, loads.masks});
   if (checked != Status::ok) {
-    Elastostatic::StepReport report = held(checked, checking);
+    Elastostatic::StepReport report = held(checked, work);
     report.refused = refused;
     return report;
   }
-  if (contacts.empty()) {
-    return release(body, response, checking);
+  Contacts contacts;
+  work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
+  if (!take_loads(body, constraints, loads, response.force, contacts)) {
+    return held(Status::held_overflow, work);
+  }
+  if (contacts.held.empty() && !body.is_loaded) {
+    return release(body, response, work);
   }
   const bool wants_field = !response.displacement.empty();
   const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
-  const Plan plan = make_plan(body, contacts, budget.work - checking, wants_field, displaced);
-  return plan.fits ? answer(body, contacts, plan, checking + plan.work, budget.work, response)
-                   : held(Status::held_over_budget, checking + plan.work);
+  const Plan plan = make_plan(body, contacts.held, budget.work - work, wants_field, displaced);
+  work += plan.work;
+  if (!plan.fits) {
+    return held(Status::held_over_budget, work);
+  }
+  Elastostatic::StepReport report = contacts.held.empty() ? answer_loads(body, plan, work, response)
+                                                          : answer(body, contacts, plan, work, budget.work, response);
+  if (answered(report.status) && (forces > 0 || loads.stiffness != 1)) {
+    hand_out_forces(body, constraints, contacts, response.force, report);
+  }
+  return report;
 }
 
 }  // namespace
@@ -350,7 +418,12 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
-  const StepReport report = take_step(*body_, contacts, budget, response);
+  return step(contacts, {}, budget, response);
+}
+
+Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
+                                            const Response& response) noexcept {
+  const StepReport report = take_step(*body_, constraints, loads, budget, response);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
@@ -370,7 +443,8 @@ bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float,
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t r = 0; r < 3; ++r) {
       const std::size_t a = row + r, b = column + c;
-      block[3 * c + r] = factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b];
+      block[3 * c + r] =
+          factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b] / body.stiffness;
     }
   }
   return true;
