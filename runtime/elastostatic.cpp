@@ -1,6 +1,7 @@
 #include "runtime/elastostatic.hpp"
 
 #include <cassert>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -8,24 +9,14 @@
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/body.hpp"
+#include "runtime/elastostatic/loads.hpp"
 #include "runtime/elastostatic/planner.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 
 namespace {
-
-// What a step is asked: contacts that are held, or what unilateral ones would be if they were.
-struct Request {
-  std::span<const Constraint> contacts;
-  Budget budget;
-  const Elastostatic::Response& response;
-  std::span<const UnilateralContact> surfaces;  // as many as contacts; none: these are held
-  ContactAnswer* found = nullptr;               // by solving for them
-  std::uint64_t checking = 0;                   // work spent so far
-
-  [[nodiscard]] bool holds() const { return found == nullptr; }
-};
 
 // the finest level of the nodes that the response has room for; none if that is no level
 std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& response) {
@@ -37,17 +28,28 @@ std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& r
   return layout::none;
 }
 
-Status check_request(const Body& body, std::size_t contacts, Budget budget, const Elastostatic::Response& response) {
+// of Young's modulus
+constexpr float least_stiffness = 0x1p-20F;
+constexpr float most_stiffness = 0x1p20F;
+
+Status check_request(const Body& body, std::size_t constraints, const Elastostatic::Loads& loads, Budget budget,
+                     const Elastostatic::Response& response) {
   if (budget.work < body.least_work) {
     return Status::held_over_budget;
   }
-  if (contacts > body.counts.max_contacts) {
+  if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
+    return Status::held_out_of_range;
+  }
+  if (!std::isfinite(loads.stiffness)) {
+    return Status::held_not_finite;
+  }
+  if (loads.stiffness < least_stiffness || loads.stiffness > most_stiffness) {
     return Status::held_out_of_range;
   }
   const bool field_fits = response.displacement.empty() ||
                           (finest_displaced(body, response) != layout::none &&
                            reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
-  return response.force.size() == contacts && field_fits ? Status::ok : Status::held_response_size;
+  return response.force.size() == constraints && field_fits ? Status::ok : Status::held_response_size;
 }
 
 // the factor of the planned set; null if its capacitance matrix is not positive definite
@@ -79,21 +81,25 @@ void to_set_order(const Factor& factor, std::uint32_t columns, const float* of_f
   }
 }
 
-// whether forces of columns would overflow the answer
+// whether forces of columns could overflow the answer
 bool can_overflow(const Body& body, const ContactSet& set, const float* force) {
   float sum = 0;
   for (std::uint32_t i = 0; i < 3 * set.columns; ++i) {
     sum += std::fabs(force[i]);
   }
-  return !(sum <= body.force_limit);
+  return !(sum <= body.force_limit && sum * body.stiffness <= FLT_MAX);
 }
 
-// forces of the columns of a set by its factor, in `force`; false if they would overflow the answer
+// forces of the columns of a set by its factor, in `force`; displaced: what of them is there without these forces, or
+// null; false if they would overflow the answer
 bool solve_forces(const Body& body, std::span<const Constraint> contacts, const ContactSet& set, const Factor& factor,
-                  float* force) {
+                  const float* displaced, float* force) {
   const std::uint32_t order = 3 * set.columns;
   auto* solution = reinterpret_cast<float*>(body.solution);
   average_displacements(contacts, set, force);
+  for (std::uint32_t i = 0; i < order && displaced != nullptr; ++i) {
+    force[i] = without_tiny(force[i] - displaced[i]);
+  }
   for (std::uint32_t i = order; i < padded_order(order); ++i) {
     solution[i] = 0;
   }
@@ -103,12 +109,16 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   return !can_overflow(body, set, force);
 }
 
-// displacements by the forces of the planned set; apart, so that what makes a factor does not stand on its stack
-[[gnu::noinline]] void reconstruct(const Body& body, const Request& request, const ColumnForces& forces,
-                                   const FieldLevels& levels) {
-  auto* x = reinterpret_cast<Float4*>(request.response.displacement.data());
+// displacements by the forces of the planned set, and what acts besides; apart, so that what makes a factor does not
+// stand on its stack
+[[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
+                                   const FieldLevels& levels, std::span<Vec4> displacement) {
+  auto* x = reinterpret_cast<Float4*>(displacement.data());
+  if (body.is_loaded) {
+    sum_forces<3>(body.field_model(), body.forces.on_columns(), body.forces.touched,
+                  domain_up_to(*body.view, levels.details), body.field_scratch());
+  }
   compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
-  const std::span<const Constraint> contacts = request.holds() ? request.contacts : std::span<const Constraint>();
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].value;
@@ -142,46 +152,46 @@ Elastostatic::StepReport held(Status status, std::uint64_t work) {
   return report;
 }
 
-// a solution for unilateral contacts whose error is below this is as good as the compliance is
+// a solution for unilateral contacts whose residual is below this is as good as the compliance is
 constexpr float unilateral_residual = 2e-4F;
 
-// iterations that the budget holds, needed being what it holds for sure
+// iterations for unilateral contacts that there is budget for. spare: what the plan leaves of it
 std::uint32_t most_iterations(const Body& body, const Plan& plan, std::uint64_t spare) {
-  const std::uint64_t one = ContactProblem::iteration_work(plan.counts.contacts);
-  const std::uint64_t most = plan.counts.iterations + spare / one;
+  const std::uint64_t most =
+      plan.counts.iterations + spare / unilateral_iteration_work(body.counts.prices, plan.counts.contacts);
   return static_cast<std::uint32_t>(most < body.counts.iterations ? most : body.counts.iterations);
 }
 
-// the forces of the planned set's columns and of the contacts; false, and none written, if they could overflow the
-// answer. spare: what is left of the budget. work: grows by that of iterations beyond the least
-bool find_forces(Body& body, const Request& request, const Plan& plan, const Factor& factor, std::uint64_t spare,
-                 std::uint64_t& work) {
+// the forces of the planned set's columns and of its contacts; false, and none written, if they could overflow the
+// answer. displaced: as of solve_forces. work: grows by that of iterations beyond the plan's
+bool find_forces(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor, const float* displaced,
+                 std::uint64_t spare, std::uint64_t& work) {
   const ContactSet& set = body.planned;
-  float* const force = as_floats(request.response.force).data();
-  if (request.holds()) {
-    if (!solve_forces(body, request.contacts, set, factor, body.column_force)) {
+  if (contacts.are_held()) {
+    if (!solve_forces(body, contacts.held, set, factor, displaced, body.column_force)) {
       return false;
     }
-    share_forces(body.column_force, request.contacts.size(), set, force);
+    share_forces(body.column_force, contacts.held.size(), set, contacts.force);
     return true;
   }
-  ContactAnswer& found = *request.found;
+  ContactAnswer& found = *contacts.found;
   found =
-      solve_unilateral(request.surfaces, set, factor, body.cache.stride(), body.last,
+      solve_unilateral({contacts.surfaces, set, displaced}, factor, body.cache.stride(), body.last,
                        {unilateral_residual, most_iterations(body, plan, spare)}, body.unilateral, body.column_force);
   const std::uint64_t more = found.iterations > plan.counts.iterations ? found.iterations - plan.counts.iterations : 0;
-  work += more * ContactProblem::iteration_work(plan.counts.contacts);
+  work += more * unilateral_iteration_work(body.counts.prices, plan.counts.contacts);
   if (!found.valid || can_overflow(body, set, body.column_force)) {
     return false;
   }
-  unilateral_forces(body.unilateral, set, request.surfaces.size(), force);
+  unilateral_forces(body.unilateral, set, contacts.surfaces.size(), contacts.force);
   return true;
 }
 
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
 const float* solve_older_level(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
                                std::uint64_t& work) {
-  if (!body.glide.follows() || work + older_forces_work(body.counts, contacts.size()) > budget) {
+  // where loads act it would take their displacements at that level, too: the last known difference does then
+  if (!body.glide.follows() || body.is_loaded || work + older_forces_work(body.counts, contacts.size()) > budget) {
     return nullptr;
   }
   ContactSet& set = body.other;
@@ -194,7 +204,7 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
   }
   body.cache.use(*factor);
   work += solve_work(body.counts.prices, contacts.size(), set.columns);
-  if (!solve_forces(body, contacts, set, *factor, body.other_column_force)) {
+  if (!solve_forces(body, contacts, set, *factor, nullptr, body.other_column_force)) {
     return nullptr;
   }
   share_forces(body.other_column_force, contacts.size(), set, body.older_force);
@@ -202,17 +212,15 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
 }
 
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
-void glide_forces(Body& body, const Request& request, Elastostatic::StepReport& report) {
-  const std::span<const Constraint> contacts = request.contacts;
-  float* const force = as_floats(request.response.force).data();
-  body.glide.advance(contacts, body.planned, body.last);
+void glide_forces(Body& body, const Contacts& contacts, std::uint64_t budget, Elastostatic::StepReport& report) {
+  body.glide.advance(contacts.held, body.planned, body.last);
   const float* const older =
-      request.holds() ? solve_older_level(body, contacts, request.budget.work, report.work) : nullptr;
-  const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
-  if (glide.share < 1 && !request.holds()) {
-    push_only(request.surfaces, force);
+      contacts.are_held() ? solve_older_level(body, contacts.held, budget, report.work) : nullptr;
+  const GlideReport glide = body.glide.blend(contacts.held, body.last, older, contacts.force);
+  if (glide.share < 1) {
+    push_only(contacts.surfaces, contacts.force);
   }
-  body.last.remember(contacts, body.planned, force);
+  body.last.remember(contacts.held, body.planned, contacts.force);
   report.details.glide = glide.share;
   report.details.level_difference = glide.difference;
   report.details.switch_work = glide.work;
@@ -221,7 +229,7 @@ void glide_forces(Body& body, const Request& request, Elastostatic::StepReport& 
 // what the glide to a finer level begins with, if its factor has just been completed
 void foresee_finer_level(Body& body, std::span<const Constraint> contacts) {
   Factor* const factor = body.cache.find(body.other.all());
-  if (factor != nullptr && solve_forces(body, contacts, body.other, *factor, body.other_column_force)) {
+  if (factor != nullptr && solve_forces(body, contacts, body.other, *factor, nullptr, body.other_column_force)) {
     share_forces(body.other_column_force, contacts.size(), body.other, body.older_force);
     body.glide.foresee(body.other.level(), body.last, body.older_force);
   }
@@ -229,19 +237,18 @@ void foresee_finer_level(Body& body, std::span<const Constraint> contacts) {
 
 // what is left of the budget goes into the factor that the finest level lacked. moving: the contacts are not the last
 // step's
-void prepare_factor(Body& body, const Request& request, const Plan& plan, bool moving,
+void prepare_factor(Body& body, const Contacts& all, const Plan& plan, bool moving, std::uint64_t budget,
                     Elastostatic::StepReport& report) {
-  const std::span<const Constraint> contacts = request.contacts;
+  const std::span<const Constraint> contacts = all.held;
   const bool waits = body.planned.waiting > 0;
   if (!plan.wanted.exists || (plan.wanted.level <= report.constraint_level && !waits)) {
     return;
   }
   const SetCounts& whole = plan.wanted.counts;
   const std::uint64_t resolving = resolve_contacts_work(body.counts.prices, contacts.size());
-  const bool glides = !waits && body.counts.glide_cycles > 1 && request.holds();
+  const bool glides = !waits && !body.is_loaded && body.counts.glide_cycles > 1 && all.are_held();
   const std::uint64_t foreseeing = glides ? force_work(body.counts.prices, whole) : 0;
-  const std::uint64_t limit =
-      request.budget.work < body.counts.refining_work ? request.budget.work : body.counts.refining_work;
+  const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
   if (report.work + resolving + foreseeing > limit) {
     report.details.pending_work = pending_work(body.counts, whole);
     return;
@@ -282,25 +289,49 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
   return report.details.glide < 1 ? larger(error, body.last.error()) : error;
 }
 
-Elastostatic::StepReport answer(Body& body, const Request& request, const Plan& plan) {
+// no contacts, but known forces
+Elastostatic::StepReport answer_loads(Body& body, const Plan& plan, std::uint64_t work,
+                                      const Elastostatic::Response& response) {
+  Elastostatic::StepReport report;
+  report.work = report.details.needed_work = work + force_work(body.counts.prices, plan.counts) + plan.field;
+  report.constraint_level = plan.level;
+  report.field_level = plan.field_levels.details;
+  if (!response.displacement.empty()) {
+    reconstruct(body, {}, {}, plan.field_levels, response.displacement);
+  }
+  report.error = answer_error(body, plan, !response.displacement.empty(), report);
+  const bool whole = plan.field_levels.details == plan.field_levels.nodes;
+  report.status = plan.level + 1 == body.view->levels && whole ? Status::ok : Status::coarser;
+  body.last.release();
+  body.answered = true;
+  return report;
+}
+
+Elastostatic::StepReport answer(Body& body, const Contacts& all, const Plan& plan, std::uint64_t work,
+                                std::uint64_t budget, const Elastostatic::Response& response) {
+  const std::span<const Constraint> contacts = all.held;
   const ContactSet& set = body.planned;
-  const std::span<const Constraint> contacts = request.contacts;
-  const bool with_field = !request.response.displacement.empty();
-  std::uint64_t work = request.checking + plan.work;
-  const std::uint64_t needed = work + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+  const std::uint64_t needed =
+      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
   body.factoring.spent = 0;
   Factor* const factor = find_factor(body, plan);
   work += plan.cached != nullptr ? 0 : plan.factor - plan.bounded + body.factoring.spent;
   if (factor == nullptr) {
     return held(Status::held_singular, work);
   }
+  const float* displaced = nullptr;
+  if (body.is_loaded) {
+    work += displace_by_loads_work(body.counts, plan.counts, plan.loads, displace_by_loads(body));
+    displaced = body.column_displaced;
+  }
   work += force_work(body.counts.prices, plan.counts);
-  if (!find_forces(body, request, plan, *factor, request.budget.work - needed, work)) {
+  if (!find_forces(body, all, plan, *factor, displaced, budget - needed, work)) {
     return held(Status::held_overflow, work);
   }
-  if (with_field) {
+  if (!response.displacement.empty()) {
     work += plan.field;
-    reconstruct(body, request, {set.columns, set.column, body.column_force}, plan.field_levels);
+    const std::span<const Constraint> held = all.are_held() ? contacts : std::span<const Constraint>();
+    reconstruct(body, held, {set.columns, set.column, body.column_force}, plan.field_levels, response.displacement);
   }
   Elastostatic::StepReport report;
   report.work = work;
@@ -310,11 +341,11 @@ Elastostatic::StepReport answer(Body& body, const Request& request, const Plan& 
   report.details.held_contacts = static_cast<std::uint16_t>(contacts.size() - set.waiting);
   report.details.waiting_contacts = static_cast<std::uint16_t>(set.waiting);
   const bool moving = !body.last.stays(contacts);
-  glide_forces(body, request, report);
-  report.error = answer_error(body, plan, with_field, report);
+  glide_forces(body, all, budget, report);
+  report.error = answer_error(body, plan, !response.displacement.empty(), report);
   body.last.set_error(report.error);
   body.cache.use(*factor);
-  prepare_factor(body, request, plan, moving, report);
+  prepare_factor(body, all, plan, moving, budget, report);
   report.details.cached_factor = plan.cached != nullptr;
   report.details.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
   const bool finest = report.constraint_level + 1 == body.view->levels && set.waiting == 0 &&
@@ -324,64 +355,101 @@ Elastostatic::StepReport answer(Body& body, const Request& request, const Plan& 
   return report;
 }
 
-Elastostatic::StepReport refuse(const CheckedContacts& checked, std::uint64_t work) {
-  Elastostatic::StepReport report = held(checked.status, work);
-  report.refused = checked.refused;
+// a step whose constraints are checked and whose loads are taken; work: spent on that
+Elastostatic::StepReport carry_out(Body& body, const Contacts& contacts, std::uint64_t work, std::uint64_t budget,
+                                   const Elastostatic::Response& response) {
+  if (contacts.held.empty() && !body.is_loaded) {
+    return release(body, response, work);
+  }
+  Wants wants;
+  wants.budget = budget - work;
+  wants.field = !response.displacement.empty();
+  wants.finest_displaced = wants.field ? finest_displaced(body, response) : body.counts.levels - 1;
+  wants.iterations = contacts.are_held() ? 0 : least_iterations(body.counts.iterations);
+  const Plan plan = make_plan(body, contacts.held, wants);
+  work += plan.work;
+  if (!plan.fits) {
+    return held(Status::held_over_budget, work);
+  }
+  return contacts.held.empty() ? answer_loads(body, plan, work, response)
+                               : answer(body, contacts, plan, work, budget, response);
+}
+
+Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> constraints,
+                                   const Elastostatic::Loads& loads, Budget budget,
+                                   const Elastostatic::Response& response) {
+  body.answered = false;
+  const Status request = check_request(body, constraints.size(), loads, budget, response);
+  if (request != Status::ok) {
+    return held(request, 0);
+  }
+  const Prices& prices = body.counts.prices;
+  const std::uint32_t most_forces = body.counts.max_forces;
+  const std::uint64_t forces = most_forces > 0 ? count_forces(constraints, loads.masks) : 0;
+  const std::uint64_t masked = forces < most_forces ? forces : most_forces;
+  std::uint64_t work = check_contacts_work(prices, constraints.size() + masked);
+  const auto [checked, refused] = check_contacts(constraints, body.view->node_count, body.facts,
+                                                 {body.counts.max_contacts, most_forces, loads.masks});
+  if (checked != Status::ok) {
+    Elastostatic::StepReport report = held(checked, work);
+    report.refused = refused;
+    return report;
+  }
+  Contacts contacts;
+  work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
+  if (!take_loads(body, constraints, loads, response.force, contacts)) {
+    return held(Status::held_overflow, work);
+  }
+  Elastostatic::StepReport report = carry_out(body, contacts, work, budget.work, response);
+  if (answered(report.status) && (forces > 0 || loads.stiffness != 1)) {
+    hand_out_forces(body, constraints, contacts, response.force, report);
+  }
   return report;
 }
 
-// request: checked but for its contacts
-Elastostatic::StepReport take_step(Body& body, Request& request) {
-  request.checking += check_contacts_work(body.counts.prices, request.contacts.size());
-  const CheckedContacts checked = check_contacts(request.contacts, body.view->node_count, body.facts);
-  if (checked.status != Status::ok) {
-    return refuse(checked, request.checking);
-  }
-  if (request.contacts.empty()) {
-    return release(body, request.response, request.checking);
-  }
-  const bool wants_field = !request.response.displacement.empty();
-  const std::uint32_t displaced = wants_field ? finest_displaced(body, request.response) : body.counts.levels - 1;
-  const std::uint32_t iterations = request.holds() ? 0 : least_iterations(body.counts.iterations);
-  const Plan plan =
-      make_plan(body, request.contacts, {request.budget.work - request.checking, wants_field, displaced, iterations});
-  return plan.fits ? answer(body, request, plan) : held(Status::held_over_budget, request.checking + plan.work);
-}
-
-Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> contacts, Budget budget,
-                                   const Elastostatic::Response& response) {
-  body.answered = false;
-  const Status status = check_request(body, contacts.size(), budget, response);
-  if (status != Status::ok) {
-    return held(status, 0);
-  }
-  Request request{contacts, budget, response, {}};
-  return take_step(body, request);
-}
-
-Elastostatic::UnilateralReport take_step(Body& body, std::span<const UnilateralContact> contacts, Budget budget,
+Elastostatic::UnilateralReport take_step(Body& body, std::span<const UnilateralContact> surfaces,
+                                         const Elastostatic::Loads& loads, Budget budget,
                                          const Elastostatic::UnilateralResponse& response) {
   body.answered = false;
-  Status status = check_request(body, contacts.size(), budget, response);
-  if (status == Status::ok && !response.state.empty() && response.state.size() != contacts.size()) {
-    status = Status::held_response_size;
+  Status request = check_request(body, surfaces.size(), loads, budget, response);
+  if (request == Status::ok && !response.state.empty() && response.state.size() != surfaces.size()) {
+    request = Status::held_response_size;
   }
-  if (status == Status::ok && body.counts.iterations == 0 && !contacts.empty()) {
-    status = Status::held_unsupported;
+  if (request == Status::ok && body.counts.iterations == 0 && !surfaces.empty()) {
+    request = Status::held_unsupported;
   }
-  if (status != Status::ok) {
-    return {held(status, 0)};
+  if (request == Status::ok && surfaces.size() > body.counts.max_contacts) {
+    request = Status::held_out_of_range;
   }
-  const std::uint64_t checking = check_unilateral_work(body.counts.prices, contacts.size());
-  const CheckedContacts checked = check_unilateral(contacts, body.unilateral.hold);
+  if (request != Status::ok) {
+    return {held(request, 0)};
+  }
+  const Prices& prices = body.counts.prices;
+  const std::uint64_t work =
+      check_unilateral_work(prices, surfaces.size()) + check_contacts_work(prices, surfaces.size());
+  const std::span<const Constraint> holds{body.unilateral.hold, surfaces.size()};
+  CheckedContacts checked = check_unilateral(surfaces, body.unilateral.hold);
+  if (checked.status == Status::ok) {
+    checked = check_contacts(holds, body.view->node_count, body.facts, {body.counts.max_contacts, 0, {}});
+  }
   if (checked.status != Status::ok) {
-    return {refuse(checked, checking)};
+    Elastostatic::StepReport report = held(checked.status, work);
+    report.refused = checked.refused;
+    return {report};
+  }
+  Contacts contacts;
+  if (!take_loads(body, holds, loads, response.force, contacts)) {
+    return {held(Status::held_overflow, work)};
   }
   ContactAnswer found;
-  Request request{{body.unilateral.hold, contacts.size()}, budget, response, contacts, &found, checking};
-  const Elastostatic::StepReport report = take_step(body, request);
+  contacts.surfaces = surfaces;
+  contacts.found = &found;
+  Elastostatic::StepReport report = carry_out(body, contacts, work, budget.work, response);
   if (answered(report.status)) {
-    list_states(contacts, as_floats(response.force).data(), response.state);
+    if (loads.stiffness != 1) {
+      hand_out_forces(body, holds, contacts, response.force, report);
+    }
+    list_states(surfaces, as_floats(response.force).data(), response.state);
   }
   return {report, found.residual, found.iterations};
 }
@@ -449,14 +517,19 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
-  const StepReport report = take_step(*body_, contacts, budget, response);
+  return step(contacts, {}, budget, response);
+}
+
+Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
+                                            const Response& response) noexcept {
+  const StepReport report = take_step(*body_, constraints, loads, budget, response);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
 
-Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralContact> contacts, Budget budget,
-                                                  const UnilateralResponse& response) noexcept {
-  const UnilateralReport report = take_step(*body_, contacts, budget, response);
+Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralContact> contacts, const Loads& loads,
+                                                  Budget budget, const UnilateralResponse& response) noexcept {
+  const UnilateralReport report = take_step(*body_, contacts, loads, budget, response);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
@@ -476,7 +549,8 @@ bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float,
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t r = 0; r < 3; ++r) {
       const std::size_t a = row + r, b = column + c;
-      block[3 * c + r] = factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b];
+      block[3 * c + r] =
+          factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b] / body.stiffness;
     }
   }
   return true;

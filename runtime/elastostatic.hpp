@@ -5,6 +5,7 @@
 
 #include "runtime/constraint.hpp"
 #include "runtime/loop.hpp"
+#include "runtime/mask.hpp"
 #include "runtime/model.hpp"
 #include "runtime/prices.hpp"
 #include "runtime/vec.hpp"
@@ -25,8 +26,10 @@ class Elastostatic {
     bool keep_capacitance = false;     ///< capacitance matrices beside their factors, for `compliance`
     std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
-    Prices prices{};                                  ///< that make work units of what a step does
     std::uint32_t iterations = 0;  ///< 0..1024 for unilateral contacts, at most 256 of them; 0: they are refused
+    std::uint32_t max_forces = 0;  ///< 0..4096, nodes that known forces are on in a step, those of masks each time; 0:
+                                   ///< constraints of other kinds than hold are refused
+    Prices prices{};               ///< that make work units of what a step does
   };
 
   /// The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md).
@@ -42,11 +45,17 @@ class Elastostatic {
     std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step by its StepReport::constraint_level
   };
 
+  /// What acts on a body in a step beside its constraints, and how stiff it is.
+  struct Loads {
+    std::span<const Mask> masks{};  ///< that constraints of kind pattern name
+    float stiffness = 1;            ///< 2^-20..2^20, Young's modulus over the model's
+  };
+
   /// The answer of a step; the caller owns the memory. The size of `displacement` says which nodes are displaced: all,
   /// or those of the coarser levels, which come first in the file (Model::node_count). Floats of the caller's are seen
   /// as vectors by as_vec3 and as_vec4.
   struct Response {
-    std::span<Vec3> force;         ///< [constraints] N, the force that holds each, in their order
+    std::span<Vec3> force;         ///< [constraints] N, the force that holds each, or that is known, in their order
     std::span<Vec4> displacement;  ///< [nodes of levels 0..q] m; empty: none is wanted
   };
 
@@ -103,14 +112,21 @@ class Elastostatic {
   /// clock; same model, limits, history, constraints and budget give the same bits. Work: at most budget.work.
   StepReport step(std::span<const Constraint> constraints, Budget budget, const Response& response) noexcept;
 
+  /// The same with what else acts (James & Pai 2001, section 4.2): known forces, on nodes and by masks, reduce what the
+  /// contacts have to do to stand where they are held. They are resolved at the level of the contacts: below the finest
+  /// one, and in steps without contacts that the budget does not hold there, a force acts on the node that stands for
+  /// its own. Forces of contacts scale with the stiffness, displacements by known forces with its inverse.
+  StepReport step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
+                  const Response& response) noexcept;
+
   /// The same for rigid surfaces that push nodes and rub against them, but do not pull: finds forces and displacements
   /// that obey the laws of Signorini and Coulomb (James & Pai 2001, section 6; docs/loop.md). Forces of what answers
   /// short of budget obey these laws too: each pushes and lies within its cone of friction; what is not exact then is
   /// where the nodes are. Refuses contacts unless Limits::iterations is positive. Work: at most budget.work.
-  UnilateralReport step(std::span<const UnilateralContact> contacts, Budget budget,
+  UnilateralReport step(std::span<const UnilateralContact> contacts, const Loads& loads, Budget budget,
                         const UnilateralResponse& response) noexcept;
 
-  /// The compliance between two constraints, by their places among those of the last answer, at the levels that it was
+  /// The compliance between two contacts, by their places among those of the last answer, at the levels that it was
   /// answered at: the displacement of i per force at j, m/N, of nodes that share a column the column's. While a glide
   /// is under way (StepDetails::glide below 1) the answer's forces are not those that it gives. block: 3 c + r,
   /// displacement r per force c. False, and nothing is written, unless the capacitance is kept (Limits), the last step

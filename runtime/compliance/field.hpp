@@ -70,6 +70,12 @@ void sum_couplings(const FieldModel<N>& model, const Touched& touched, std::uint
 template <unsigned N>
 void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums<N>& sums) noexcept;
 
+/// What forces on columns add to the sums of the coefficients before `end`. touched: by the same columns. For the loop;
+/// work: that of transform_forces and sum_couplings.
+template <unsigned N>
+void sum_forces(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched, std::uint32_t end,
+                const FieldScratch<N>& scratch) noexcept;
+
 /// Fast summation in two-sided form (James & Pai 2003, section 5.4; docs/theory.md): x = W^-1 (W U W^T) T^-T f, the
 /// displacement of the nodes of K(levels.nodes) by some forces, with details up to levels.details, interpolated beyond.
 /// It is that of the very compliance whose forces hold the contacts: all couplings, none left out. touched: by the same

@@ -134,6 +134,14 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.read = arena.take<std::uint8_t>(view.domain_count);
 }
 
+void carve_loads(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body) {
+  body.forces.carve(arena, view, sizes.counts.max_forces);
+  body.held = arena.take<Constraint>(sizes.counts.max_contacts);
+  body.held_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
+  body.column_displaced = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
+  body.displaced = arena.take_zeroed<Float4>(view.domain_count);
+}
+
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
   if (!sizes.counts.forces_only) {
@@ -157,6 +165,9 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.older_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
+  if (sizes.counts.takes_loads()) {
+    carve_loads(arena, view, sizes, body);
+  }
   body.cache.carve<3>(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.job.carve<3>(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);

@@ -10,6 +10,7 @@
 #include "runtime/compliance/mirrored_couplings.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
+#include "runtime/elastostatic/known_forces.hpp"
 #include "runtime/elastostatic/last_answer.hpp"
 #include "runtime/elastostatic/requirement.hpp"
 #include "runtime/elastostatic/unilateral.hpp"
@@ -53,6 +54,15 @@ struct Body {
   float* other_column_force = nullptr;
   float* older_force = nullptr;  ///< [3 * contacts] by the level before
   Float4* force = nullptr;       ///< [domain], zero between steps
+  // where loads act; null where the limits ask for none
+  bool is_loaded = false;             ///< something but contacts acts in this step
+  float stiffness = 1;                ///< of this step, over the model's; all below is of the model's
+  KnownForces forces;                 ///< of this step
+  std::uint32_t amounts = 0;          ///< loads of the model that act
+  Constraint* held = nullptr;         ///< [contacts] among constraints of other kinds
+  float* held_force = nullptr;        ///< [3 * contacts]
+  float* column_displaced = nullptr;  ///< [3 * columns] by the loads alone
+  Float4* displaced = nullptr;        ///< [domain], zero between steps
   FactorCache cache;
   FactorJob job;  ///< the factor of a finer level
   LastAnswer last;

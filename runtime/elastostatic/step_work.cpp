@@ -2,6 +2,7 @@
 
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/couplings.hpp"
+#include "runtime/compliance/selected_columns.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/elastostatic/unilateral.hpp"
@@ -67,6 +68,36 @@ std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept {
   return solving + Glide::blend_work(prices, set.contacts);
 }
 
+std::uint64_t plan_loads_work(const ModelCounts& model, const SetCounts& set, const LoadCounts& loads) noexcept {
+  return priced(loads.forces.columns, model.prices.resolved_contact) + touch_work(model.prices, loads.forces) +
+         count_field_work(model.prices, set) + count_field_work(model.prices, loads.forces);
+}
+
+std::uint64_t most_coupling_blocks(const SetCounts& set, const LoadCounts& loads) noexcept {
+  return smaller(loads.set_stored + loads.forces.stored, set.coefficients * loads.forces.coefficients);
+}
+
+std::uint64_t displace_by_loads_work(const ModelCounts& model, const SetCounts& set, const LoadCounts& loads,
+                                     std::uint64_t between) noexcept {
+  const Prices& prices = model.prices;
+  const SetCounts& forces = loads.forces;
+  const bool coupled = forces.columns > 0;
+  const CoupledCounts both{set.coefficients + forces.coefficients, loads.set_stored + forces.stored};
+  return priced(set.columns + forces.columns, prices.force_column) +
+         priced(set.visits + forces.visits, force_visit_price(prices, model.prediction)) +
+         priced(loads.amounts * set.coefficients, prices.scaled_sum) +
+         (coupled ? couple_work(prices, both, between) : 0);
+}
+
+std::uint64_t load_field_work(const ModelCounts& model, const LoadCounts& loads, std::uint32_t details,
+                              std::uint64_t blocks) noexcept {
+  const Prices& prices = model.prices;
+  return priced(loads.forces.columns, prices.force_column) +
+         priced(loads.forces.visits, force_visit_price(prices, model.prediction)) +
+         priced(loads.forces.coefficients, prices.coefficient) + priced(blocks, prices.summed_block) +
+         priced(loads.amounts * model.rows[details], prices.scaled_sum);
+}
+
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
   const Prices& prices = model.prices;
@@ -109,6 +140,14 @@ MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max
     counts.visits += length * forced + smaller(listed, neighbour_visits(lifting[q], counts.columns * bounds.even[q]));
   }
   counts.slots = counts.coefficients;
+  return most;
+}
+
+MostCounts most_force_counts(const ModelView& view, std::uint32_t c, const ModelCounts& model,
+                             const ColumnBounds& bounds, const LiftingCounts* lifting) noexcept {
+  MostCounts most = most_counts(view, c, model.max_forces, bounds, lifting);
+  most.set.visits += model.max_forces - most.set.columns;
+  most.set.columns = model.max_forces;
   return most;
 }
 

@@ -26,11 +26,15 @@ Block<3> kept_block(const Factor& factor, std::uint32_t stride, std::uint32_t ro
   return block;
 }
 
-ContactCandidate candidate_of(const UnilateralContact& contact) {
+// displaced: its column, m, without contact forces
+ContactCandidate candidate_of(const UnilateralContact& contact, const float* displaced) {
   const float scale = 1 / std::sqrt(dot3(contact.normal, contact.normal));
+  float gap[3];
+  for (int r = 0; r < 3; ++r) {
+    gap[r] = without_tiny((displaced == nullptr ? 0 : displaced[r]) - contact.value[r]);
+  }
   ContactCandidate candidate;
-  candidate.gap = {-without_tiny(contact.value[0]), -without_tiny(contact.value[1]), -without_tiny(contact.value[2]),
-                   0};
+  candidate.gap = {gap[0], gap[1], gap[2], 0};
   candidate.normal = {scale * contact.normal[0], scale * contact.normal[1], scale * contact.normal[2], 0};
   candidate.friction = contact.friction;
   return candidate;
@@ -46,13 +50,15 @@ Vec4 last_force(const LastAnswer& last, std::uint32_t node) {
 }
 
 // the contacts that are held as candidates, and the compliance between them; how many
-std::uint32_t gather(std::span<const UnilateralContact> contacts, const ContactSet& set, const Factor& factor,
-                     std::uint32_t stride, const LastAnswer& last, UnilateralScratch& scratch) {
+std::uint32_t gather(const UnilateralSet& all, const Factor& factor, std::uint32_t stride, const LastAnswer& last,
+                     UnilateralScratch& scratch) {
+  const ContactSet& set = all.set;
   std::uint32_t count = 0;
-  for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+  for (std::uint32_t i = 0; i < all.contacts.size(); ++i) {
     if (set.holds(i)) {
-      scratch.candidate[count] = candidate_of(contacts[i]);
-      scratch.force[count] = last_force(last, contacts[i].node);
+      const float* displaced = all.displaced == nullptr ? nullptr : all.displaced + std::size_t{3} * set.place[i];
+      scratch.candidate[count] = candidate_of(all.contacts[i], displaced);
+      scratch.force[count] = last_force(last, all.contacts[i].node);
       scratch.contact[count++] = i;
     }
   }
@@ -102,15 +108,20 @@ CheckedContacts check_unilateral(std::span<const UnilateralContact> contacts, Co
   return result;
 }
 
-std::uint64_t unilateral_work(const Prices& prices, std::uint64_t contacts, std::uint64_t iterations) noexcept {
-  return priced(contacts, prices.solved_contact) + priced(9 * ContactCompliance::size(contacts), prices.appended) +
-         ContactProblem::least_work(contacts) + (iterations - 1) * ContactProblem::iteration_work(contacts);
+std::uint64_t unilateral_iteration_work(const Prices&, std::uint64_t contacts) noexcept {
+  return ContactProblem::iteration_work(contacts);
 }
 
-ContactAnswer solve_unilateral(std::span<const UnilateralContact> contacts, const ContactSet& set, const Factor& factor,
-                               std::uint32_t stride, const LastAnswer& last, const ContactAccuracy& accuracy,
-                               UnilateralScratch& scratch, float* column_force) noexcept {
-  const std::uint32_t count = gather(contacts, set, factor, stride, last, scratch);
+std::uint64_t unilateral_work(const Prices& prices, std::uint64_t contacts, std::uint64_t iterations) noexcept {
+  return priced(contacts, prices.solved_contact) + priced(9 * ContactCompliance::size(contacts), prices.appended) +
+         ContactProblem::least_work(contacts) + (iterations - 1) * unilateral_iteration_work(prices, contacts);
+}
+
+ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, std::uint32_t stride,
+                               const LastAnswer& last, const ContactAccuracy& accuracy, UnilateralScratch& scratch,
+                               float* column_force) noexcept {
+  const ContactSet& set = all.set;
+  const std::uint32_t count = gather(all, factor, stride, last, scratch);
   constexpr std::uint64_t any = ~std::uint64_t{0};
   const ContactAnswer answer = scratch.problem.solve({scratch.candidate, count}, scratch.compliance, accuracy, any,
                                                      {scratch.force, count}, {}, {});

@@ -37,16 +37,26 @@ constexpr std::uint64_t check_unilateral_work(const Prices& prices, std::uint64_
 /// writes what they are as holds. hold: [contacts].
 CheckedContacts check_unilateral(std::span<const UnilateralContact> contacts, Constraint* hold) noexcept;
 
+/// Unilateral contacts of a step, as the columns that they would be if they were held.
+struct UnilateralSet {
+  std::span<const UnilateralContact> contacts;
+  const ContactSet& set;
+  const float* displaced = nullptr;  ///< [3 * columns] m, without contact forces; null: by nothing
+};
+
+/// Work units of an iteration.
+[[nodiscard]] std::uint64_t unilateral_iteration_work(const Prices& prices, std::uint64_t contacts) noexcept;
+
 /// Work units of solve_unilateral with so many iterations, at least one.
 [[nodiscard]] std::uint64_t unilateral_work(const Prices& prices, std::uint64_t contacts,
                                             std::uint64_t iterations) noexcept;
 
 /// The forces of unilateral contacts with friction, from the last answer's on, on the compliance that a factor keeps;
-/// none for those that wait. work: units of which iterations are made, at least one. column_force: [3 * columns], their
-/// sums. For the loop; work: within `work`.
-ContactAnswer solve_unilateral(std::span<const UnilateralContact> contacts, const ContactSet& set, const Factor& factor,
-                               std::uint32_t stride, const LastAnswer& last, const ContactAccuracy& accuracy,
-                               UnilateralScratch& scratch, float* column_force) noexcept;
+/// none for those that wait. column_force: [3 * columns], their sums. For the loop; work: unilateral_work of as many
+/// iterations as it says.
+ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, std::uint32_t stride,
+                               const LastAnswer& last, const ContactAccuracy& accuracy, UnilateralScratch& scratch,
+                               float* column_force) noexcept;
 
 /// The forces that it found: [3 * contacts] N. For the loop; linear in them.
 void unilateral_forces(const UnilateralScratch& scratch, const ContactSet& set, std::size_t contacts,

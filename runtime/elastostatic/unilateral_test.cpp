@@ -34,7 +34,7 @@ class PushedBody {
     response.force = as_vec3(std::span(force_).first(3 * count_));
     response.displacement = as_vec4(body_.field());
     response.state = std::span(state_).first(count_);
-    return body_.body().step(contacts, {work}, response);
+    return body_.body().step(contacts, {}, {work}, response);
   }
   [[nodiscard]] const Elastostatic::Requirement& requirement() const { return body_.requirement(); }
   [[nodiscard]] std::span<const float> force() const { return std::span(force_).first(3 * count_); }

@@ -46,8 +46,8 @@ struct DenseAnswer {
 };
 
 /// The capacitance matrix algorithm of an elastostatic model on dense matrices in double precision with a complete
-/// factorisation.
+/// factorisation; constraints of all kinds that Elastostatic knows.
 [[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t level,
-                                      std::span<const Constraint> contacts);
+                                      std::span<const Constraint> constraints, const Elastostatic::Loads& loads = {});
 
 }  // namespace greenloop

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/elastostatic.hpp"
+#include "runtime/elastostatic/body.hpp"
+
+namespace greenloop {
+
+/// The constraints of a step, apart: contacts, and where their forces go.
+struct Contacts {
+  std::span<const Constraint> held;
+  float* force = nullptr;                         ///< [3 * held] N, over the stiffness scale
+  std::span<const UnilateralContact> surfaces{};  ///< as many, that they would be if they were held; none: they are
+  ContactAnswer* found = nullptr;                 ///< by solving for these
+
+  [[nodiscard]] bool are_held() const { return found == nullptr; }
+};
+
+/// Takes what acts in a step, out of checked constraints, into the body. False if it could overflow the answer. For the
+/// loop; work: list_forces_work where constraints of other kinds than hold are among them.
+bool take_loads(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads,
+                std::span<Vec3> force, Contacts& contacts) noexcept;
+
+/// What the loads of a planned step displace of the columns of its contacts, into Body::column_displaced. Returns the
+/// blocks between the two. For the loop; work: displace_by_loads_work.
+std::uint64_t displace_by_loads(const Body& body) noexcept;
+
+/// Hands the forces of all constraints out, and the report's forces and energies, by the stiffness scale. For the loop;
+/// work: within list_forces_work, or within that of the glide.
+void hand_out_forces(const Body& body, std::span<const Constraint> constraints, const Contacts& contacts,
+                     std::span<Vec3> force, Elastostatic::StepReport& report) noexcept;
+
+}  // namespace greenloop
