@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime/algebra/block.hpp"
+
+namespace greenloop {
+
+/// The compliance of some points, m/N, symmetric and positive definite: block (i, j) times a force at j is what it adds
+/// to the displacement of i. Of the upper triangle, i <= j, the columns of blocks stand one after the other: a point
+/// more is a column more. Fourth lanes are 0.
+struct ContactCompliance {
+  Block<3>* block = nullptr;
+
+  static constexpr std::size_t size(std::size_t points) { return points * (points + 1) / 2; }
+  [[nodiscard]] Block<3>* column(std::size_t j) const noexcept { return block + size(j); }
+  [[nodiscard]] Block<3>& at(std::size_t i, std::size_t j) const noexcept { return column(j)[i]; }
+};
+
+/// Displacement of the point of a column by the forces of the `count` points before it. For the loop; linear in them.
+[[nodiscard]] Float4 gathered(const Block<3>* column, const Float4* force, std::uint32_t count) noexcept;
+
+/// Adds to the displacements of the `count` points before that of a column what its force moves them by. For the loop;
+/// linear in them.
+void scatter(const Block<3>* column, Float4 force, std::uint32_t count, Float4* displacement) noexcept;
+
+/// displacement = compliance times force, [count] each. For the loop; each block is read once.
+void multiply(const ContactCompliance& compliance, std::uint32_t count, const Float4* force,
+              Float4* displacement) noexcept;
+
+}  // namespace greenloop

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime/contact/contact_compliance.hpp"
+#include "runtime/contact/contact_newton.hpp"
+#include "runtime/contact/friction.hpp"
+#include "runtime/memory/arena.hpp"
+#include "runtime/vec.hpp"
+
+namespace greenloop {
+
+// Unilateral contact with Coulomb friction on the compliance of some candidates: points of a body's surface that may
+// touch a tool. Forces f are those of the tools on the body; u_i = gap_i + sum_j A_ij f_j. For each, normal force and
+// gap u.n are at least 0 and one of them is; the friction force is at most mu times the normal force, and it is that,
+// and against the slip, where the point slips over the tool. Slips are those of a step, from the last converged state
+// (quasi-static, as Cattaneo and Mindlin solve it).
+
+/// A point that may touch a tool, in the frame of the body.
+struct ContactCandidate {
+  /// m, without contact forces: along `normal` the distance from the tool's surface, negative inside; across it the
+  /// way from where the point would be had it stuck to the tool since the last step
+  Vec4 gap;
+  Vec4 normal;         ///< unit, out of the tool: against it the body's point would penetrate
+  float friction = 0;  ///< mu >= 0
+};
+
+struct ContactAccuracy {
+  float residual = 1e-3F;         ///< at which the iteration ends
+  std::uint32_t iterations = 50;  ///< at most
+};
+
+struct ContactAnswer {
+  bool valid = false;            ///< false: something was not finite or a point's compliance not positive definite;
+                                 ///< then all forces are 0
+  float residual = 0;            ///< norm of the natural map (friction.hpp) of all candidates over that of the forces
+  std::uint32_t iterations = 0;  ///< pairs of sweeps
+  std::uint64_t work = 0;        ///< units spent, at most what was allowed
+};
+
+/// Sweeps of block Gauss-Seidel with exact solutions of each candidate's own problem (nonsmooth contact dynamics: Jean
+/// 1999), which settle who touches, sticks and slips, and after each pair of sweeps, if it does not suffice, a Newton
+/// step of all together (ContactNewton). A pair, forwards and backwards, reads each block once: forwards the sums of
+/// what stands before a candidate are formed, backwards those of what stands behind, and each serves the other
+/// (Niethammer 1964). Forces that are returned come out of a sweep, so they lie in the friction cones.
+class ContactProblem {
+ public:
+  static constexpr std::uint32_t most_candidates = 256;
+
+  /// Arrays out of `arena`; null while it counts. candidates: 1 .. most_candidates.
+  void carve(Arena& arena, std::uint32_t candidates) noexcept;
+
+  /// Work units that `solve` needs at least for so many candidates: setting up and one pair of sweeps.
+  static constexpr std::uint64_t least_work(std::uint64_t candidates) {
+    return candidates * setup_price + half_work(candidates) + sweep_work(candidates);
+  }
+
+  /// The most that a pair of sweeps and a Newton step take.
+  static constexpr std::uint64_t iteration_work(std::uint64_t candidates) {
+    return sweep_work(candidates) + newton_work(candidates, ContactNewton::most_vectors);
+  }
+
+  /// force: [candidates] N, where the iteration begins, the last answer or 0; becomes the answer, the one of the least
+  /// residual: its cones hold within the rounding of `normal`, however little work was allowed. states, displacements:
+  /// [candidates] or empty; displacements: u, m. work: at least least_work. Fewer candidates than `carve` was told are
+  /// fine. For the loop; work: at most `work`, counted, so that the same input gives the same bits.
+  ContactAnswer solve(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
+                      const ContactAccuracy& accuracy, std::uint64_t work, std::span<Vec4> force,
+                      std::span<ContactState> states, std::span<Vec4> displacements) noexcept;
+
+ private:
+  // instructions
+  static constexpr std::uint64_t block_price = 7;  ///< a block in one direction
+  static constexpr std::uint64_t setup_price = 300;
+  static constexpr std::uint64_t sweep_price = 700;   ///< a candidate's own problem twice, and its natural map
+  static constexpr std::uint64_t newton_price = 300;  ///< a candidate, frozen and thawed
+  static constexpr std::uint64_t vector_price = 350;  ///< a candidate in one vector more
+
+  static constexpr std::uint64_t half_work(std::uint64_t candidates) {
+    return candidates * candidates / 2 * block_price;
+  }
+  static constexpr std::uint64_t sweep_work(std::uint64_t candidates) {
+    return 3 * half_work(candidates) + candidates * sweep_price;
+  }
+  static constexpr std::uint64_t vector_work(std::uint64_t candidates) {
+    return 2 * half_work(candidates) + candidates * vector_price;
+  }
+  static constexpr std::uint64_t newton_work(std::uint64_t candidates, std::uint64_t vectors) {
+    return 3 * half_work(candidates) + candidates * newton_price + vectors * vector_work(candidates);
+  }
+
+  [[nodiscard]] bool set(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
+                         std::span<const Vec4> force) noexcept;
+  void sum_behind() noexcept;
+  void sweep() noexcept;
+  [[nodiscard]] float displace() noexcept;
+  void keep() noexcept;
+  [[nodiscard]] bool newton(std::uint64_t work, ContactAnswer& answer) noexcept;
+
+  ContactPoints points_;
+  FrictionContact* contact_ = nullptr;
+  float* multiplier_ = nullptr;  ///< see local_force
+  Float4* gap_ = nullptr;
+  Float4* force_ = nullptr;         ///< the iterate
+  Float4* displacement_ = nullptr;  ///< its u
+  Float4* before_ = nullptr;        ///< displacement by the forces of candidates before each
+  Float4* behind_ = nullptr;        ///< by those of candidates behind it
+  Float4* best_force_ = nullptr;    ///< the iterate of the least residual
+  Float4* best_displacement_ = nullptr;
+  ContactNewton newton_;
+};
+
+}  // namespace greenloop
