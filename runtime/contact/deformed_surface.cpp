@@ -208,7 +208,7 @@ Double3 DeformedSurface::normal(const SurfacePoint& point, std::uint64_t& work) 
     }
     sum += angle_between(side[0], side[1]) * triangle_normal(t);
   });
-  work += most_around_ * SurfacePrices::neighbour;
+  work += around_work();
   return unit(sum);
 }
 

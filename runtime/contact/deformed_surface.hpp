@@ -80,9 +80,15 @@ class DeformedSurface {
   [[nodiscard]] Double3 node_normal(std::uint32_t node, std::uint64_t& work) const noexcept;
   [[nodiscard]] Double3 normal(const SurfacePoint& point, std::uint64_t& work) const noexcept;
   [[nodiscard]] std::uint64_t surround_work() const noexcept {
-    return most_around_ * (SurfacePrices::triangle + SurfacePrices::neighbour);
+    return most_around_ * SurfacePrices::triangle + around_work();
   }
+  /// Of finding the triangles around a point, at most.
+  [[nodiscard]] std::uint64_t around_work() const noexcept { return most_around_ * SurfacePrices::neighbour; }
 
+  /// Around the whole surface.
+  [[nodiscard]] const TriangleBox& box() const noexcept { return boxes_[0]; }
+  /// m, how far it reaches from the origin, as a sum over x, y and z.
+  [[nodiscard]] double extent() const noexcept { return extent_; }
   /// Whether a position (m) lies in the box around the whole surface, or less than `margin` beside it. Constant work.
   [[nodiscard]] bool is_near(const Double3& position, double margin) const noexcept;
 
@@ -114,7 +120,7 @@ class DeformedSurface {
   }
 
   /// Calls visit(triangle) for all that a point of the surface lies in: itself, those at an edge, those around a node.
-  /// Work: a `neighbour` for each triangle around one corner.
+  /// Work: at most around_work().
   template <class Visit>
   void visit_around(const SurfacePoint& point, Visit visit) const noexcept;
 
