@@ -18,12 +18,18 @@ struct Constraint {
   Kind kind = Kind::hold;  ///< Elastostatic refuses `normal`, and knows forces by Limits::max_forces
 };
 
-/// A rigid surface at a node: it may push the node and rub against it, but not pull it (Signorini's and Coulomb's laws).
+/// A rigid surface at a point of a body: it may push the point and rub against it, but not pull it (Signorini's and
+/// Coulomb's laws). The point is a node, or within a triangle.
 struct UnilateralContact {
-  std::uint32_t node = 0;  ///< file index of a touchable node
-  float value[3] = {};     ///< m, the displacement at which the node touches the surface and has not slid along it
-  float normal[3] = {};    ///< unit vector out of the surface, to where the node may be
-  float friction = 0;      ///< Coulomb's coefficient, 0 or more
+  static constexpr std::uint32_t none = 0xffffffff;
+
+  std::uint32_t node[3] = {none, none, none};  ///< file indices of touchable nodes; none: there are fewer
+  float weight[3] = {1, 0, 0};                 ///< of each, above 0; 1 in all, or less where a corner cannot move
+  float value[3] = {};   ///< m, the point's displacement at which it touches the surface and has not slid along it
+  float normal[3] = {};  ///< unit vector out of the surface, to where the point may be
+  float friction = 0;    ///< Coulomb's coefficient, 0 or more
+  float softness = 0;    ///< m/N, of the surface itself, 0 or more; above 0 if no node is named
+  float force[3] = {};   ///< N, a guess to begin with, as from the last step
 };
 
 /// What a unilateral contact does.

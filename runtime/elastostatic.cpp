@@ -155,36 +155,40 @@ Elastostatic::StepReport held(Status status, std::uint64_t work) {
 // a solution for unilateral contacts whose residual is below this is as good as the compliance is
 constexpr float unilateral_residual = 2e-4F;
 
-// iterations for unilateral contacts that there is budget for. spare: what the plan leaves of it
-std::uint32_t most_iterations(const Body& body, const Plan& plan, std::uint64_t spare) {
-  const std::uint64_t most =
-      plan.counts.iterations + spare / unilateral_iteration_work(body.counts.prices, plan.counts.contacts);
-  return static_cast<std::uint32_t>(most < body.counts.iterations ? most : body.counts.iterations);
+// forces of unilateral contacts on the columns of a set; false, and none written, if they could overflow the answer.
+// allowance: for ContactProblem. work: grows by what they took
+bool push(Body& body, const Contacts& contacts, const ContactSet& set, const Factor& factor, const float* displaced,
+          std::uint64_t allowance, std::uint64_t& work) {
+  const UnilateralSet all{contacts.surfaces, set, displaced, body.stiffness};
+  ContactAnswer& found = *contacts.found;
+  found = solve_unilateral(all, factor, body.cache.stride(), {unilateral_residual, body.counts.iterations}, allowance,
+                           body.unilateral, body.column_force);
+  work += gather_unilateral_work(body.counts.prices, contacts.corners()) + found.work;
+  if (!found.valid || can_overflow(body, set, body.column_force)) {
+    return false;
+  }
+  hand_out_unilateral(all, body.unilateral, contacts.output);
+  return true;
 }
 
 // the forces of the planned set's columns and of its contacts; false, and none written, if they could overflow the
-// answer. displaced: as of solve_forces. work: grows by that of iterations beyond the plan's
+// answer. displaced: as of solve_forces. spare: what the plan leaves of the budget. work: grows by what they took
 bool find_forces(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor, const float* displaced,
                  std::uint64_t spare, std::uint64_t& work) {
   const ContactSet& set = body.planned;
+  const Prices& prices = body.counts.prices;
   if (contacts.are_held()) {
+    work += force_work(prices, plan.counts);
     if (!solve_forces(body, contacts.held, set, factor, displaced, body.column_force)) {
       return false;
     }
     share_forces(body.column_force, contacts.held.size(), set, contacts.force);
     return true;
   }
-  ContactAnswer& found = *contacts.found;
-  found =
-      solve_unilateral({contacts.surfaces, set, displaced}, factor, body.cache.stride(), body.last,
-                       {unilateral_residual, most_iterations(body, plan, spare)}, body.unilateral, body.column_force);
-  const std::uint64_t more = found.iterations > plan.counts.iterations ? found.iterations - plan.counts.iterations : 0;
-  work += more * unilateral_iteration_work(body.counts.prices, plan.counts.contacts);
-  if (!found.valid || can_overflow(body, set, body.column_force)) {
-    return false;
-  }
-  unilateral_forces(body.unilateral, set, contacts.surfaces.size(), contacts.force);
-  return true;
+  work += Glide::blend_work(prices, plan.counts.contacts);
+  const std::uint64_t planned = unilateral_work(prices, plan.counts.corners, plan.counts.iterations) -
+                                gather_unilateral_work(prices, plan.counts.corners);
+  return push(body, contacts, set, factor, displaced, planned + spare, work);
 }
 
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
@@ -213,17 +217,17 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
 
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
 void glide_forces(Body& body, const Contacts& contacts, std::uint64_t budget, Elastostatic::StepReport& report) {
-  body.glide.advance(contacts.held, body.planned, body.last);
-  const float* const older =
-      contacts.are_held() ? solve_older_level(body, contacts.held, budget, report.work) : nullptr;
-  const GlideReport glide = body.glide.blend(contacts.held, body.last, older, contacts.force);
-  if (glide.share < 1) {
-    push_only(contacts.surfaces, contacts.force);
+  if (contacts.are_held()) {
+    body.glide.advance(contacts.held, body.planned, body.last);
+    const float* const older = solve_older_level(body, contacts.held, budget, report.work);
+    const GlideReport glide = body.glide.blend(contacts.held, body.last, older, contacts.force);
+    report.details.glide = glide.share;
+    report.details.level_difference = glide.difference;
+    report.details.switch_work = glide.work;
+  } else {
+    body.glide.stop(body.planned.level());
   }
   body.last.remember(contacts.held, body.planned, contacts.force);
-  report.details.glide = glide.share;
-  report.details.level_difference = glide.difference;
-  report.details.switch_work = glide.work;
 }
 
 // what the glide to a finer level begins with, if its factor has just been completed
@@ -324,7 +328,6 @@ Elastostatic::StepReport answer(Body& body, const Contacts& all, const Plan& pla
     work += displace_by_loads_work(body.counts, plan.counts, plan.loads, displace_by_loads(body));
     displaced = body.column_displaced;
   }
-  work += force_work(body.counts.prices, plan.counts);
   if (!find_forces(body, all, plan, *factor, displaced, budget - needed, work)) {
     return held(Status::held_overflow, work);
   }
@@ -358,6 +361,13 @@ Elastostatic::StepReport answer(Body& body, const Contacts& all, const Plan& pla
 // a step whose constraints are checked and whose loads are taken; work: spent on that
 Elastostatic::StepReport carry_out(Body& body, const Contacts& contacts, std::uint64_t work, std::uint64_t budget,
                                    const Elastostatic::Response& response) {
+  if (contacts.held.empty() && !contacts.surfaces.empty()) {
+    // surfaces that touch nothing that moves
+    const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
+    if (!push(body, contacts, {}, {}, nullptr, allowance, work)) {
+      return held(Status::held_overflow, work);
+    }
+  }
   if (contacts.held.empty() && !body.is_loaded) {
     return release(body, response, work);
   }
@@ -365,7 +375,8 @@ Elastostatic::StepReport carry_out(Body& body, const Contacts& contacts, std::ui
   wants.budget = budget - work;
   wants.field = !response.displacement.empty();
   wants.finest_displaced = wants.field ? finest_displaced(body, response) : body.counts.levels - 1;
-  wants.iterations = contacts.are_held() ? 0 : least_iterations(body.counts.iterations);
+  wants.corners = contacts.are_held() ? 0 : contacts.corners();
+  wants.iterations = least_iterations(body.counts.iterations);
   const Plan plan = make_plan(body, contacts.held, wants);
   work += plan.work;
   if (!plan.fits) {
@@ -412,7 +423,8 @@ Elastostatic::UnilateralReport take_step(Body& body, std::span<const UnilateralC
                                          const Elastostatic::UnilateralResponse& response) {
   body.answered = false;
   Status request = check_request(body, surfaces.size(), loads, budget, response);
-  if (request == Status::ok && !response.state.empty() && response.state.size() != surfaces.size()) {
+  const auto fits = [&](std::size_t size) { return size == 0 || size == surfaces.size(); };
+  if (request == Status::ok && !(fits(response.state.size()) && fits(response.gap.size()))) {
     request = Status::held_response_size;
   }
   if (request == Status::ok && body.counts.iterations == 0 && !surfaces.empty()) {
@@ -425,33 +437,28 @@ Elastostatic::UnilateralReport take_step(Body& body, std::span<const UnilateralC
     return {held(request, 0)};
   }
   const Prices& prices = body.counts.prices;
-  const std::uint64_t work =
-      check_unilateral_work(prices, surfaces.size()) + check_contacts_work(prices, surfaces.size());
-  const std::span<const Constraint> holds{body.unilateral.hold, surfaces.size()};
-  CheckedContacts checked = check_unilateral(surfaces, body.unilateral.hold);
+  const std::uint32_t most = body.counts.max_contacts;
+  UnilateralScratch& scratch = body.unilateral;
+  std::uint32_t holds = 0;
+  CheckedContacts checked = list_unilateral(surfaces, body.view->node_count, most, scratch, holds);
+  const std::span<const Constraint> nodes{scratch.hold, holds};
   if (checked.status == Status::ok) {
-    checked = check_contacts(holds, body.view->node_count, body.facts, {body.counts.max_contacts, 0, {}});
+    checked = check_contacts(nodes, body.view->node_count, body.facts, {most, 0, {}});
+    checked.refused = checked.status == Status::ok ? checked.refused : contact_of(scratch, checked.refused);
   }
+  const std::uint64_t work = list_unilateral_work(prices, surfaces.size(), most) + check_contacts_work(prices, most);
   if (checked.status != Status::ok) {
     Elastostatic::StepReport report = held(checked.status, work);
     report.refused = checked.refused;
     return {report};
   }
   Contacts contacts;
-  if (!take_loads(body, holds, loads, response.force, contacts)) {
-    return {held(Status::held_overflow, work)};
-  }
+  take_loads(body, nodes, loads, {}, contacts);
   ContactAnswer found;
-  contacts.surfaces = surfaces;
-  contacts.found = &found;
-  Elastostatic::StepReport report = carry_out(body, contacts, work, budget.work, response);
-  if (answered(report.status)) {
-    if (loads.stiffness != 1) {
-      hand_out_forces(body, holds, contacts, response.force, report);
-    }
-    list_states(surfaces, as_floats(response.force).data(), response.state);
-  }
-  return {report, found.residual, found.iterations};
+  contacts = {nodes,    scratch.hold_force,
+              surfaces, {response.force, response.state, response.gap},
+              &found,   scratch.begin[surfaces.size()]};
+  return {carry_out(body, contacts, work, budget.work, response), found.residual, found.iterations};
 }
 
 }  // namespace

@@ -85,6 +85,7 @@ class Elastostatic {
   /// The answer to unilateral contacts.
   struct UnilateralResponse : Response {
     std::span<ContactState> state;  ///< [contacts] what each does; empty: not wanted
+    std::span<Vec4> gap;            ///< [contacts] m, from where it touches and has not slid; empty: not wanted
   };
 
   struct UnilateralReport : StepReport {

@@ -31,7 +31,8 @@ enum class Status : std::uint8_t {
   held_singular,       ///< the capacitance matrix is not positive definite to working precision
   held_overflow,       ///< the answer would not be finite, or comes too near the largest float
   held_unsupported,    ///< a constraint is of a kind that the solver does not know
-  held_bad_surface,    ///< the normal of a unilateral contact is not of unit length, or its friction is negative
+  held_bad_surface,  ///< of a unilateral contact: its normal is not of unit length, its weights sum to more than 1, or
+                     ///< a number that must not be negative is
 };
 inline constexpr std::size_t statuses = 12;
 

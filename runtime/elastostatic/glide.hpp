@@ -33,6 +33,15 @@ class Glide {
   /// Takes this step's contacts as they are resolved. For the loop; work: within blend's.
   void advance(std::span<const Constraint> contacts, const ContactSet& set, const LastAnswer& last) noexcept;
 
+  /// Ends a glide that is under way: the answer is of one level alone. For the loop; constant work.
+  void stop(std::uint32_t level) noexcept {
+    moving_ = kept_ = fresh_ = foreseen_ = false;
+    left_ = 0;
+    kept_weight_ = 0;
+    foreseen_level_ = layout::none;
+    to_ = level;
+  }
+
   /// Whether the forces of `older_level` are wanted.
   [[nodiscard]] bool follows() const noexcept { return moving_ && !kept_ && cycles_ > 1; }
   [[nodiscard]] std::uint32_t older_level() const noexcept { return from_; }

@@ -11,11 +11,20 @@ namespace greenloop {
 /// The constraints of a step, apart: contacts, and where their forces go.
 struct Contacts {
   std::span<const Constraint> held;
-  float* force = nullptr;                         ///< [3 * held] N, over the stiffness scale
-  std::span<const UnilateralContact> surfaces{};  ///< as many, that they would be if they were held; none: they are
-  ContactAnswer* found = nullptr;                 ///< by solving for these
+  float* force = nullptr;  ///< [3 * held] N, over the stiffness scale
+
+  // if they are unilateral ones: what these are, on the nodes that would be held
+  std::span<const UnilateralContact> surfaces{};
+  UnilateralOutput output{};
+  ContactAnswer* found = nullptr;  ///< null: they are held
+  std::uint32_t corner_count = 0;
 
   [[nodiscard]] bool are_held() const { return found == nullptr; }
+  /// Of unilateral ones, which each count as one at least.
+  [[nodiscard]] std::uint32_t corners() const {
+    const auto contacts = static_cast<std::uint32_t>(surfaces.size());
+    return corner_count > contacts ? corner_count : contacts;
+  }
 };
 
 /// Takes what acts in a step, out of checked constraints, into the body. False if it could overflow the answer. For the

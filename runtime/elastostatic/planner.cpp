@@ -73,7 +73,8 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
   plan.counts = {};
   plan.counts.contacts = task.contacts.size();
   plan.counts.columns = body.planned.columns;
-  plan.counts.iterations = task.contacts.empty() ? 0 : task.iterations;
+  plan.counts.corners = task.contacts.empty() ? 0 : task.corners;
+  plan.counts.iterations = task.iterations;
   plan.cached = body.planned.columns > 0 ? body.cache.find(body.planned.all()) : nullptr;
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;

@@ -13,7 +13,8 @@ struct Wants {
   std::uint64_t budget = 0;
   bool field = false;
   std::uint32_t finest_displaced = 0;  ///< level of the nodes that are displaced
-  std::uint32_t iterations = 0;        ///< at least, over unilateral contacts; 0: contacts are held
+  std::uint32_t corners = 0;           ///< as of SetCounts
+  std::uint32_t iterations = 0;
 };
 
 /// How a step will be answered. Its contacts are resolved in body.planned, whose coefficients are touched if a field is

@@ -64,7 +64,7 @@ std::uint64_t functional_of(const ModelView& view, const ReachBound& reach) {
 // of checking constraints and listing what they are: holds, known forces, and the nodes of masks
 std::uint64_t check_work(const Elastostatic::Limits& limits, const ModelCounts& counts) {
   const std::uint64_t constraints = std::uint64_t{limits.max_contacts} + limits.max_forces;
-  return (limits.iterations > 0 ? check_unilateral_work(counts.prices, limits.max_contacts) : 0) +
+  return (limits.iterations > 0 ? list_unilateral_work(counts.prices, limits.max_contacts, limits.max_contacts) : 0) +
          check_contacts_work(counts.prices, constraints + limits.max_forces) +
          (limits.max_forces > 0 ? list_forces_work(counts.prices, constraints, limits.max_forces) : 0);
 }
@@ -72,7 +72,11 @@ std::uint64_t check_work(const Elastostatic::Limits& limits, const ModelCounts& 
 // of holds and of unilateral contacts, whichever is more
 std::uint64_t most_force_work(const ModelCounts& counts, SetCounts set, std::uint32_t iterations) {
   const std::uint64_t holds = force_work(counts.prices, set);
+  if (iterations == 0) {
+    return holds;
+  }
   set.iterations = iterations;
+  set.corners = counts.max_contacts;
   return larger(holds, force_work(counts.prices, set));
 }
 

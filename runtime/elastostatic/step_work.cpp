@@ -63,8 +63,8 @@ std::uint64_t solve_work(const Prices& prices, std::uint64_t contacts, std::uint
 }
 
 std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept {
-  const std::uint64_t solving = set.iterations == 0 ? solve_work(prices, set.contacts, set.columns)
-                                                    : unilateral_work(prices, set.contacts, set.iterations);
+  const std::uint64_t solving = set.corners == 0 ? solve_work(prices, set.contacts, set.columns)
+                                                 : unilateral_work(prices, set.corners, set.iterations);
   return solving + Glide::blend_work(prices, set.contacts);
 }
 

@@ -5,10 +5,40 @@
 namespace greenloop {
 namespace {
 
-// Of a cone that forces are brought back to: what rounding of their components in space cannot leave.
-constexpr float inside_cone = 1 - 0x1p-20F;
-
 float dot3(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+bool all_finite(const UnilateralContact& c) {
+  float sum = c.friction + c.softness;
+  for (int r = 0; r < 3; ++r) {
+    sum += std::fabs(c.value[r]) + std::fabs(c.normal[r]) + std::fabs(c.force[r]) + std::fabs(c.weight[r]);
+  }
+  return std::isfinite(sum);
+}
+
+Status check_unilateral(const UnilateralContact& c, std::uint32_t node_count, std::uint32_t& corners) {
+  if (!all_finite(c)) {
+    return Status::held_not_finite;
+  }
+  const float square = dot3(c.normal, c.normal);
+  constexpr float least = 0.998F, most = 1.002F, whole = 1.001F;
+  float weights = 0;
+  bool weighted = true;
+  corners = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (c.node[k] == UnilateralContact::none) {
+      continue;
+    }
+    if (c.node[k] >= node_count) {
+      return Status::held_out_of_range;
+    }
+    ++corners;
+    weights += c.weight[k];
+    weighted = weighted && c.weight[k] > 0;
+  }
+  const bool stands = corners > 0 ? weighted && weights <= whole : c.softness > 0;
+  return square >= least && square <= most && c.friction >= 0 && c.softness >= 0 && stands ? Status::ok
+                                                                                           : Status::held_bad_surface;
+}
 
 // a column's block of the compliance with another, out of what a factor keeps: its lower triangle by columns
 Block<3> kept_block(const Factor& factor, std::uint32_t stride, std::uint32_t row, std::uint32_t column) {
@@ -26,13 +56,45 @@ Block<3> kept_block(const Factor& factor, std::uint32_t stride, std::uint32_t ro
   return block;
 }
 
-// displaced: its column, m, without contact forces
-ContactCandidate candidate_of(const UnilateralContact& contact, const float* displaced) {
-  const float scale = 1 / std::sqrt(dot3(contact.normal, contact.normal));
-  float gap[3];
-  for (int r = 0; r < 3; ++r) {
-    gap[r] = without_tiny((displaced == nullptr ? 0 : displaced[r]) - contact.value[r]);
+std::span<const UnilateralCorner> corners_of(const UnilateralScratch& scratch, std::uint32_t contact) {
+  return {scratch.corner + scratch.begin[contact], scratch.corner + scratch.begin[contact + 1]};
+}
+
+// between the points of two contacts
+Block<3> block_between(const UnilateralSet& all, const Factor& factor, std::uint32_t stride,
+                       const UnilateralScratch& scratch, std::uint32_t i, std::uint32_t j) {
+  Block<3> sum{};
+  for (const UnilateralCorner& row : corners_of(scratch, i)) {
+    for (const UnilateralCorner& column : corners_of(scratch, j)) {
+      const Block<3> block = kept_block(factor, stride, all.set.place[row.hold], all.set.place[column.hold]);
+      const Float4 weight = splat(row.weight * column.weight);
+      for (int c = 0; c < 3; ++c) {
+        sum.column[c] += weight * block.column[c];
+      }
+    }
   }
+  return sum;
+}
+
+// whether columns hold all that a contact's point hangs on
+bool is_held(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t contact) {
+  bool held = true;
+  for (const UnilateralCorner& corner : corners_of(scratch, contact)) {
+    held = held && all.set.holds(corner.hold);
+  }
+  return held;
+}
+
+ContactCandidate candidate_of(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t i) {
+  const UnilateralContact& contact = all.contacts[i];
+  Float4 gap = -load_vector<3>(contact.value);
+  for (const UnilateralCorner& corner : corners_of(scratch, i)) {
+    if (all.displaced != nullptr) {
+      gap += splat(corner.weight) * load_vector<3>(all.displaced + std::size_t{3} * all.set.place[corner.hold]);
+    }
+  }
+  gap = without_denormals(gap);
+  const float scale = 1 / std::sqrt(dot3(contact.normal, contact.normal));
   ContactCandidate candidate;
   candidate.gap = {gap[0], gap[1], gap[2], 0};
   candidate.normal = {scale * contact.normal[0], scale * contact.normal[1], scale * contact.normal[2], 0};
@@ -40,137 +102,163 @@ ContactCandidate candidate_of(const UnilateralContact& contact, const float* dis
   return candidate;
 }
 
-Vec4 last_force(const LastAnswer& last, std::uint32_t node) {
-  const std::uint32_t place = last.place(node);
-  if (place == layout::none) {
-    return {};
-  }
-  const float* force = last.force(place);
-  return {force[0], force[1], force[2], 0};
-}
-
 // the contacts that are held as candidates, and the compliance between them; how many
-std::uint32_t gather(const UnilateralSet& all, const Factor& factor, std::uint32_t stride, const LastAnswer& last,
-                     UnilateralScratch& scratch) {
-  const ContactSet& set = all.set;
+std::uint32_t gather(const UnilateralSet& all, const Factor& factor, std::uint32_t stride, UnilateralScratch& scratch) {
   std::uint32_t count = 0;
+  const float share = 1 / all.stiffness;
   for (std::uint32_t i = 0; i < all.contacts.size(); ++i) {
-    if (set.holds(i)) {
-      const float* displaced = all.displaced == nullptr ? nullptr : all.displaced + std::size_t{3} * set.place[i];
-      scratch.candidate[count] = candidate_of(all.contacts[i], displaced);
-      scratch.force[count] = last_force(last, all.contacts[i].node);
+    if (is_held(all, scratch, i)) {
+      const float* guess = all.contacts[i].force;
+      scratch.candidate[count] = candidate_of(all, scratch, i);
+      scratch.force[count] = {share * guess[0], share * guess[1], share * guess[2], 0};
       scratch.contact[count++] = i;
     }
   }
   for (std::uint32_t j = 0; j < count; ++j) {
     Block<3>* const column = scratch.compliance.column(j);
     for (std::uint32_t i = 0; i <= j; ++i) {
-      column[i] = kept_block(factor, stride, set.place[scratch.contact[i]], set.place[scratch.contact[j]]);
+      column[i] = block_between(all, factor, stride, scratch, scratch.contact[i], scratch.contact[j]);
     }
+    // of the surface itself, whose forces are not over the stiffness scale
+    const float softness = all.contacts[scratch.contact[j]].softness * all.stiffness;
+    column[j].column[0] += Float4{softness, 0, 0, 0};
+    column[j].column[1] += Float4{0, softness, 0, 0};
+    column[j].column[2] += Float4{0, 0, softness, 0};
   }
   return count;
 }
 
-// the part of a force along a contact's normal; along: the rest
-float split(const UnilateralContact& contact, const float* force, float (&along)[3]) {
-  const float normal = dot3(contact.normal, force) / dot3(contact.normal, contact.normal);
-  for (int r = 0; r < 3; ++r) {
-    along[r] = force[r] - normal * contact.normal[r];
+void add_to_columns(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t count,
+                    float* column_force) {
+  for (std::uint32_t k = 0; k < 3 * all.set.columns; ++k) {
+    column_force[k] = 0;
   }
-  return normal;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Vec4& force = scratch.force[i];
+    for (const UnilateralCorner& corner : corners_of(scratch, scratch.contact[i])) {
+      float* const sum = column_force + std::size_t{3} * all.set.place[corner.hold];
+      sum[0] += corner.weight * force.x;
+      sum[1] += corner.weight * force.y;
+      sum[2] += corner.weight * force.z;
+    }
+  }
 }
 
 }  // namespace
 
-void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts) noexcept {
+void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes) noexcept {
   hold = arena.take<Constraint>(contacts);
+  corner = arena.take<UnilateralCorner>(contacts);
+  begin = arena.take<std::uint32_t>(contacts + 1);
+  hold_of_node = arena.take<std::uint32_t>(nodes);
+  hold_force = arena.take<float>(std::uint64_t{3} * contacts);
   contact = arena.take<std::uint32_t>(contacts);
   candidate = arena.take<ContactCandidate>(contacts);
   force = arena.take<Vec4>(contacts);
+  gap = arena.take<Vec4>(contacts);
+  state = arena.take<ContactState>(contacts);
   compliance.block = arena.take<Block<3>>(ContactCompliance::size(contacts));
   problem.carve(arena, contacts);
+  for (std::uint32_t node = 0; hold_of_node != nullptr && node < nodes; ++node) {
+    hold_of_node[node] = UnilateralContact::none;
+  }
 }
 
-CheckedContacts check_unilateral(std::span<const UnilateralContact> contacts, Constraint* hold) noexcept {
+CheckedContacts list_unilateral(std::span<const UnilateralContact> contacts, std::uint32_t node_count,
+                                std::uint32_t most, UnilateralScratch& scratch, std::uint32_t& holds) noexcept {
   CheckedContacts result;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const UnilateralContact& contact = contacts[i];
-    const float square = dot3(contact.normal, contact.normal);
-    constexpr float least = 0.998F, most = 1.002F;
-    const bool finite = std::isfinite(square) && std::isfinite(contact.friction);
-    const bool good = square >= least && square <= most && contact.friction >= 0;
-    if (result.status == Status::ok && !(finite && good)) {
-      result.status = finite ? Status::held_bad_surface : Status::held_not_finite;
-      result.refused = static_cast<std::uint32_t>(i);
+  std::uint32_t corners = 0;
+  holds = 0;
+  for (std::uint32_t i = 0; i < contacts.size() && result.status == Status::ok; ++i) {
+    std::uint32_t of_this = 0;
+    result.status = check_unilateral(contacts[i], node_count, of_this);
+    if (result.status == Status::ok && corners + of_this > most) {
+      result.status = Status::held_out_of_range;
     }
-    hold[i] = {contact.node, {contact.value[0], contact.value[1], contact.value[2]}};
+    if (result.status != Status::ok) {
+      result.refused = i;
+      break;
+    }
+    scratch.begin[i] = corners;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t node = contacts[i].node[k];
+      if (node == UnilateralContact::none) {
+        continue;
+      }
+      std::uint32_t& place = scratch.hold_of_node[node];
+      if (place == UnilateralContact::none) {
+        place = holds;
+        scratch.hold[holds++] = {node, {}};
+      }
+      scratch.corner[corners++] = {place, contacts[i].weight[k]};
+    }
+    scratch.begin[i + 1] = corners;
+  }
+  for (std::uint32_t i = 0; i < holds; ++i) {
+    scratch.hold_of_node[scratch.hold[i].node] = UnilateralContact::none;
   }
   return result;
 }
 
-std::uint64_t unilateral_iteration_work(const Prices&, std::uint64_t contacts) noexcept {
-  return ContactProblem::iteration_work(contacts);
+std::uint32_t contact_of(const UnilateralScratch& scratch, std::uint32_t hold) noexcept {
+  std::uint32_t corner = 0;
+  while (scratch.corner[corner].hold != hold) {
+    ++corner;
+  }
+  std::uint32_t contact = 0;
+  while (scratch.begin[contact + 1] <= corner) {
+    ++contact;
+  }
+  return contact;
 }
 
-std::uint64_t unilateral_work(const Prices& prices, std::uint64_t contacts, std::uint64_t iterations) noexcept {
-  return priced(contacts, prices.solved_contact) + priced(9 * ContactCompliance::size(contacts), prices.appended) +
-         ContactProblem::least_work(contacts) + (iterations - 1) * unilateral_iteration_work(prices, contacts);
+std::uint64_t gather_unilateral_work(const Prices& prices, std::uint64_t corners) noexcept {
+  return priced(corners, prices.solved_contact) + priced(9 * ContactCompliance::size(corners), prices.appended);
+}
+
+std::uint64_t unilateral_work(const Prices& prices, std::uint64_t corners, std::uint64_t iterations) noexcept {
+  return gather_unilateral_work(prices, corners) + ContactProblem::least_work(corners) +
+         (iterations - 1) * ContactProblem::iteration_work(corners);
 }
 
 ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, std::uint32_t stride,
-                               const LastAnswer& last, const ContactAccuracy& accuracy, UnilateralScratch& scratch,
+                               const ContactAccuracy& accuracy, std::uint64_t allowance, UnilateralScratch& scratch,
                                float* column_force) noexcept {
-  const ContactSet& set = all.set;
-  const std::uint32_t count = gather(all, factor, stride, last, scratch);
-  constexpr std::uint64_t any = ~std::uint64_t{0};
-  const ContactAnswer answer = scratch.problem.solve({scratch.candidate, count}, scratch.compliance, accuracy, any,
-                                                     {scratch.force, count}, {}, {});
-  for (std::uint32_t k = 0; k < 3 * set.columns; ++k) {
-    column_force[k] = 0;
+  const std::uint32_t count = gather(all, factor, stride, scratch);
+  ContactAnswer answer;
+  answer.valid = true;
+  if (count > 0) {
+    answer = scratch.problem.solve({scratch.candidate, count}, scratch.compliance, accuracy, allowance,
+                                   {scratch.force, count}, {scratch.state, count}, {scratch.gap, count});
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    float* const sum = column_force + std::size_t{3} * set.place[scratch.contact[i]];
-    sum[0] += scratch.force[i].x;
-    sum[1] += scratch.force[i].y;
-    sum[2] += scratch.force[i].z;
-  }
+  add_to_columns(all, scratch, count, column_force);
   return answer;
 }
 
-void unilateral_forces(const UnilateralScratch& scratch, const ContactSet& set, std::size_t contacts,
-                       float* force) noexcept {
+void hand_out_unilateral(const UnilateralSet& all, UnilateralScratch& scratch,
+                         const UnilateralOutput& output) noexcept {
+  const auto contacts = static_cast<std::uint32_t>(all.contacts.size());
+  for (std::uint32_t k = 0; k < 3 * scratch.begin[contacts]; ++k) {
+    scratch.hold_force[k] = 0;
+  }
   std::uint32_t held = 0;
-  for (std::size_t i = 0; i < contacts; ++i) {
-    const Vec4 f = set.holds(i) ? scratch.force[held++] : Vec4{};
-    force[3 * i] = f.x;
-    force[3 * i + 1] = f.y;
-    force[3 * i + 2] = f.z;
-  }
-}
-
-void push_only(std::span<const UnilateralContact> contacts, float* force) noexcept {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    float* const f = force + 3 * i;
-    float along[3];
-    const float part = split(contacts[i], f, along);
-    const float normal = part > 0 ? part : 0;
-    const float size = std::sqrt(dot3(along, along));
-    const float most = contacts[i].friction * normal * inside_cone;
-    const float scale = size <= most ? 1 : most / size;
-    for (int r = 0; r < 3; ++r) {
-      f[r] = normal * contacts[i].normal[r] + scale * along[r];
+  for (std::uint32_t i = 0; i < contacts; ++i) {
+    const bool waits = !is_held(all, scratch, i);
+    const Vec4 f = waits ? Vec4{} : scratch.force[held];
+    for (const UnilateralCorner& corner : corners_of(scratch, i)) {
+      float* const sum = scratch.hold_force + std::size_t{3} * corner.hold;
+      sum[0] += corner.weight * f.x;
+      sum[1] += corner.weight * f.y;
+      sum[2] += corner.weight * f.z;
     }
-  }
-}
-
-void list_states(std::span<const UnilateralContact> contacts, const float* force,
-                 std::span<ContactState> state) noexcept {
-  constexpr float nearly = 1 - 0x1p-16F;
-  for (std::size_t i = 0; i < state.size(); ++i) {
-    float along[3];
-    const float normal = split(contacts[i], force + 3 * i, along);
-    const bool slips = std::sqrt(dot3(along, along)) >= nearly * contacts[i].friction * normal;
-    state[i] = !(normal > 0) ? ContactState::open : slips ? ContactState::slip : ContactState::stick;
+    output.force[i] = {all.stiffness * f.x, all.stiffness * f.y, all.stiffness * f.z};
+    if (!output.state.empty()) {
+      output.state[i] = waits ? ContactState::open : scratch.state[held];
+    }
+    if (!output.gap.empty()) {
+      output.gap[i] = waits ? Vec4{} : scratch.gap[held];
+    }
+    held += waits ? 0 : 1;
   }
 }
 

@@ -58,10 +58,14 @@ Vector3d value_of(const UnilateralContact& c) { return {c.value[0], c.value[1], 
 
 UnilateralContact contact_at(std::uint32_t node, const Vector3d& normal, const Vector3d& value, double friction) {
   const Vector3d n = normal.normalized();
-  return {node,
-          {static_cast<float>(value.x()), static_cast<float>(value.y()), static_cast<float>(value.z())},
-          {static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z())},
-          static_cast<float>(friction)};
+  UnilateralContact contact;
+  contact.node[0] = node;
+  for (int r = 0; r < 3; ++r) {
+    contact.value[r] = static_cast<float>(value(r));
+    contact.normal[r] = static_cast<float>(n(r));
+  }
+  contact.friction = static_cast<float>(friction);
+  return contact;
 }
 
 // surfaces that push into a patch of the sphere from outside and drag it along, the nodes at its rim from some way off
@@ -106,8 +110,8 @@ MatrixXd compliance_of(const TestModel& model, const DenseReference& reference,
   MatrixXd a(3 * n, 3 * n);
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
-      const Index row = column_place(column_of(model.view(), facts.data(), contacts[i].node, finest));
-      const Index column = column_place(column_of(model.view(), facts.data(), contacts[j].node, finest));
+      const Index row = column_place(column_of(model.view(), facts.data(), contacts[i].node[0], finest));
+      const Index column = column_place(column_of(model.view(), facts.data(), contacts[j].node[0], finest));
       a.block<3, 3>(3 * i, 3 * j) = reference.compliance(finest).block<3, 3>(3 * row, 3 * column);
     }
   }
@@ -181,8 +185,8 @@ TEST_CASE("contacts that stick and all press are held ones") {
   auto contacts = pushed_patch(model, 6, 1e-3, 0, 1e4);
   std::vector<Constraint> holds;
   for (UnilateralContact& contact : contacts) {
-    for (int r = 0; r < 3; ++r) contact.value[r] = -1e-3F * node_record(model.view(), contact.node).position[r];
-    holds.push_back({contact.node, {contact.value[0], contact.value[1], contact.value[2]}});
+    for (int r = 0; r < 3; ++r) contact.value[r] = -1e-3F * node_record(model.view(), contact.node[0]).position[r];
+    holds.push_back({contact.node[0], {contact.value[0], contact.value[1], contact.value[2]}});
   }
   PushedBody body(model, limits);
   REQUIRE(body.step(contacts).status == Status::ok);
@@ -231,7 +235,7 @@ TEST_CASE("the field is that of the forces, and contacts that touch stand on the
   const auto contacts = pushed_patch(model, 24, 1e-3, 0, 0.2);
   REQUIRE(body.step(contacts).status == Status::ok);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const double gap = (body.displacement(contacts[i].node) - value_of(contacts[i])).dot(normal_of(contacts[i]));
+    const double gap = (body.displacement(contacts[i].node[0]) - value_of(contacts[i])).dot(normal_of(contacts[i]));
     CHECK(gap >= -1e-6);
     if (body.state()[i] != ContactState::open) CHECK(gap <= 1e-6);
   }
@@ -255,8 +259,12 @@ TEST_CASE("a surface without a unit normal, with negative friction or without a 
   refused([](UnilateralContact& c) { c.friction = nan; }, Status::held_not_finite);
   refused([](UnilateralContact& c) { c.normal[1] = nan; }, Status::held_not_finite);
   refused([](UnilateralContact& c) { c.value[1] = nan; }, Status::held_not_finite);
-  refused([](UnilateralContact& c) { c.node = 1 << 20; }, Status::held_out_of_range);
-  refused([&](UnilateralContact& c) { c.node = good[0].node; }, Status::held_duplicate);
+  refused([](UnilateralContact& c) { c.node[0] = 1 << 20; }, Status::held_out_of_range);
+  refused([](UnilateralContact& c) { c.softness = -1; }, Status::held_bad_surface);
+  refused([](UnilateralContact& c) { c.weight[0] = 1.1F; }, Status::held_bad_surface);
+  refused([](UnilateralContact& c) { c.weight[0] = 0; }, Status::held_bad_surface);
+  refused([](UnilateralContact& c) { c.node[0] = UnilateralContact::none; }, Status::held_bad_surface);
+  refused([](UnilateralContact& c) { c.force[2] = nan; }, Status::held_not_finite);
   PushedBody holds_only(model, {.max_contacts = 8});
   CHECK(holds_only.step(good).status == Status::held_unsupported);
   CHECK(body.step(good).status == Status::ok);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/contact/contact_problem.hpp"
+#include "runtime/friction/contact_problem.hpp"
 
 namespace greenloop {
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "runtime/contact/contact_compliance.hpp"
-#include "runtime/contact/friction.hpp"
+#include "runtime/friction/contact_compliance.hpp"
+#include "runtime/friction/friction.hpp"
 #include "runtime/memory/arena.hpp"
 
 namespace greenloop {

@@ -1,4 +1,4 @@
-#include "runtime/contact/contact_newton.hpp"
+#include "runtime/friction/contact_newton.hpp"
 
 #include <cmath>
 

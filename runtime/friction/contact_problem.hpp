@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime/contact/contact_compliance.hpp"
-#include "runtime/contact/contact_newton.hpp"
-#include "runtime/contact/friction.hpp"
+#include "runtime/friction/contact_compliance.hpp"
+#include "runtime/friction/contact_newton.hpp"
+#include "runtime/friction/friction.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/vec.hpp"
 

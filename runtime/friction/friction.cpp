@@ -1,4 +1,4 @@
-#include "runtime/contact/friction.hpp"
+#include "runtime/friction/friction.hpp"
 
 #include <cfloat>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "runtime/contact/contact_problem.hpp"
+#include "runtime/friction/contact_problem.hpp"
 
 #include <doctest/doctest.h>
 

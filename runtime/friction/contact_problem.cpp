@@ -1,4 +1,4 @@
-#include "runtime/contact/contact_problem.hpp"
+#include "runtime/friction/contact_problem.hpp"
 
 #include <algorithm>
 #include <cfloat>

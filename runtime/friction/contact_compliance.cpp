@@ -1,4 +1,4 @@
-#include "runtime/contact/contact_compliance.hpp"
+#include "runtime/friction/contact_compliance.hpp"
 
 namespace greenloop {
 
