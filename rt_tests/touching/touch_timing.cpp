@@ -49,7 +49,7 @@ std::vector<Pair> slides(const DeformedSurface& surface, std::size_t steps) {
     for (std::size_t k = 0; k < 2; ++k) {
       way[k] = unit(way[k] + 0.1 * Double3{between(-1, 1), between(-1, 1), between(-1, 1)});
       std::uint64_t work = 0;
-      const SurfacePoint point = surface.closest(at[k] + step_length * way[k], layout::none, work).point;
+      const TrianglePoint point = surface.closest(at[k] + step_length * way[k], layout::none, work).point;
       at[k] = surface.position(point) + (tip - depth) * surface.normal(point, work);
       way[k] = unit(way[k] - dot(way[k], surface.normal(point, work)) * surface.normal(point, work));
     }

@@ -195,7 +195,6 @@ void CandidateSearch::look_at_points(const Step& step, std::uint64_t& work) noex
 
 void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Proxy& proxy) noexcept {
   const auto& [a, b, c] = step.surface.triangle(proxy.point().triangle).node;
-  if (!step.surface.is_touchable(a) && !step.surface.is_touchable(b) && !step.surface.is_touchable(c)) return;
   const double* w = proxy.point().weight;
   const Double3 motion = step.present.to_tool(proxy.position()) - step.last.to_tool(proxy.position());
   take({.node = {a, b, c},

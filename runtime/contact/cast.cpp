@@ -98,7 +98,7 @@ class View {
 double area(const View::Seen& a, const View::Seen& b) { return a.right * b.up - a.up * b.right; }
 
 struct Crossing {
-  SurfacePoint point;
+  TrianglePoint point;
   double share = 2;  ///< of the way; more than 1: none
 };
 
@@ -124,7 +124,7 @@ class Cast {
     }
   }
 
-  [[nodiscard]] const SurfacePoint& first() const { return first_.point; }
+  [[nodiscard]] const TrianglePoint& first() const { return first_.point; }
 
  private:
   const DeformedSurface& surface_;
@@ -135,7 +135,7 @@ class Cast {
 };
 
 // whether a triangle has all the corners of the one that a point lies in where the point has a weight
-bool has(const Surface::Triangle& triangle, const Surface::Triangle& of, const SurfacePoint& point) {
+bool has(const Surface::Triangle& triangle, const Surface::Triangle& of, const TrianglePoint& point) {
   for (int k = 0; k < 3; ++k) {
     const auto& node = triangle.node;
     if (point.weight[k] > 0 && node[0] != of.node[k] && node[1] != of.node[k] && node[2] != of.node[k]) return false;
@@ -145,7 +145,7 @@ bool has(const Surface::Triangle& triangle, const Surface::Triangle& of, const S
 
 }  // namespace
 
-SurfacePoint cast(const DeformedSurface& surface, const Double3& from, const Double3& to, const SurfacePoint& left,
+TrianglePoint cast(const DeformedSurface& surface, const Double3& from, const Double3& to, const TrianglePoint& left,
                   std::uint64_t& work) noexcept {
   work += SurfacePrices::query;
   const double slack = relative_slack * surface.extent();

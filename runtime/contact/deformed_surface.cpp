@@ -65,10 +65,24 @@ void DeformedSurface::carve(Arena& arena, const SurfaceParts& parts) noexcept {
   around_ = arena.take<std::uint32_t>(corners);
 }
 
-std::size_t DeformedSurface::required(const Surface& surface) noexcept {
+std::size_t DeformedSurface::required(const Surface& surface) noexcept { return bytes_of(surface.parts()); }
+
+std::size_t DeformedSurface::required(const Model& model, std::uint32_t level) noexcept {
+  const ModelView& view = model.view();
+  if (level >= view.levels) return 0;
+  SurfaceParts parts;
+  parts.level = level;
+  parts.base_triangles = view.level[0].counts->base_triangle_count;
+  parts.node_count[level] = view.level[level].node_begin + view.level[level].counts->node_count;
+  Arena counting;
+  parts.tree.carve(counting, parts.base_triangles << (2 * level));
+  return bytes_of(parts);
+}
+
+std::size_t DeformedSurface::bytes_of(const SurfaceParts& parts) noexcept {
   Arena arena;
   DeformedSurface counted;
-  counted.carve(arena, surface.parts());
+  counted.carve(arena, parts);
   const bool* const is_owned = arena.take<bool>(counted.node_count());
   return is_owned == nullptr ? static_cast<std::size_t>(arena.bytes()) : 0;
 }
@@ -167,7 +181,7 @@ std::uint64_t DeformedSurface::update_work() const noexcept {
          (first_patch_ + std::uint64_t{1}) * SurfacePrices::patch;
 }
 
-Double3 DeformedSurface::position(const SurfacePoint& point) const noexcept {
+Double3 DeformedSurface::position(const TrianglePoint& point) const noexcept {
   const auto& [a, b, c] = triangle(point.triangle).node;
   return point.weight[0] * position(a) + point.weight[1] * position(b) + point.weight[2] * position(c);
 }
@@ -190,7 +204,7 @@ Double3 DeformedSurface::node_normal(std::uint32_t node, std::uint64_t& work) co
   return unit(sum);
 }
 
-Double3 DeformedSurface::normal(const SurfacePoint& point, std::uint64_t& work) const noexcept {
+Double3 DeformedSurface::normal(const TrianglePoint& point, std::uint64_t& work) const noexcept {
   const Double3 at = position(point);
   const bool is_corner = (point.weight[0] > 0) + (point.weight[1] > 0) + (point.weight[2] > 0) == 1;
   Double3 sum;

@@ -11,13 +11,13 @@
 namespace greenloop {
 
 /// A point of a surface by its own coordinates, which stay when the surface is deformed.
-struct SurfacePoint {
+struct TrianglePoint {
   std::uint32_t triangle = layout::none;  ///< of the surface's own level; none: there is no such point
   double weight[3] = {};                  ///< of its corners, in 0..1 with sum 1
 };
 
 struct ClosestSurfacePoint {
-  SurfacePoint point;
+  TrianglePoint point;
   double squared_distance = 0;  ///< m^2
 };
 
@@ -42,8 +42,9 @@ class DeformedSurface {
   /// Of no use before `create`.
   DeformedSurface() = default;
 
-  /// Bytes. Start-up; constant work.
+  /// Bytes, for a surface or for the one that Surface::create makes of a model and a level. Start-up; constant work.
   [[nodiscard]] static std::size_t required(const Surface& surface) noexcept;
+  [[nodiscard]] static std::size_t required(const Model& model, std::uint32_t level) noexcept;
 
   /// Carves `memory`, 64-byte aligned, with the routine that `required` counts with; the surface is at rest. Start-up;
   /// linear in the triangles.
@@ -70,7 +71,7 @@ class DeformedSurface {
     const Vec4& u = displacement_[node];
     return rest + Double3{u.x, u.y, u.z};
   }
-  [[nodiscard]] Double3 position(const SurfacePoint& point) const noexcept;
+  [[nodiscard]] Double3 position(const TrianglePoint& point) const noexcept;
 
   /// Outward unit normals: of a triangle; of a node, the mean of the triangles' around it by area; of a point of the
   /// surface, the triangle's or, on an edge or a corner, that by whose side inside and outside are told apart for what
@@ -78,7 +79,7 @@ class DeformedSurface {
   /// Work: a `triangle` for each triangle around it, at most surround_work(), is added to `work`.
   [[nodiscard]] Double3 triangle_normal(std::uint32_t t) const noexcept;
   [[nodiscard]] Double3 node_normal(std::uint32_t node, std::uint64_t& work) const noexcept;
-  [[nodiscard]] Double3 normal(const SurfacePoint& point, std::uint64_t& work) const noexcept;
+  [[nodiscard]] Double3 normal(const TrianglePoint& point, std::uint64_t& work) const noexcept;
   [[nodiscard]] std::uint64_t surround_work() const noexcept {
     return SurfacePrices::query + most_around_ * SurfacePrices::triangle + around_work();
   }
@@ -122,7 +123,7 @@ class DeformedSurface {
   /// Calls visit(triangle) for all that a point of the surface lies in: itself, those at an edge, those around a node.
   /// Work: at most around_work().
   template <class Visit>
-  void visit_around(const SurfacePoint& point, Visit visit) const noexcept;
+  void visit_around(const TrianglePoint& point, Visit visit) const noexcept;
 
  private:
   static constexpr std::uint32_t halvings_within = 2;  ///< of the tree, between a patch and its leaves
@@ -133,6 +134,7 @@ class DeformedSurface {
     std::uint32_t begin, own_end, end;
   };
 
+  [[nodiscard]] static std::size_t bytes_of(const SurfaceParts& parts) noexcept;
   void carve(Arena& arena, const SurfaceParts& parts) noexcept;
   void list_nodes(bool* is_owned) noexcept;
   void list_surroundings() noexcept;
@@ -175,7 +177,7 @@ void DeformedSurface::visit(Enters enters, Look look) const noexcept {
 }
 
 template <class Visit>
-void DeformedSurface::visit_around(const SurfacePoint& point, Visit visit) const noexcept {
+void DeformedSurface::visit_around(const TrianglePoint& point, Visit visit) const noexcept {
   const auto& corner = triangle(point.triangle).node;
   const auto has = [&](std::uint32_t t, std::uint32_t node) {
     const auto& [a, b, c] = triangle(t).node;

@@ -89,7 +89,7 @@ TEST_CASE("deformed surface: what is on the closest point's outer side is outsid
         const double winding = winding_number(body.surface, from);
         REQUIRE(std::abs(winding - std::round(winding)) < 1e-6);
         std::uint64_t work = 0;
-        const SurfacePoint point = body.surface.closest(from, layout::none, work).point;
+        const TrianglePoint point = body.surface.closest(from, layout::none, work).point;
         work = 0;
         const double height = dot(from - body.surface.position(point), body.surface.normal(point, work));
         CHECK(work <= body.surface.surround_work());
@@ -134,7 +134,7 @@ TEST_CASE("deformed surface: the patches have every triangle once and own every 
 
 TEST_CASE("deformed surface: the triangles around a point are those that it lies in") {
   const DeformedBody body({.levels = 3});
-  const auto around = [&](const SurfacePoint& point) {
+  const auto around = [&](const TrianglePoint& point) {
     std::vector<std::uint32_t> found;
     body.surface.visit_around(point, [&](std::uint32_t t) { found.push_back(t); });
     return found;

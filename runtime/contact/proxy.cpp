@@ -10,7 +10,7 @@ namespace {
 // m: nearer to the surface the direction to it is lost in rounding
 constexpr double touching = 1e-9;
 
-bool is_inside_triangle(const SurfacePoint& point) {
+bool is_inside_triangle(const TrianglePoint& point) {
   return point.weight[0] > 0 && point.weight[1] > 0 && point.weight[2] > 0;
 }
 
@@ -51,7 +51,7 @@ void Proxy::enter(const DeformedSurface& surface, const Double3& to, std::uint64
     is_held_ = true;
     return;
   }
-  const SurfacePoint entered = cast(surface, last_, to, {}, work);
+  const TrianglePoint entered = cast(surface, last_, to, {}, work);
   if (entered.triangle == layout::none) return;
   is_held_ = true;
   point_ = entered;
@@ -62,7 +62,7 @@ void Proxy::follow(const DeformedSurface& surface, const Double3& to, std::uint6
   for (int landing = 0; landing < most_landings; ++landing) {
     is_nearest_ = slide(surface, to, work);
     if (!is_nearest_ || side(surface, to, work) < 0) return;
-    const SurfacePoint entered = cast(surface, surface.position(point_), to, point_, work);
+    const TrianglePoint entered = cast(surface, surface.position(point_), to, point_, work);
     if (entered.triangle == layout::none) {
       is_held_ = false;
       return;
@@ -78,7 +78,7 @@ bool Proxy::slide(const DeformedSurface& surface, const Double3& to, std::uint64
   work += SurfacePrices::triangle;
   bool is_nearest = false;
   for (std::uint32_t i = 0; i < most_slides && !is_nearest; ++i) {
-    const SurfacePoint here = best.point;
+    const TrianglePoint here = best.point;
     is_nearest = true;
     work += surface.around_work();
     surface.visit_around(here, [&](std::uint32_t t) {

@@ -26,7 +26,7 @@ class Proxy {
   /// Whether the tool's point is behind the surface.
   [[nodiscard]] bool is_held() const noexcept { return is_held_; }
   /// On the surface; triangle none: it is far away.
-  [[nodiscard]] const SurfacePoint& point() const noexcept { return point_; }
+  [[nodiscard]] const TrianglePoint& point() const noexcept { return point_; }
   // As of the last move, of use only if there is a point:
   [[nodiscard]] const Double3& position() const noexcept { return position_; }  ///< m, of the point of the surface
   /// Out of the body: between that and the tool's point, or of the surface there where these are not apart.
@@ -48,7 +48,7 @@ class Proxy {
   bool is_placed_ = false, is_held_ = false;
   bool is_nearest_ = false;  ///< of the places around it
   Double3 last_;             ///< m, of the tool's point
-  SurfacePoint point_;
+  TrianglePoint point_;
   Double3 position_, normal_;
   double height_ = 0;
 };

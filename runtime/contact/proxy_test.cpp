@@ -24,16 +24,16 @@ struct Follower {
   Proxy proxy;
 };
 
-SurfacePoint cast(const DeformedBody& body, const Double3& from, const Double3& to) {
+TrianglePoint cast(const DeformedBody& body, const Double3& from, const Double3& to) {
   std::uint64_t work = 0;
-  const SurfacePoint point = cast(body.surface, from, to, {}, work);
+  const TrianglePoint point = cast(body.surface, from, to, {}, work);
   CHECK(work <= cast_work(body.surface));
   return point;
 }
 
 TEST_CASE("cast: a way enters where it first meets the surface from outside, and not where it leaves") {
   const DeformedBody body({.levels = 4});
-  const SurfacePoint point = cast(body, {0.2, 0.001, 0.002}, {-0.2, 0.001, 0.002});
+  const TrianglePoint point = cast(body, {0.2, 0.001, 0.002}, {-0.2, 0.001, 0.002});
   REQUIRE(point.triangle != layout::none);
   const Double3 at = body.surface.position(point);
   CHECK(at.x > 0.09);
@@ -52,7 +52,7 @@ TEST_CASE("cast: no way leads through corners, edges and what lies between, from
   for (std::uint32_t t = 0; t < body.surface.triangle_count(); ++t) {
     for (int i = 0; i < 60; ++i) {
       const double a = i % 3 == 0 ? 1 : share(random), b = i % 3 == 2 ? share(random) * (1 - a) : 1 - a;
-      const Double3 goal = body.surface.position(SurfacePoint{t, {a, b, 1 - a - b}});
+      const Double3 goal = body.surface.position(TrianglePoint{t, {a, b, 1 - a - b}});
       const Double3 outside = 0.3 * unit(goal + 0.05 * Double3{anywhere(random), anywhere(random), anywhere(random)});
       const Double3 inside = goal + 0.1 * (goal - outside);
       if (!(norm(inside) < 0.09)) continue;
@@ -64,7 +64,7 @@ TEST_CASE("cast: no way leads through corners, edges and what lies between, from
 
 TEST_CASE("cast: of a way from a point of the surface the triangles there are passed over") {
   const DeformedBody body({.levels = 3});
-  const SurfacePoint corner{7, {1, 0, 0}};
+  const TrianglePoint corner{7, {1, 0, 0}};
   const Double3 at = body.surface.position(corner);
   std::uint64_t work = 0;
   CHECK(cast(body.surface, at, 0.5 * at, {}, work).triangle != layout::none);

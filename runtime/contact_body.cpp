@@ -1,0 +1,375 @@
+#include "runtime/contact_body.hpp"
+
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include "runtime/contact_body/touched_body.hpp"
+#include "runtime/memory/arena.hpp"
+
+namespace greenloop {
+namespace {
+
+// instructions of x86-64, for each contact and tool: from a candidate to a contact and from its answer back
+constexpr std::uint64_t contact_price = 400;
+constexpr std::uint64_t tool_price = 300;
+
+bool in_range(const ContactBody::Limits& limits) {
+  const Elastostatic::Limits& body = limits.elastostatic;
+  return limits.max_tools >= 1 && limits.max_tools <= 16 && limits.max_points >= 1 &&
+         limits.max_points <= Shape::max_points && std::isfinite(limits.margin) && limits.margin >= 0 &&
+         std::isfinite(limits.rigid_stiffness) && limits.rigid_stiffness >= 0 && body.iterations > 0 &&
+         !body.forces_only;
+}
+
+// of all triangles of the finest level, at rest
+double mean_edge(const Surface& surface, Vec4* normal) {
+  const std::uint32_t level = surface.level();
+  const std::uint32_t nodes = surface.node_count(level);
+  auto* area = reinterpret_cast<float*>(normal);
+  if (!surface.areas(level, {}, {area, nodes})) return 0;
+  double sum = 0;
+  for (std::uint32_t i = 0; i < nodes; ++i) sum += double{area[i]};
+  constexpr double equilateral = 0.4330127018922193;  // area of a triangle with unit edges
+  return std::sqrt(sum / (equilateral * surface.triangle_count(level)));
+}
+
+// memory that a part carves itself
+std::span<std::byte> piece(Arena& arena, std::size_t bytes) { return {arena.take<std::byte>(bytes), bytes}; }
+
+CandidateSearch::Limits search_limits(const ContactBody::Limits& limits, double margin) {
+  return {limits.max_tools, limits.max_points, limits.elastostatic.max_contacts, margin};
+}
+
+void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& limits, TouchedBody& body) {
+  body.nodes = model.node_count();
+  body.max_contacts = limits.elastostatic.max_contacts;
+  body.max_tools = limits.max_tools;
+  body.tool = arena.take<Tool>(limits.max_tools);
+  body.placement = arena.take<Placement>(limits.max_tools);
+  body.candidate = arena.take<Candidate>(body.max_contacts);
+  body.contact = arena.take<UnilateralContact>(body.max_contacts);
+  body.stick_place = arena.take<Double3>(body.max_contacts);
+  body.force = arena.take<Vec3>(body.max_contacts);
+  body.gap = arena.take<Vec4>(body.max_contacts);
+  body.state = arena.take<ContactState>(body.max_contacts);
+  body.answered = arena.take<ContactBody::Contact>(body.max_contacts);
+  body.tool_answer = arena.take<ContactBody::ToolAnswer>(limits.max_tools);
+  body.displacement = arena.take_zeroed<Vec4>(body.nodes);
+  body.grips.carve(arena, body.max_contacts);
+}
+
+bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& limits, TouchedBody& body) {
+  const std::uint32_t finest = model.level_count() - 1;
+  const auto surface = piece(arena, Surface::required(model, finest).bytes);
+  const auto elastostatic = piece(arena, Elastostatic::required(model, limits.elastostatic).bytes);
+  const auto deformed = piece(arena, DeformedSurface::required(model, finest));
+  const auto search = piece(arena, CandidateSearch::required(search_limits(limits, 0)));
+  if (surface.data() == nullptr) return true;  // it only counts
+  const auto made_surface = Surface::create(model, finest, surface);
+  const auto made_body = Elastostatic::create(model, limits.elastostatic, elastostatic);
+  if (!made_surface || !made_body) return false;
+  const auto made_deformed = DeformedSurface::create(made_surface.surface, deformed);
+  if (!made_deformed) return false;
+  body.surface = made_surface.surface;
+  body.deformed = made_deformed.surface;
+  body.elastostatic = made_body.body;
+  body.mean_edge = mean_edge(body.surface, body.displacement);
+  const double margin = limits.margin > 0 ? limits.margin : 0.25 * body.mean_edge;
+  for (std::uint32_t i = 0; i < body.nodes; ++i) body.displacement[i] = {};
+  const auto made_search = CandidateSearch::create(search_limits(limits, margin), search);
+  if (!made_search) return false;
+  body.search = made_search.search;
+  return true;
+}
+
+// how much a place that cannot move gives way
+float rigid_softness(const Model& model, const ContactBody::Limits& limits) {
+  constexpr double depth = 1e-3;  // m
+  const double stiffness = limits.rigid_stiffness > 0 ? limits.rigid_stiffness : model.view().info->young * depth;
+  return static_cast<float>(1 / stiffness);
+}
+
+// displacement of a candidate's point that its touchable corners have a part in
+Double3 pushed_displacement(const TouchedBody& body, const Candidate& candidate) {
+  Double3 sum;
+  for (int k = 0; k < 3 && candidate.node[k] != layout::none; ++k) {
+    const Vec4& u = body.displacement[candidate.node[k]];
+    if (body.deformed.is_touchable(candidate.node[k])) sum += candidate.weight[k] * Double3{u.x, u.y, u.z};
+  }
+  return sum;
+}
+
+void put(float (&to)[3], const Double3& from) {
+  to[0] = static_cast<float>(from.x);
+  to[1] = static_cast<float>(from.y);
+  to[2] = static_cast<float>(from.z);
+}
+
+// touchable corners of a candidate; how many
+std::uint32_t put_corners(const TouchedBody& body, const Candidate& candidate, UnilateralContact& contact) {
+  std::uint32_t corners = 0;
+  for (int k = 0; k < 3 && candidate.node[k] != layout::none; ++k) {
+    const auto weight = static_cast<float>(candidate.weight[k]);
+    if (weight > 0 && body.deformed.is_touchable(candidate.node[k])) {
+      contact.node[corners] = candidate.node[k];
+      contact.weight[corners++] = weight;
+    }
+  }
+  return corners;
+}
+
+// where a contact's point has to go to stand on the tool where it touched it, without slipping, from where it is
+Double3 way_to_stick(const Candidate& candidate, const Placement& placement, const Grip* grip) {
+  const Double3& n = candidate.normal;
+  const Double3 out = -candidate.gap * n;
+  if (grip == nullptr) return out;
+  const Double3 way = placement.to_model(grip->anchor) - candidate.position;
+  return out + way - dot(n, way) * n;
+}
+
+// stick_place: m, where its point stands if it does not slip
+UnilateralContact contact_of(const TouchedBody& body, const Candidate& candidate, const Grip* grip, double friction,
+                             Double3& stick_place) {
+  UnilateralContact contact;
+  const std::uint32_t corners = put_corners(body, candidate, contact);
+  const Double3 way = way_to_stick(candidate, body.placement[candidate.tool], grip);
+  stick_place = candidate.position + way;
+  put(contact.value, pushed_displacement(body, candidate) + way);
+  put(contact.normal, candidate.normal);
+  contact.friction = static_cast<float>(friction);
+  contact.softness = corners > 0 ? 0 : body.rigid_softness;
+  if (grip != nullptr) {
+    contact.force[0] = grip->force.x;
+    contact.force[1] = grip->force.y;
+    contact.force[2] = grip->force.z;
+  }
+  return contact;
+}
+
+std::uint32_t corners_of(const TouchedBody& body, const Candidate& candidate) {
+  UnilateralContact contact;
+  const std::uint32_t corners = put_corners(body, candidate, contact);
+  return corners > 0 ? corners : 1;
+}
+
+// Whether nodes alone say where the candidate's tool touches: it is larger than the triangles, and some can be pushed.
+bool is_said_by_nodes(const TouchedBody& body, const Candidate& candidate) {
+  if (candidate.triangle == layout::none) return false;
+  UnilateralContact contact;
+  return body.tool[candidate.tool].shape.point_radius() >= 2 * body.mean_edge &&
+         put_corners(body, candidate, contact) > 0;
+}
+
+// A point of a tool stays where it sticks to the surface, instead of sliding to the nearest place.
+void hold_place(const TouchedBody& body, const Grip* grip, Candidate& candidate) {
+  if (grip == nullptr || !grip->sticks || candidate.triangle == layout::none) return;
+  Double3 place;
+  for (int k = 0; k < 3; ++k) {
+    candidate.node[k] = grip->node[k];
+    candidate.weight[k] = grip->weight[k];
+    place += grip->weight[k] * body.deformed.position(grip->node[k]);
+  }
+  candidate.gap += dot(candidate.normal, place - candidate.position);
+  candidate.position = place;
+}
+
+// the candidates that there is room for, by their corners: while there is none, those of triangles farthest from the
+// tool are left out, which hang on nodes that may be candidates themselves
+std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, ContactBody::StepReport& report) {
+  const auto is_left_out = [&](const Candidate& candidate, double least) {
+    return is_said_by_nodes(body, candidate) || (candidate.triangle != layout::none && candidate.gap >= least);
+  };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double least = infinity;  // gap from which on triangles are left out
+  std::uint32_t corners = body.max_contacts + 1;
+  while (corners > body.max_contacts) {
+    corners = 0;
+    double farthest = -infinity;
+    for (const Candidate& candidate : found) {
+      if (is_left_out(candidate, least)) continue;
+      corners += corners_of(body, candidate);
+      if (candidate.triangle != layout::none) farthest = std::fmax(farthest, candidate.gap);
+    }
+    if (corners > body.max_contacts) least = farthest;
+  }
+  std::uint32_t count = 0;
+  for (const Candidate& candidate : found) {
+    if (!is_left_out(candidate, least)) {
+      body.candidate[count++] = candidate;
+    } else if (!is_said_by_nodes(body, candidate)) {
+      ++report.left_out;
+      report.deepest_left_out = std::fmax(report.deepest_left_out, -candidate.gap);
+    }
+  }
+  return count;
+}
+
+Double3 double3(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+// where a contact's point has come to: from where it would stick, if it has slipped or the tool has left it
+Double3 place_after(const TouchedBody& body, std::uint32_t i) {
+  const Vec4& gap = body.gap[i];
+  return body.stick_place[i] + Double3{gap.x, gap.y, gap.z};
+}
+
+void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Grip* grip) {
+  const Candidate& candidate = body.candidate[i];
+  if (body.state[i] == ContactState::open) return;
+  const bool sticks = grip != nullptr && body.state[i] == ContactState::stick;
+  const Double3 anchor = sticks ? grip->anchor : body.placement[candidate.tool].to_tool(place);
+  Grip made{grip_key(candidate), anchor, body.force[i], body.state[i] == ContactState::stick};
+  for (int k = 0; k < 3; ++k) {
+    made.node[k] = candidate.node[k];
+    made.weight[k] = candidate.weight[k];
+  }
+  body.grips.add(made);
+}
+
+void write_answer(TouchedBody& body, std::uint32_t count, std::span<const ContactBody::ToolInput> tools) {
+  for (std::uint32_t t = 0; t < tools.size(); ++t) {
+    body.tool_answer[t] = {};
+    body.tool_answer[t].fault = body.search.fault(t);
+    body.tool_answer[t].first_contact = count;
+  }
+  body.tool_count = static_cast<std::uint32_t>(tools.size());
+  body.answered_count = count;
+  body.grips.begin();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Candidate& candidate = body.candidate[i];
+    const Double3 place = place_after(body, i);
+    remember(body, i, place, body.grips.find(grip_key(candidate)));
+    ContactBody::Contact& contact = body.answered[i];
+    contact = {};
+    for (int k = 0; k < 3; ++k) {
+      contact.node[k] = candidate.node[k];
+      contact.weight[k] = candidate.weight[k];
+    }
+    contact.tool = candidate.tool;
+    contact.state = body.state[i];
+    contact.position = place;
+    contact.normal = candidate.normal;
+    contact.force = double3(body.force[i]);
+    const Vec4& gap = body.gap[i];
+    contact.gap = dot(candidate.normal, {gap.x, gap.y, gap.z});
+    ContactBody::ToolAnswer& answer = body.tool_answer[candidate.tool];
+    answer.first_contact = i < answer.first_contact ? i : answer.first_contact;
+    ++answer.contacts;
+    answer.depth = std::fmax(answer.depth, -candidate.gap);
+    answer.force += -contact.force;
+    answer.torque += cross(place - body.placement[candidate.tool].origin, -contact.force);
+  }
+  body.grips.turn();
+}
+
+std::uint64_t touching_work(const TouchedBody& body, std::span<const Tool> tools) {
+  return body.deformed.update_work() + body.search.find_work(body.deformed, tools) + tools.size() * tool_price +
+         std::uint64_t{body.max_contacts} * contact_price;
+}
+
+ContactBody::StepReport held(Status status) {
+  ContactBody::StepReport report;
+  report.status = status;
+  report.error = std::numeric_limits<float>::infinity();
+  return report;
+}
+
+}  // namespace
+
+ContactBody::Requirement ContactBody::required(const Model& model, const Limits& limits) noexcept {
+  if (!in_range(limits)) return {};
+  const Elastostatic::Requirement elastostatic = Elastostatic::required(model, limits.elastostatic);
+  if (elastostatic.bytes == 0 || limits.elastostatic.max_contacts > 256) return {};
+  Arena counting;
+  TouchedBody body;
+  static_cast<void>(counting.take<TouchedBody>(1));
+  carve_arrays(counting, model, limits, body);
+  place_parts(counting, model, limits, body);
+  Requirement requirement;
+  requirement.bytes = static_cast<std::size_t>(counting.bytes());
+  requirement.least_work = elastostatic.least_work;
+  requirement.worst_work = elastostatic.worst_work[model.level_count() - 1];
+  return requirement;
+}
+
+ContactBody::Created ContactBody::create(const Model& model, const Limits& limits,
+                                         std::span<std::byte> memory) noexcept {
+  Created created;
+  created.available = memory.size();
+  created.requested = required(model, limits).bytes;
+  if (created.requested == 0) {
+    created.error = in_range(limits) ? CreateError::unsupported_model : CreateError::bad_limits;
+    return created;
+  }
+  if (created.requested > memory.size()) {
+    created.error = CreateError::arena_too_small;
+    created.missing = created.requested - memory.size();
+    return created;
+  }
+  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
+    created.error = CreateError::arena_misaligned;
+    return created;
+  }
+  Arena arena(memory.data());
+  auto& body = *new (arena.take<TouchedBody>(1)) TouchedBody;
+  carve_arrays(arena, model, limits, body);
+  if (!place_parts(arena, model, limits, body)) {
+    created.error = CreateError::unsupported_model;
+    return created;
+  }
+  body.rigid_softness = rigid_softness(model, limits);
+  body.elastostatic_least = Elastostatic::required(model, limits.elastostatic).least_work;
+  created.body.body_ = &body;
+  return created;
+}
+
+ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, const Elastostatic::Loads& loads,
+                                          Budget budget) noexcept {
+  TouchedBody& body = *body_;
+  if (tools.size() > body.max_tools) return held(Status::held_out_of_range);
+  for (std::size_t t = 0; t < tools.size(); ++t) body.tool[t] = tools[t].tool;
+  const std::span<const Tool> shapes{body.tool, tools.size()};
+  const std::uint64_t reserved = touching_work(body, shapes);
+  if (budget.work < reserved + body.elastostatic_least) return held(Status::held_over_budget);
+  std::uint64_t work = tools.size() * tool_price;
+  body.deformed.update({body.displacement, body.nodes}, work);
+  const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work);
+  for (std::uint32_t t = 0; t < tools.size(); ++t) body.placement[t] = place(tools[t].tool.pose).placement;
+  StepReport report;
+  report.left_out = found.left_out;
+  report.deepest_left_out = found.left_out > 0 ? -found.deepest_left_out.gap : 0;
+  const std::uint32_t count = choose(body, found.candidates, report);
+  body.grips.begin();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    Candidate& candidate = body.candidate[i];
+    const Grip* const grip = body.grips.find(grip_key(candidate));
+    hold_place(body, grip, candidate);
+    body.contact[i] = contact_of(body, candidate, grip, tools[candidate.tool].friction, body.stick_place[i]);
+  }
+  work += count * contact_price;
+  Elastostatic::UnilateralResponse response;
+  response.force = {body.force, count};
+  response.displacement = {body.displacement, body.nodes};
+  response.state = {body.state, count};
+  response.gap = {body.gap, count};
+  static_cast<Elastostatic::UnilateralReport&>(report) = body.elastostatic.step(
+      std::span<const UnilateralContact>(body.contact, count), loads, {budget.work - work}, response);
+  report.work += work;
+  report.touching_work = work;
+  if (answered(report.status)) write_answer(body, count, tools);
+  return report;
+}
+
+std::span<const ContactBody::ToolAnswer> ContactBody::tools() const noexcept {
+  return {body_->tool_answer, body_->tool_count};
+}
+std::span<const ContactBody::Contact> ContactBody::contacts() const noexcept {
+  return {body_->answered, body_->answered_count};
+}
+std::span<const Vec4> ContactBody::displacement() const noexcept { return {body_->displacement, body_->nodes}; }
+
+void ContactBody::forget(std::uint32_t tool) noexcept {
+  if (tool < body_->max_tools) body_->search.forget(tool);
+}
+
+}  // namespace greenloop

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "runtime/constraint.hpp"
+#include "runtime/contact/candidate_search.hpp"
+#include "runtime/contact/tool.hpp"
+#include "runtime/elastostatic.hpp"
+#include "runtime/loop.hpp"
+#include "runtime/model.hpp"
+#include "runtime/vec.hpp"
+
+namespace greenloop {
+
+struct TouchedBody;  // what a contact body keeps in its memory: runtime/contact_body/touched_body.hpp
+
+/// An elastic body that rigid tools touch: where they do, unilaterally and with friction, which forces and torques they
+/// feel, and how the surface is deformed (James & Pai 2001, section 6; docs/touching.md). It has an `Elastostatic` of
+/// its own. Places are in the frame of the model.
+class ContactBody {
+ public:
+  struct Limits {
+    Elastostatic::Limits elastostatic{};  ///< max_contacts: at most 256, the corners of triangles count each;
+                                          ///< iterations above 0; forces_only false
+    std::uint32_t max_tools = 2;   ///< 1..16
+    std::uint32_t max_points = 8;  ///< of a tool that are followed, 1..128: Shape::point_count
+    double margin = 0;             ///< m, how near the surface is looked at: 0 is a quarter of its mean edge length
+    double rigid_stiffness = 0;    ///< N/m, of places that cannot move; 0: what the model's material has over 1 mm
+  };
+
+  /// One step's tool.
+  struct ToolInput {
+    Tool tool;              ///< shape and pose
+    double friction = 0.3;  ///< Coulomb's coefficient, 0 or more
+  };
+
+  /// What a tool feels.
+  struct ToolAnswer {
+    ToolFault fault = ToolFault::none;  ///< with one the tool is left out
+    Double3 force;                      ///< N, on the tool
+    Double3 torque;                     ///< N m, on the tool about its pose's position
+    std::uint32_t first_contact = 0;    ///< among contacts()
+    std::uint32_t contacts = 0;         ///< places that may touch, of which those with a force do
+    double depth = 0;                   ///< m, how far the tool was inside of the surface before this step's answer
+  };
+
+  /// A place of the surface that may touch a tool.
+  struct Contact {
+    std::uint32_t node[3] = {};  ///< file indices; those after the first are layout::none unless it lies in a triangle
+    double weight[3] = {};
+    std::uint32_t tool = 0;
+    ContactState state = ContactState::open;
+    Double3 position;  ///< m, of the surface, displaced
+    Double3 normal;    ///< unit, out of the tool
+    Double3 force;     ///< N, on the body
+    double gap = 0;    ///< m, from the tool along the normal
+  };
+
+  struct Requirement : greenloop::Requirement {
+    std::uint64_t worst_work = 0;  ///< of a step at the finest level
+  };
+
+  struct StepReport : Elastostatic::UnilateralReport {
+    std::uint64_t touching_work = 0;  ///< units of `work` that finding contacts took
+    std::uint32_t left_out = 0;       ///< places that may touch, but for which there was no room: the deepest were kept
+    double deepest_left_out = 0;      ///< m, depth of the deepest of these
+  };
+
+  struct Created;
+
+  /// Bytes and work for some limits; tools of more than max_points points are left out. Start-up; as
+  /// Elastostatic::required. Zero bytes if `create` would refuse for another reason than memory.
+  [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
+
+  /// Carves `memory` with the routine that `required` counts with. The model's bytes and `memory` must outlive it.
+  /// Start-up.
+  [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
+
+  /// One cycle of the loop: finds what may touch the tools, continuously in their motion since the last step, and the
+  /// forces of contact. A tool is known from step to step by its place among them; those beyond max_tools are refused:
+  /// held_out_of_range. No heap, lock, system call, exception or clock; the same model, limits, tools, history and
+  /// budget give the same bits. On a `held_` status the last answer stands. Work: at most budget.work.
+  StepReport step(std::span<const ToolInput> tools, const Elastostatic::Loads& loads, Budget budget) noexcept;
+
+  // The last answer, until the next step.
+  [[nodiscard]] std::span<const ToolAnswer> tools() const noexcept;
+  [[nodiscard]] std::span<const Contact> contacts() const noexcept;
+  [[nodiscard]] std::span<const Vec4> displacement() const noexcept;  ///< [nodes] m
+
+  /// The tool is somewhere else without having been between.
+  void forget(std::uint32_t tool) noexcept;
+
+ private:
+  TouchedBody* body_ = nullptr;
+};
+
+struct ContactBody::Created : Creation {
+  ContactBody body;
+};
+
+}  // namespace greenloop

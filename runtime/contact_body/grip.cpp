@@ -1,0 +1,23 @@
+#include "runtime/contact_body/grip.hpp"
+
+namespace greenloop {
+
+void Grips::carve(Arena& arena, std::uint32_t contacts) noexcept {
+  grip_ = arena.take<Grip>(contacts);
+  made_ = arena.take<Grip>(contacts);
+}
+
+const Grip* Grips::find(std::uint64_t key) noexcept {
+  while (next_ < count_ && grip_[next_].key < key) ++next_;
+  return next_ < count_ && grip_[next_].key == key ? grip_ + next_ : nullptr;
+}
+
+void Grips::turn() noexcept {
+  Grip* const last = grip_;
+  grip_ = made_;
+  made_ = last;
+  count_ = made_count_;
+  made_count_ = 0;
+}
+
+}  // namespace greenloop

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "runtime/contact/candidate.hpp"
+#include "runtime/contact/pose.hpp"
+#include "runtime/memory/arena.hpp"
+#include "runtime/vec.hpp"
+
+namespace greenloop {
+
+/// What a contact keeps from one step to the next.
+struct Grip {
+  std::uint64_t key = 0;  ///< grip_key of its candidate
+  Double3 anchor;         ///< m, where it touches the tool, in the tool's frame
+  Vec3 force;             ///< N, on the body
+  bool sticks = false;
+  // of the body's point
+  std::uint32_t node[3] = {layout::none, layout::none, layout::none};
+  double weight[3] = {};
+};
+
+/// Which contact a candidate is: increasing in the order of CandidateSearch::find.
+constexpr std::uint64_t grip_key(const Candidate& candidate) {
+  const bool is_node = candidate.triangle == layout::none;
+  return std::uint64_t{candidate.tool} << 33 |
+         (is_node ? candidate.node[0] : std::uint64_t{1} << 32 | candidate.feature);
+}
+
+/// The contacts of the last answer that had a force, in the order of their keys.
+class Grips {
+ public:
+  /// Room for so many; null while `arena` counts.
+  void carve(Arena& arena, std::uint32_t contacts) noexcept;
+
+  /// The grip of a candidate, or null; asked in the order of their keys since `begin`. For the loop; work: linear in
+  /// both over a step.
+  void begin() noexcept { next_ = 0; }
+  [[nodiscard]] const Grip* find(std::uint64_t key) noexcept;
+
+  /// Takes the next step's in, in the order of their keys, then puts them in the place of the last one's.
+  void add(const Grip& grip) noexcept { made_[made_count_++] = grip; }
+  void turn() noexcept;
+
+  [[nodiscard]] std::span<const Grip> all() const noexcept { return {grip_, count_}; }
+
+ private:
+  Grip* grip_ = nullptr;  ///< [contacts]
+  Grip* made_ = nullptr;  ///< [contacts]
+  std::uint32_t count_ = 0, made_count_ = 0, next_ = 0;
+};
+
+}  // namespace greenloop

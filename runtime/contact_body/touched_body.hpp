@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/contact/candidate_search.hpp"
+#include "runtime/contact/deformed_surface.hpp"
+#include "runtime/contact_body.hpp"
+#include "runtime/contact_body/grip.hpp"
+#include "runtime/elastostatic.hpp"
+#include "runtime/memory/arena.hpp"
+#include "runtime/surface.hpp"
+
+namespace greenloop {
+
+/// Everything that a contact body keeps in its memory.
+struct TouchedBody {
+  Elastostatic elastostatic;
+  Surface surface;
+  DeformedSurface deformed;
+  CandidateSearch search;
+  std::uint32_t nodes = 0, max_contacts = 0, max_tools = 0;
+  double mean_edge = 0;      ///< m
+  float rigid_softness = 0;  ///< m/N
+  std::uint64_t elastostatic_least = 0;
+
+  Tool* tool = nullptr;                      ///< [max_tools] of this step
+  Placement* placement = nullptr;            ///< [max_tools] the same
+  Candidate* candidate = nullptr;            ///< [max_contacts] of this step, by their keys
+  UnilateralContact* contact = nullptr;      ///< [max_contacts] the same
+  Double3* stick_place = nullptr;            ///< [max_contacts] m, where each stands if it does not slip
+  Vec3* force = nullptr;                     ///< [max_contacts]
+  Vec4* gap = nullptr;                       ///< [max_contacts]
+  ContactState* state = nullptr;             ///< [max_contacts]
+  ContactBody::Contact* answered = nullptr;  ///< [max_contacts] of the last answer
+  std::uint32_t answered_count = 0;
+  ContactBody::ToolAnswer* tool_answer = nullptr;  ///< [max_tools]
+  std::uint32_t tool_count = 0;
+  Vec4* displacement = nullptr;  ///< [nodes] m
+  Grips grips;
+};
+
+}  // namespace greenloop

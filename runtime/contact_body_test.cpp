@@ -1,0 +1,206 @@
+#include "runtime/contact_body.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "formats/write/aligned_bytes.hpp"
+#include "runtime/algebra/fnv1a.hpp"
+#include "runtime/testing/test_body.hpp"
+
+namespace greenloop {
+namespace {
+
+// a contact body in memory of its own
+class TouchableBody {
+ public:
+  explicit TouchableBody(const TestModel& model, const ContactBody::Limits& limits = usual())
+      : requirement_(ContactBody::required(model.model(), limits)), memory_(requirement_.bytes) {
+    const auto created = ContactBody::create(model.model(), limits, {memory_.data(), memory_.size()});
+    REQUIRE(created);
+    body = created.body;
+  }
+  static ContactBody::Limits usual() {
+    ContactBody::Limits limits;
+    limits.elastostatic = {.max_contacts = 64, .cached_factors = 4, .iterations = 50};
+    return limits;
+  }
+  ContactBody::StepReport step(const std::vector<ContactBody::ToolInput>& tools, std::uint64_t work = any_budget) {
+    return body.step(tools, {}, {work});
+  }
+  [[nodiscard]] const ContactBody::Requirement& requirement() const { return requirement_; }
+
+  ContactBody body;
+
+ private:
+  ContactBody::Requirement requirement_;
+  AlignedBytes memory_;
+};
+
+constexpr SyntheticOptions sphere{.levels = 4};
+
+// the synthetic body: a sphere around the origin, touchable where it is free
+double radius_of(const TestModel& model) {
+  const float* x = node_record(model.view(), model.touchable().front()).position;
+  return std::sqrt(double{x[0]} * x[0] + double{x[1]} * x[1] + double{x[2]} * x[2]);
+}
+
+ContactBody::ToolInput ball(double radius, const Double3& centre, double friction) {
+  return {{Shape::sphere(radius), {centre, {1, 0, 0, 0}}}, friction};
+}
+
+void check_laws(const ContactBody& body, std::span<const ContactBody::ToolInput> tools) {
+  for (const ContactBody::Contact& contact : body.contacts()) {
+    const double pressed = dot(contact.force, contact.normal);
+    CHECK(pressed >= 0);
+    const double along = norm(contact.force - pressed * contact.normal);
+    CHECK(along <= (tools[contact.tool].friction + 1e-6) * pressed);
+    if (contact.state == ContactState::open) CHECK(norm(contact.force) == 0);
+  }
+}
+
+TEST_CASE("a ball that is pressed in is pushed out, by as much as its contacts are pushed in") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  double last = 0;
+  for (int k = 0; k <= 20; ++k) {
+    const double depth = 0.002 * body_radius * (k - 5);
+    const std::vector tools{ball(radius, {0, 0, body_radius + radius - depth}, 0.3)};
+    const auto report = touched.step(tools);
+    REQUIRE(answered(report.status));
+    check_laws(touched.body, tools);
+    const ContactBody::ToolAnswer& answer = touched.body.tools()[0];
+    CHECK(answer.fault == ToolFault::none);
+    Double3 sum;
+    for (const ContactBody::Contact& contact : touched.body.contacts()) sum += contact.force;
+    CHECK(norm(sum + answer.force) <= 1e-6 * norm(sum));
+    if (depth < -0.001 * body_radius) CHECK(answer.force.z == 0);
+    if (depth > 0) {
+      CHECK(answer.force.z > last);
+      CHECK(report.residual <= 1e-3);
+    }
+    last = answer.force.z;
+  }
+}
+
+TEST_CASE("friction holds a ball that is dragged, up to its coefficient") {
+  const TestModel model(sphere);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;
+  for (const double friction : {0.0, 0.2, 0.6}) {
+    TouchableBody touched(model);
+    double ratio = 0, most = 0;
+    for (int k = 0; k < 60; ++k) {
+      const double along = k < 5 ? 0 : 0.001 * body_radius * (k - 5);
+      const std::vector tools{ball(radius, {along, 0, body_radius + radius - depth}, friction)};
+      REQUIRE(answered(touched.step(tools).status));
+      check_laws(touched.body, tools);
+      const Double3 force = touched.body.tools()[0].force;
+      ratio = -force.x / force.z;
+      most = std::max(most, ratio);
+    }
+    MESSAGE("friction ", friction, ": the drag ends at ", ratio, " of the pressure, at most ", most);
+    if (friction == 0) CHECK(std::abs(ratio) < 0.1);  // the ball has come to where the surface slopes
+    if (friction > 0) CHECK(most > 0.5 * friction);
+    CHECK(most < friction + 0.1);
+  }
+}
+
+TEST_CASE("contacts come and go without jumps of the force while a ball slides") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model), radius = 2 * body_radius, depth = 0.06 * body_radius;
+  Double3 last;
+  double most = 0;
+  std::size_t changes = 0, contacts = 0;
+  for (int k = 0; k < 400; ++k) {
+    const double angle = 0.0008 * k;
+    const double distance = body_radius + radius - depth;
+    const std::vector tools{ball(radius, {distance * std::sin(angle), 0, distance * std::cos(angle)}, 0.3)};
+    REQUIRE(answered(touched.step(tools).status));
+    const Double3 force = touched.body.tools()[0].force;
+    if (k > 20) most = std::max(most, norm(force - last) / norm(force));
+    changes += k > 20 && touched.body.contacts().size() != contacts ? 1 : 0;
+    contacts = touched.body.contacts().size();
+    last = force;
+  }
+  MESSAGE("sliding: ", changes, " changes of the contacts, largest step of the force ", 100 * most, " %");
+  CHECK(changes > 5);
+  CHECK(most <= 0.02);
+}
+
+TEST_CASE("a tool with a bad pose is left out by name, and what it was stays") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  std::vector tools{ball(radius, {0, 0, 1.27 * body_radius}, 0.3), ball(radius, {1.27 * body_radius, 0, 0}, 0.3)};
+  REQUIRE(answered(touched.step(tools).status));
+  const double alone = touched.body.tools()[1].force.x;
+  CHECK(touched.body.tools()[0].force.z > 0);
+  tools[0].tool.pose.position.y = std::numeric_limits<double>::quiet_NaN();
+  REQUIRE(answered(touched.step(tools).status));
+  CHECK(touched.body.tools()[0].fault == ToolFault::not_finite);
+  CHECK(touched.body.tools()[0].force.z == 0);
+  CHECK(touched.body.tools()[1].force.x == doctest::Approx(alone).epsilon(0.05));
+  tools[0].tool.pose = {{0, 0, 1.27 * body_radius}, {1, 1, 0, 0}};
+  REQUIRE(answered(touched.step(tools).status));
+  CHECK(touched.body.tools()[0].fault == ToolFault::not_unit);
+  tools.push_back(tools[1]);
+  CHECK(touched.step(tools).status == Status::held_out_of_range);
+}
+
+TEST_CASE("whatever the budget, the answer obeys the laws and the budget; too small a one is refused") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  std::uint64_t least = 0;
+  for (std::uint64_t budget = 1; budget < (std::uint64_t{1} << 40); budget += budget / 8 + 1) {
+    const std::vector tools{ball(radius, {0, 0, 1.25 * body_radius}, 0.3)};
+    const auto report = touched.step(tools, budget);
+    if (report.status == Status::held_over_budget) {
+      CHECK(least == 0);
+      continue;
+    }
+    least = least == 0 ? budget : least;
+    REQUIRE(answered(report.status));
+    CHECK(report.work <= budget);
+    check_laws(touched.body, tools);
+  }
+  CHECK(least > 0);
+}
+
+TEST_CASE("a place that cannot move pushes back too") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  const std::vector tools{ball(radius, {0, 0, -1.25 * body_radius}, 0.3)};
+  REQUIRE(answered(touched.step(tools).status));
+  check_laws(touched.body, tools);
+  CHECK(touched.body.tools()[0].force.z < 0);
+}
+
+TEST_CASE("the same tools give the same bits") {
+  std::uint64_t digest[2] = {};
+  for (std::uint64_t& value : digest) {
+    const TestModel model(sphere);
+    TouchableBody touched(model);
+    const double body_radius = radius_of(model);
+    Fnv1a all;
+    for (int k = 0; k < 50; ++k) {
+      const std::vector tools{
+          ball(0.3 * body_radius, {0.01 * k * body_radius, 0, (1.4 - 0.004 * k) * body_radius}, 0.4)};
+      const std::uint64_t budget = touched.requirement().worst_work + (std::uint64_t{1} << 26);
+      REQUIRE(answered(touched.step(tools, budget).status));
+      all.add(std::as_bytes(touched.body.displacement()));
+      all.add(std::as_bytes(std::span(&touched.body.tools()[0].force, 1)));
+    }
+    value = all.value();
+  }
+  CHECK(digest[0] == digest[1]);
+}
+
+}  // namespace
+}  // namespace greenloop
