@@ -5,7 +5,6 @@
 namespace greenloop {
 namespace {
 
-constexpr float reduction = 0.01F;  // of the linear system's residual
 constexpr std::uint32_t most = ContactNewton::most_vectors;
 
 float dot(const Float4* a, const Float4* b, std::uint32_t count) {
@@ -17,8 +16,8 @@ float dot(const Float4* a, const Float4* b, std::uint32_t count) {
 }
 
 // the contact as the natural map sees it; the force becomes one of that state
-FrozenContact frozen(const FrictionContact& contact, Float4 displacement, Float4& force) {
-  const Float4 moved = force - splat(contact.scale) * displacement;
+FrozenContact frozen(const FrictionContact& contact, float scale, Float4 displacement, Float4& force) {
+  const Float4 moved = force - splat(scale) * displacement;
   const float normal = dot3(contact.normal, moved);
   if (!(normal > 0)) {
     force = Float4{};
@@ -34,7 +33,8 @@ FrozenContact frozen(const FrictionContact& contact, Float4 displacement, Float4
   const Float4 across = cross(contact.normal, along);
   const float pressed = std::fmax(dot3(contact.normal, force), 0.0F);
   force = splat(pressed) * push + splat(dot3(across, force)) * across;
-  return {ContactState::slip, push, across, std::fmin(contact.friction * pressed / size, 1.0F)};
+  const float sliding = std::fmin(contact.friction * pressed / size, 1.0F);
+  return {ContactState::slip, push, across, sliding, (1 - sliding) / scale};
 }
 
 // what the frozen law makes of a change of displacement and of force; zero where it holds by the choice of the force
@@ -45,8 +45,7 @@ Float4 law(const FrictionContact& contact, const FrozenContact& of, Float4 displ
   if (of.state == ContactState::stick) {
     return displacement;
   }
-  const float across =
-      of.sliding * dot3(of.across, displacement) + (1 - of.sliding) / contact.scale * dot3(of.across, force);
+  const float across = of.sliding * dot3(of.across, displacement) + of.holding * dot3(of.across, force);
   return splat(dot3(contact.normal, displacement)) * contact.normal + splat(across) * of.across;
 }
 
@@ -111,8 +110,17 @@ struct Triangle {
 
 }  // namespace
 
+void displace(const ContactPoints& points, const Float4* force, Float4* displacement) noexcept {
+  multiply(points.compliance, points.count, force, displacement);
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    displacement[i] += points.gap[i];
+  }
+}
+
 void ContactNewton::carve(Arena& arena, std::uint32_t candidates) noexcept {
   frozen_ = arena.take<FrozenContact>(candidates);
+  start_force_ = arena.take<Float4>(candidates);
+  start_displacement_ = arena.take<Float4>(candidates);
   direction_ = arena.take<Float4>(candidates);
   for (Float4*& vector : vector_) {
     vector = arena.take<Float4>(candidates);
@@ -120,13 +128,13 @@ void ContactNewton::carve(Arena& arena, std::uint32_t candidates) noexcept {
 }
 
 // the first vector; returns the residual's norm
-float ContactNewton::freeze(const ContactPoints& points, Float4* force, Float4* displacement) noexcept {
+float ContactNewton::freeze(const ContactPoints& points, float weight, Float4* force, Float4* displacement) noexcept {
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    frozen_[i] = frozen(points.contact[i], displacement[i], force[i]);
+    frozen_[i] = frozen(points.contact[i], weight * points.contact[i].scale, displacement[i], force[i]);
   }
-  multiply(points.compliance, points.count, force, displacement);
+  displace(points, force, displacement);
   for (std::uint32_t i = 0; i < points.count; ++i) {
-    vector_[0][i] = -law(points.contact[i], frozen_[i], displacement[i] + points.gap[i], force[i]);
+    vector_[0][i] = -law(points.contact[i], frozen_[i], displacement[i], force[i]);
   }
   return std::sqrt(dot(vector_[0], vector_[0], points.count));
 }
@@ -161,13 +169,47 @@ void ContactNewton::add_solution(const ContactPoints& points, std::uint32_t vect
   }
 }
 
-std::uint32_t ContactNewton::step(const ContactPoints& points, std::uint32_t vectors, Float4* force,
+// square of the natural map at a part of the way from the start
+float ContactNewton::squared_residual(const ContactPoints& points, float part, const Float4* force,
+                                      const Float4* displacement) const noexcept {
+  float sum = 0;
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    const Float4 f = start_force_[i] + splat(part) * (force[i] - start_force_[i]);
+    const Float4 u = start_displacement_[i] + splat(part) * (displacement[i] - start_displacement_[i]);
+    const Float4 map = natural_map(points.contact[i], u, f);
+    sum += dot3(map, map);
+  }
+  return sum;
+}
+
+// goes that part of the way at whose end the natural map is smallest
+void ContactNewton::search(const ContactPoints& points, Float4* force, Float4* displacement) noexcept {
+  float best = 1;
+  float least = squared_residual(points, 1, force, displacement);
+  for (float part = 0.5F; part >= 0.125F; part /= 2) {
+    const float here = squared_residual(points, part, force, displacement);
+    if (here < least) {
+      least = here;
+      best = part;
+    }
+  }
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    force[i] = start_force_[i] + splat(best) * (force[i] - start_force_[i]);
+    displacement[i] = start_displacement_[i] + splat(best) * (displacement[i] - start_displacement_[i]);
+  }
+}
+
+std::uint32_t ContactNewton::step(const ContactPoints& points, const Terms& terms, Float4* force,
                                   Float4* displacement) noexcept {
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    start_force_[i] = force[i];
+    start_displacement_[i] = displacement[i];
+  }
   Triangle triangle;
-  const float residual = freeze(points, force, displacement);
-  triangle.right[0] = residual;
+  const float begun = freeze(points, terms.weight, force, displacement);
+  triangle.right[0] = begun;
   std::uint32_t used = 0;
-  for (float length = residual; used < vectors && length > 0;) {
+  for (float length = begun; used < terms.vectors && length > 0;) {
     const float inverse = 1 / length;
     for (std::uint32_t i = 0; i < points.count; ++i) {
       vector_[used][i] *= splat(inverse);
@@ -175,10 +217,12 @@ std::uint32_t ContactNewton::step(const ContactPoints& points, std::uint32_t vec
     length = expand(points, used, triangle.column[used]);
     if (!triangle.rotate(used)) break;
     ++used;
-    if (std::fabs(triangle.right[used]) <= reduction * residual) break;
+    if (std::fabs(triangle.right[used]) <= terms.reduction * begun) break;
   }
   triangle.solve(used);
   add_solution(points, used, triangle.right, force);
+  displace(points, force, displacement);
+  search(points, force, displacement);
   return used;
 }
 

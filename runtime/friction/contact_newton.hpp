@@ -16,18 +16,23 @@ struct ContactPoints {
   ContactCompliance compliance;
 };
 
+/// displacement = gap + compliance times force. For the loop; work: that of `multiply`.
+void displace(const ContactPoints& points, const Float4* force, Float4* displacement) noexcept;
+
 /// One contact's law, linearised: which of the three states it is in, and, where it slips, in which direction.
 struct FrozenContact {
   ContactState state = ContactState::open;
   Float4 push{};      ///< slipping: the force for a unit of normal force, N/N
   Float4 across{};    ///< slipping: unit, tangential, across the friction force
-  float sliding = 1;  ///< slipping, 0 .. 1: how much the slip across weighs against the force across
+  float sliding = 1;  ///< slipping, 0 .. 1: how much the slip across it counts
+  float holding = 0;  ///< slipping, m/N: how much the force across it does
 };
 
 /// A semismooth Newton step for the whole law (Alart & Curnier 1991): every contact is frozen in the state that the
 /// natural map sees it in, and the linear system, which friction makes unsymmetric, is solved by GMRES (Saad & Schultz
-/// 1986) with each contact's own block as the preconditioner on the right. Modes in which all contacts move together,
-/// which sweeps over single contacts hardly see, take one vector each.
+/// 1986) with each contact's own block as the preconditioner on the right. A mode in which all contacts move together,
+/// which sweeps over single contacts hardly see, takes one vector. Of the way to the solution that part is gone, a
+/// whole to an eighth, at whose end the natural map is smallest.
 class ContactNewton {
  public:
   static constexpr std::uint32_t most_vectors = 24;
@@ -35,18 +40,28 @@ class ContactNewton {
   /// Arrays out of `arena`; null while it counts.
   void carve(Arena& arena, std::uint32_t candidates) noexcept;
 
-  /// From forces and their displacements, gaps included, to new forces and displacements. vectors: 1 .. most_vectors,
-  /// how many may be used. Returns how many were: the system is solved to a hundredth where they suffice. Forces
-  /// may leave the friction cones. For the loop; work: vectors + 2 products with the compliance, and vectors^2
-  /// multiply-adds of three numbers a candidate.
-  std::uint32_t step(const ContactPoints& points, std::uint32_t vectors, Float4* force, Float4* displacement) noexcept;
+  struct Terms {
+    float weight;           ///< of displacements against forces where states are chosen, times FrictionContact::scale
+    float reduction;        ///< of the linear system's residual
+    std::uint32_t vectors;  ///< 1 .. most_vectors, for it at most
+  };
+
+  /// From forces and their displacements to new ones, [count] each; forces may leave the friction cones. Returns how
+  /// many vectors were used. For the loop; work: vectors + 2 times that of `displace`, and vectors^2 multiply-adds of
+  /// three numbers a candidate.
+  std::uint32_t step(const ContactPoints& points, const Terms& terms, Float4* force, Float4* displacement) noexcept;
 
  private:
-  [[nodiscard]] float freeze(const ContactPoints& points, Float4* force, Float4* displacement) noexcept;
+  [[nodiscard]] float freeze(const ContactPoints& points, float weight, Float4* force, Float4* displacement) noexcept;
   [[nodiscard]] float expand(const ContactPoints& points, std::uint32_t k, float* products) noexcept;
   void add_solution(const ContactPoints& points, std::uint32_t vectors, const float* weight, Float4* force) noexcept;
+  [[nodiscard]] float squared_residual(const ContactPoints& points, float part, const Float4* force,
+                                       const Float4* displacement) const noexcept;
+  void search(const ContactPoints& points, Float4* force, Float4* displacement) noexcept;
 
   FrozenContact* frozen_ = nullptr;
+  Float4* start_force_ = nullptr;
+  Float4* start_displacement_ = nullptr;
   Float4* direction_ = nullptr;            ///< a vector of the subspace, preconditioned
   Float4* vector_[most_vectors + 1] = {};  ///< orthonormal
 };

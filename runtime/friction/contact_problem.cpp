@@ -7,6 +7,9 @@
 namespace greenloop {
 namespace {
 
+// of ContactNewton::step, in turn: what one runs in circles with, another may solve
+constexpr float weights[4] = {3, 10, 30, 1};
+
 Float4 load(const Vec4& v) { return Float4{v.x, v.y, v.z, 0.0F}; }
 Vec4 stored(Float4 v) { return {v[0], v[1], v[2], 0}; }
 bool finite(Float4 v) { return dot3(v, v) <= FLT_MAX; }
@@ -41,82 +44,104 @@ bool ContactProblem::set(std::span<const ContactCandidate> candidates, const Con
   return valid;
 }
 
-void ContactProblem::sum_behind() noexcept {
+// forwards and backwards; then the displacements
+void ContactProblem::sweep() noexcept {
+  const ContactCompliance& compliance = points_.compliance;
   for (std::uint32_t j = 0; j < points_.count; ++j) {
     behind_[j] = Float4{};
-    scatter(points_.compliance.column(j), force_[j], j, behind_);
+    scatter(compliance.column(j), force_[j], j, behind_);
   }
-}
-
-// forwards and backwards
-void ContactProblem::sweep() noexcept {
   for (std::uint32_t j = 0; j < points_.count; ++j) {
-    before_[j] = gathered(points_.compliance.column(j), force_, j);
+    before_[j] = gathered(compliance.column(j), force_, j);
     force_[j] = local_force(contact_[j], gap_[j] + (before_[j] + behind_[j]), multiplier_[j]);
     behind_[j] = Float4{};
   }
   for (std::uint32_t j = points_.count; j-- > 0;) {
     force_[j] = local_force(contact_[j], gap_[j] + (before_[j] + behind_[j]), multiplier_[j]);
-    scatter(points_.compliance.column(j), force_[j], j, behind_);
+    scatter(compliance.column(j), force_[j], j, behind_);
+  }
+  for (std::uint32_t i = 0; i < points_.count; ++i) {
+    const Float4 before = gathered(compliance.column(i), force_, i);
+    displacement_[i] = gap_[i] + (before + behind_[i]) + product(compliance.at(i, i), force_[i]);
   }
 }
 
-// displacements after a sweep; returns the relative residual
-float ContactProblem::displace() noexcept {
+void ContactProblem::project() noexcept {
+  for (std::uint32_t i = 0; i < points_.count; ++i) {
+    force_[i] = force_in_cone(contact_[i], finite(force_[i]) ? force_[i] : best_force_[i]);
+  }
+  displace(points_, force_, displacement_);
+}
+
+// of the iterate, relative
+float ContactProblem::residual() const noexcept {
   float of_force = 0;
   float of_residual = 0;
   for (std::uint32_t i = 0; i < points_.count; ++i) {
-    before_[i] = gathered(points_.compliance.column(i), force_, i);
-    displacement_[i] = gap_[i] + (before_[i] + behind_[i]) + product(points_.compliance.at(i, i), force_[i]);
-    const Float4 residual = natural_map(contact_[i], displacement_[i], force_[i]);
+    const Float4 map = natural_map(contact_[i], displacement_[i], force_[i]);
     of_force += dot3(force_[i], force_[i]);
-    of_residual += dot3(residual, residual);
+    of_residual += dot3(map, map);
   }
-  return of_residual > 0 ? std::sqrt(of_residual / (of_force > of_residual ? of_force : of_residual)) : of_residual;
+  return of_residual == 0 ? 0 : std::sqrt(of_residual / (of_force > of_residual ? of_force : of_residual));
 }
 
-void ContactProblem::keep() noexcept {
-  for (std::uint32_t i = 0; i < points_.count; ++i) {
-    best_force_[i] = force_[i];
-    best_displacement_[i] = displacement_[i];
+// keeps the iterate if it is better
+void ContactProblem::judge(ContactAnswer& answer) noexcept {
+  const float here = residual();
+  if (here < answer.residual) {
+    answer.residual = here;
+    for (std::uint32_t i = 0; i < points_.count; ++i) {
+      best_force_[i] = force_[i];
+      best_displacement_[i] = displacement_[i];
+    }
   }
 }
 
-// a Newton step if it and the next pair of sweeps fit; without one if it does not come out finite
-bool ContactProblem::newton(std::uint64_t work, ContactAnswer& answer) noexcept {
+// at least two steps, of which the first may lead away, then more while each takes a third of the residual; false if
+// there is no room for one
+bool ContactProblem::newton(float accuracy, std::uint64_t work, ContactAnswer& answer) noexcept {
   const std::uint64_t count = points_.count;
-  const std::uint64_t needed = answer.work + newton_work(count, 0) + sweep_work(count);
-  const std::uint64_t fitting = work > needed ? (work - needed) / vector_work(count) : 0;
-  if (fitting == 0) {
+  ContactNewton::Terms terms{.weight = weights[(answer.iterations - 1) % 4], .reduction = 0, .vectors = 0};
+  float last = FLT_MAX;
+  std::uint32_t steps = 0;
+  for (float here = residual(); here < last * (2.0F / 3) && steps < most_steps; here = residual()) {
+    const std::uint64_t needed = answer.work + newton_work(count, 0) + projection_work(count);
+    const std::uint64_t vectors = work > needed ? (work - needed) / vector_work(count) : 0;
+    if (vectors == 0 || (steps > 0 && here <= 0.9F * accuracy)) break;
+    last = steps++ == 0 ? FLT_MAX : here;
+    terms.reduction = std::fmin(std::fmax(0.1F * accuracy / here, 0.01F), 0.1F);
+    terms.vectors = static_cast<std::uint32_t>(std::min<std::uint64_t>(vectors, ContactNewton::most_vectors));
+    answer.work += newton_work(count, newton_.step(points_, terms, force_, displacement_));
+  }
+  if (steps == 0) {
     return false;
   }
-  const auto most = static_cast<std::uint32_t>(std::min<std::uint64_t>(fitting, ContactNewton::most_vectors));
-  answer.work += newton_work(count, newton_.step(points_, most, force_, displacement_)) + sweep_work(count);
-  for (std::uint32_t i = 0; i < points_.count; ++i) {
-    if (!finite(force_[i])) force_[i] = best_force_[i];
-  }
-  sum_behind();
+  project();
+  answer.work += projection_work(count);
+  judge(answer);
   return true;
+}
+
+void ContactProblem::iterate(const ContactAccuracy& accuracy, std::uint64_t work, ContactAnswer& answer) noexcept {
+  answer.residual = FLT_MAX;
+  do {
+    sweep();
+    judge(answer);
+    ++answer.iterations;
+    answer.work += sweep_work(points_.count);
+  } while (answer.residual > accuracy.residual && answer.iterations < accuracy.iterations &&
+           newton(accuracy.residual, work, answer) && answer.residual > accuracy.residual &&
+           answer.work + sweep_work(points_.count) <= work);
 }
 
 ContactAnswer ContactProblem::solve(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
                                     const ContactAccuracy& accuracy, std::uint64_t work, std::span<Vec4> force,
                                     std::span<ContactState> states, std::span<Vec4> displacements) noexcept {
   ContactAnswer answer;
+  answer.work = candidates.size() * setup_price;
   answer.valid = set(candidates, compliance, force);
-  answer.work = least_work(points_.count);
   if (answer.valid) {
-    answer.residual = FLT_MAX;
-    sum_behind();
-    do {
-      sweep();
-      ++answer.iterations;
-      const float residual = displace();
-      if (residual < answer.residual) {
-        answer.residual = residual;
-        keep();
-      }
-    } while (answer.residual > accuracy.residual && answer.iterations < accuracy.iterations && newton(work, answer));
+    iterate(accuracy, work, answer);
     answer.valid = answer.residual < FLT_MAX;
   }
   for (std::uint32_t i = 0; i < points_.count; ++i) {

@@ -41,10 +41,10 @@ struct ContactAnswer {
 };
 
 /// Sweeps of block Gauss-Seidel with exact solutions of each candidate's own problem (nonsmooth contact dynamics: Jean
-/// 1999), which settle who touches, sticks and slips, and after each pair of sweeps, if it does not suffice, a Newton
-/// step of all together (ContactNewton). A pair, forwards and backwards, reads each block once: forwards the sums of
-/// what stands before a candidate are formed, backwards those of what stands behind, and each serves the other
-/// (Niethammer 1964). Forces that are returned come out of a sweep, so they lie in the friction cones.
+/// 1999), which settle who touches, sticks and slips, and after each pair of sweeps, if it does not suffice, Newton
+/// steps of all together (ContactNewton) while they help. A pair, forwards and backwards, reads each block once:
+/// forwards the sums of what stands before a candidate are formed, backwards those of what stands behind, and each
+/// serves the other (Niethammer 1964).
 class ContactProblem {
  public:
   static constexpr std::uint32_t most_candidates = 256;
@@ -54,50 +54,59 @@ class ContactProblem {
 
   /// Work units that `solve` needs at least for so many candidates: setting up and one pair of sweeps.
   static constexpr std::uint64_t least_work(std::uint64_t candidates) {
-    return candidates * setup_price + half_work(candidates) + sweep_work(candidates);
+    return candidates * setup_price + sweep_work(candidates);
   }
 
-  /// The most that a pair of sweeps and a Newton step take.
+  /// The most that a pair of sweeps and the Newton steps after it take.
   static constexpr std::uint64_t iteration_work(std::uint64_t candidates) {
-    return sweep_work(candidates) + newton_work(candidates, ContactNewton::most_vectors);
+    return sweep_work(candidates) + most_steps * newton_work(candidates, ContactNewton::most_vectors) +
+           projection_work(candidates);
   }
 
   /// force: [candidates] N, where the iteration begins, the last answer or 0; becomes the answer, the one of the least
-  /// residual: its cones hold within the rounding of `normal`, however little work was allowed. states, displacements:
-  /// [candidates] or empty; displacements: u, m. work: at least least_work. Fewer candidates than `carve` was told are
-  /// fine. For the loop; work: at most `work`, counted, so that the same input gives the same bits.
+  /// residual. Normal forces are at least 0 and friction forces within the cone, also in double precision to the
+  /// rounding of `normal`, however little work was allowed. states, displacements: [candidates] or empty;
+  /// displacements: u, m. work: at least least_work. Fewer candidates than `carve` was told are fine. For the loop;
+  /// work: at most `work`, counted, so that the same input gives the same bits.
   ContactAnswer solve(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
                       const ContactAccuracy& accuracy, std::uint64_t work, std::span<Vec4> force,
                       std::span<ContactState> states, std::span<Vec4> displacements) noexcept;
 
  private:
+  static constexpr std::uint32_t most_steps = 8;  ///< of Newton between sweeps
+
   // instructions
-  static constexpr std::uint64_t block_price = 7;  ///< a block in one direction
-  static constexpr std::uint64_t setup_price = 300;
-  static constexpr std::uint64_t sweep_price = 700;   ///< a candidate's own problem twice, and its natural map
-  static constexpr std::uint64_t newton_price = 300;  ///< a candidate, frozen and thawed
-  static constexpr std::uint64_t vector_price = 350;  ///< a candidate in one vector more
+  static constexpr std::uint64_t block_price = 13;        ///< a block in one direction
+  static constexpr std::uint64_t setup_price = 350;       ///< a candidate
+  static constexpr std::uint64_t sweep_price = 850;       ///< a candidate's own problem twice, and its natural map
+  static constexpr std::uint64_t projection_price = 200;  ///< a candidate in its cone, and its natural map
+  static constexpr std::uint64_t newton_price = 600;      ///< a candidate, frozen and thawed
+  static constexpr std::uint64_t vector_price = 350;      ///< a candidate in one vector more
 
   static constexpr std::uint64_t half_work(std::uint64_t candidates) {
     return candidates * candidates / 2 * block_price;
   }
   static constexpr std::uint64_t sweep_work(std::uint64_t candidates) {
-    return 3 * half_work(candidates) + candidates * sweep_price;
+    return 4 * half_work(candidates) + candidates * sweep_price;
+  }
+  static constexpr std::uint64_t projection_work(std::uint64_t candidates) {
+    return 2 * half_work(candidates) + candidates * projection_price;
   }
   static constexpr std::uint64_t vector_work(std::uint64_t candidates) {
     return 2 * half_work(candidates) + candidates * vector_price;
   }
   static constexpr std::uint64_t newton_work(std::uint64_t candidates, std::uint64_t vectors) {
-    return 3 * half_work(candidates) + candidates * newton_price + vectors * vector_work(candidates);
+    return 4 * half_work(candidates) + candidates * newton_price + vectors * vector_work(candidates);
   }
 
   [[nodiscard]] bool set(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
                          std::span<const Vec4> force) noexcept;
-  void sum_behind() noexcept;
   void sweep() noexcept;
-  [[nodiscard]] float displace() noexcept;
-  void keep() noexcept;
-  [[nodiscard]] bool newton(std::uint64_t work, ContactAnswer& answer) noexcept;
+  void project() noexcept;
+  [[nodiscard]] float residual() const noexcept;
+  void judge(ContactAnswer& answer) noexcept;
+  [[nodiscard]] bool newton(float accuracy, std::uint64_t work, ContactAnswer& answer) noexcept;
+  void iterate(const ContactAccuracy& accuracy, std::uint64_t work, ContactAnswer& answer) noexcept;
 
   ContactPoints points_;
   FrictionContact* contact_ = nullptr;

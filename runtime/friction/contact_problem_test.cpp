@@ -223,5 +223,208 @@ TEST_CASE("random problems have the solution of an independent solver in double 
   }
 }
 
+// forces on a cell move all others by this much of what they move itself: a patch on something slender
+void add_common_mode(const HalfSpacePatch& patch, double part, ContactBench& bench) {
+  const Eigen::Matrix3d own = patch.influence(Vector2d::Zero());
+  Eigen::Matrix3d common;
+  common << 1, 0, 0.5, 0, 0.5, 0, 0.5, 0, 1;
+  for (std::uint32_t j = 0; j < patch.count(); ++j) {
+    for (std::uint32_t i = 0; i <= j; ++i) {
+      bench.set_block(i, j, patch.influence(patch.place(i) - patch.place(j)) + part * own(2, 2) * common);
+    }
+  }
+}
+
+TEST_CASE("contacts on a body that gives way as a whole converge as fast as on a massive one") {
+  const HalfSpacePatch patch = patch_of(8, 0.3);
+  for (const double part : {0.0, 1.0, 10.0, 100.0}) {
+    for (const float friction : {0.0F, 0.3F, 1.0F}) {
+      CAPTURE(part);
+      CAPTURE(friction);
+      ContactBench bench(patch);
+      add_common_mode(patch, part, bench);
+      for (ContactCandidate& candidate : bench.candidates) candidate.friction = friction;
+      MovingTool tool(bench);
+      for (int k = 0; k < 20; ++k) {
+        const double depth = (1 + 0.01 * k) * (1 + 20 * part) * 4e-5;
+        const ContactAnswer answer = tool.step(gaps(patch, {sphere_radius, depth}), Vector3d(k < 10 ? 0 : 1e-6, 0, 0));
+        CHECK(answer.residual <= 1e-3F);
+        CHECK(answer.iterations <= 5);
+        check_cones(bench);
+      }
+    }
+  }
+}
+
+TEST_CASE("of points that move alike the forces add up to that of one") {
+  RandomProblem single(5, 10, 0.3, 0.3);
+  const MatrixXd a = single.bench.compliance();
+  RandomProblem twice(5, 20, 0, 0.3);
+  for (std::uint32_t j = 0; j < 20; ++j) {
+    for (std::uint32_t i = 0; i <= j; ++i) twice.bench.set_block(i, j, a.block<3, 3>(i / 2 * 3, j / 2 * 3));
+    twice.bench.candidates[j] = single.bench.candidates[j / 2];
+  }
+  REQUIRE(single.bench.solve({.residual = 1e-5F}).residual <= 1e-5F);
+  REQUIRE(twice.bench.solve({.residual = 1e-5F}).residual <= 1e-5F);
+  const VectorXd one = forces(single.bench);
+  const VectorXd two = forces(twice.bench);
+  for (Index i = 0; i < 10; ++i) {
+    CHECK((two.segment<3>(6 * i) + two.segment<3>(6 * i + 3) - one.segment<3>(3 * i)).norm() <= 1e-3 * one.norm());
+  }
+}
+
+TEST_CASE("nothing that touches without being pressed has a force, and none pulls") {
+  const HalfSpacePatch patch = patch_of(4);
+  ContactBench bench(patch);
+  for (ContactCandidate& candidate : bench.candidates) candidate.friction = 0.5F;
+  MovingTool tool(bench);
+  for (const double gap : {0.0, 1e-6}) {
+    const ContactAnswer answer = tool.step(std::vector<double>(patch.count(), gap), Vector3d(1e-5, 0, 0));
+    CHECK(answer.valid);
+    CHECK(answer.residual == 0);
+    CHECK(bench.total().norm() == 0);
+    for (const ContactState state : bench.state) CHECK(state == ContactState::open);
+  }
+  // from a force that was there before
+  for (Vec4& f : bench.force) f = {0.1F, 0, 0.3F, 0};
+  tool.step(std::vector<double>(patch.count(), 1e-9), Vector3d::Zero());
+  CHECK(bench.total().norm() == 0);
+}
+
+// two fingers hold an object from left and right; it hangs on springs and its own weight would lower it by `sag`
+ContactAnswer pinch(double sag, double friction, ContactBench& bench) {
+  constexpr double own = 1e-3;   // m/N, of each side
+  constexpr double body = 5e-2;  // m/N, of the whole
+  for (std::uint32_t j = 0; j < 2; ++j) {
+    for (std::uint32_t i = 0; i <= j; ++i) {
+      bench.set_block(i, j, (i == j ? own + body : body) * Eigen::Matrix3d::Identity());
+    }
+    const float side = j == 0 ? 1.0F : -1.0F;
+    bench.candidates[j].normal = {side, 0, 0, 0};
+    bench.candidates[j].gap = {side * -2e-3F, 0, static_cast<float>(-sag), 0};
+    bench.candidates[j].friction = static_cast<float>(friction);
+  }
+  return bench.solve({.residual = 1e-5F});
+}
+
+TEST_CASE("an object between two fingers is held by friction, or slides down") {
+  ContactBench bench(2);
+  CHECK(pinch(0.05, 0.5, bench).residual <= 1e-5F);
+  // 2 N from each side, which move it nowhere together; holding it takes 0.05 / (own + 2 body) N from each
+  CHECK(bench.force[0].x == doctest::Approx(2));
+  CHECK(bench.force[1].x == doctest::Approx(-2));
+  for (int j = 0; j < 2; ++j) {
+    CHECK(bench.state[j] == ContactState::stick);
+    CHECK(bench.force[j].z == doctest::Approx(0.05 / 0.101));
+  }
+  CHECK(pinch(0.05, 0.2, bench).residual <= 1e-5F);
+  for (int j = 0; j < 2; ++j) {
+    CHECK(bench.state[j] == ContactState::slip);
+    CHECK(bench.force[j].z == doctest::Approx(0.4).epsilon(1e-4));
+    CHECK(bench.displacement[j].z == doctest::Approx(-0.05 + 0.4 * 0.101).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("friction takes energy away at every contact in every step") {
+  const HalfSpacePatch patch = patch_of(10, 0.3);
+  ContactBench bench(patch);
+  for (ContactCandidate& candidate : bench.candidates) candidate.friction = 0.5F;
+  MovingTool tool(bench);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> way(-1, 1);
+  Vector3d at = Vector3d::Zero();
+  double taken = 0;
+  for (int k = 0; k < 300; ++k) {
+    const Vector3d next(1e-4 * way(random), 1e-4 * way(random), 3e-5 * (1 + way(random)));
+    tool.step(gaps(patch, {sphere_radius, next.z(), Vector2d(next.head<2>())}),
+              Vector3d(next.x() - at.x(), next.y() - at.y(), 0));
+    at = next;
+    for (std::size_t i = 0; i < bench.force.size(); ++i) {
+      const double work = vector(bench.force[i]).head<2>().dot(vector(bench.displacement[i]).head<2>());
+      taken -= work;
+      CHECK(work <= 1e-3 * bench.total().norm() * 1e-6);
+    }
+  }
+  CHECK(taken > 0);
+}
+
+TEST_CASE("a sphere that slides over scattered points at one depth is pressed evenly") {
+  HalfSpacePatch patch = patch_of(16);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> shift(-0.25, 0.25);
+  std::vector<Vector2d> place;
+  for (std::uint32_t i = 0; i < patch.count(); ++i) {
+    place.push_back(patch.place(i) + patch.cell * Vector2d(shift(random), shift(random)));
+  }
+  ContactBench bench(patch);
+  for (std::uint32_t j = 0; j < patch.count(); ++j) {
+    for (std::uint32_t i = 0; i <= j; ++i) bench.set_block(i, j, patch.influence(place[i] - place[j]));
+    bench.candidates[j].friction = 0.3F;
+  }
+  MovingTool tool(bench);
+  double last = 0;
+  double worst = 0;
+  int changes = 0;
+  std::vector<ContactState> before(patch.count());
+  for (int k = 0; k < 120; ++k) {
+    const double step = patch.cell / 40;
+    const Vector2d at((k - 60) * step, 0);
+    std::vector<double> gap;
+    for (const Vector2d& p : place) gap.push_back((p - at).squaredNorm() / (2 * sphere_radius) - 2e-5);
+    CHECK(tool.step(gap, Vector3d(k == 0 ? 0 : step, 0, 0)).residual <= 1e-3F);
+    const double force = bench.total().norm();
+    if (k > 5) CHECK(std::abs(force - last) <= 0.02 * last);  // once all of it slips
+    worst = k > 5 ? std::max(worst, std::abs(force / last - 1)) : 0;
+    last = force;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      changes += (before[i] == ContactState::open) != (bench.state[i] == ContactState::open) ? 1 : 0;
+    }
+    before = bench.state;
+  }
+  CHECK(changes > 100);  // points came and went
+  MESSAGE("largest step of the force: " << worst);
+}
+
+TEST_CASE("any work allowed gives forces in the cones, costs no more, and gives the same bits again") {
+  const HalfSpacePatch patch = patch_of(8, 0.3);
+  const std::vector<double> gap = gaps(patch, {sphere_radius, 4e-5});
+  float last = 2;
+  for (std::uint64_t part = 0; part <= 32; ++part) {
+    const std::uint64_t work = ContactProblem::least_work(64) + part * ContactProblem::iteration_work(64) / 16;
+    ContactBench first(patch);
+    ContactBench second(patch);
+    for (ContactBench* bench : {&first, &second}) {
+      for (std::size_t i = 0; i < gap.size(); ++i) {
+        bench->candidates[i].gap = {1e-5F, 0, static_cast<float>(gap[i]), 0};
+        bench->candidates[i].friction = 0.4F;
+      }
+      const ContactAnswer answer = bench->solve({.residual = 1e-6F}, work);
+      CHECK(answer.valid);
+      CHECK(answer.work <= work);
+      CHECK(answer.residual <= last * 1.0001F);
+      if (bench == &second) last = answer.residual;
+      check_cones(*bench);
+    }
+    CHECK(std::memcmp(first.force.data(), second.force.data(), first.force.size() * sizeof(Vec4)) == 0);
+  }
+  CHECK(last <= 1e-5F);
+}
+
+TEST_CASE("what is not finite, and points without a compliance, are refused") {
+  for (int k = 0; k < 5; ++k) {
+    RandomProblem problem(3, 6, 0, 0.3);
+    ContactBench& bench = problem.bench;
+    if (k == 0) bench.candidates[4].gap.y = NAN;
+    if (k == 1) bench.candidates[4].friction = -1;
+    if (k == 2) bench.candidates[4].normal.x = INFINITY;
+    if (k == 3) bench.set_block(4, 4, Eigen::Matrix3d::Zero());
+    if (k == 4) bench.force[4].z = NAN;
+    const ContactAnswer answer = bench.solve();
+    CHECK_FALSE(answer.valid);
+    CHECK(forces(bench).norm() == 0);
+    for (const ContactState state : bench.state) CHECK(state == ContactState::open);
+  }
+}
+
 }  // namespace
 }  // namespace greenloop

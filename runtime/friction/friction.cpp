@@ -58,15 +58,15 @@ Float4 combined(const FrictionContact& contact, const Components& force, float s
 // of a friction coefficient: in space a friction force is rounded, and not quite perpendicular to the normal
 float slack(float mu) { return rounding + std::fmin(rounding * mu * mu, mu / 8); }
 
-// in space, with the friction force shortened so that rounding does not lead out of the cone
+// the part of a friction force that is left when it is shortened so that rounding does not lead out of the cone
+float share_in_cone(const FrictionContact& contact, float normal, float friction) {
+  const float most = (contact.friction - slack(contact.friction)) * normal;
+  return friction <= most ? 1 : most > 0 ? most / friction : 0;
+}
+
 Float4 in_space(const FrictionContact& contact, const Components& force) {
-  if (!(force.normal > 0)) {
-    return Float4{};
-  }
-  const float most = (contact.friction - slack(contact.friction)) * force.normal;
-  const float friction = length(force.tangent);
-  const float share = friction <= most ? 1 : most > 0 ? most / friction : 0;
-  return combined(contact, force, share);
+  return force.normal > 0 ? combined(contact, force, share_in_cone(contact, force.normal, length(force.tangent)))
+                          : Float4{};
 }
 
 // slipping: the friction force at a multiplier x is -p / (compliance + x), component by component; it and the normal
@@ -166,6 +166,14 @@ Float4 cone_projection(const FrictionContact& contact, Float4 force) noexcept {
   }
   const float nearest = (normal + mu * friction) / (1 + mu * mu);
   return splat(nearest) * contact.normal + splat(mu * nearest / friction) * tangent;
+}
+
+Float4 force_in_cone(const FrictionContact& contact, Float4 force) noexcept {
+  const Float4 nearest = cone_projection(contact, force);
+  const float normal = dot3(contact.normal, nearest);
+  const Float4 tangent = nearest - splat(normal) * contact.normal;
+  const float share = share_in_cone(contact, normal, std::sqrt(dot3(tangent, tangent)));
+  return normal > 0 ? splat(normal) * contact.normal + splat(share) * tangent : Float4{};
 }
 
 Float4 local_force(const FrictionContact& contact, Float4 free, float& multiplier) noexcept {

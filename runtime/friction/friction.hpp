@@ -40,6 +40,9 @@ struct FrictionContact {
 /// Nearest force of the friction cone (Euclid's distance). For the loop, constant work.
 [[nodiscard]] Float4 cone_projection(const FrictionContact& contact, Float4 force) noexcept;
 
+/// The same, in the cone for all that rounding does. For the loop, constant work.
+[[nodiscard]] Float4 force_in_cone(const FrictionContact& contact, Float4 force) noexcept;
+
 /// The force with which the law holds where u = free + compliance f; it lies in the cone. Sticking is tried before
 /// slipping (the enumerative solver of Acary & Brogliato, Numerical Methods for Nonsmooth Dynamical Systems, 13.7.4);
 /// the slip is found by Newton steps on one scalar, `multiplier`, slip per friction force, m/N: what it is handed is
