@@ -104,14 +104,20 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   return sum <= body.force_limit && sum * body.stiffness <= FLT_MAX;
 }
 
+// sums of what acts beside the contacts
+[[gnu::noinline]] void add_loads(const Body& body, const FieldLevels& levels) {
+  const KnownForces& forces = body.loads->forces;
+  sum_forces<3>(body.field_model(), forces.on_columns(), forces.touched, domain_up_to(*body.view, levels.details),
+                body.field_scratch());
+}
+
 // displacements by the forces of the planned set, and what acts besides; apart, so that what makes a factor does not
 // stand on its stack
 [[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
                                    const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
   if (body.is_loaded) {
-    sum_forces<3>(body.field_model(), body.forces.on_columns(), body.forces.touched,
-                  domain_up_to(*body.view, levels.details), body.field_scratch());
+    add_loads(body, levels);
   }
   compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
@@ -125,26 +131,22 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 }
 
 // nothing is touched: the body is at rest
-Elastostatic::StepReport release(Body& body, const Elastostatic::Response& response, std::uint64_t work) {
+void release(Body& body, const Elastostatic::Response& response, std::uint64_t work, Elastostatic::StepReport& report) {
   body.last.release();
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
     work += priced(response.displacement.size(), body.counts.prices.node);
   }
-  Elastostatic::StepReport report;
   report.work = work;
   report.constraint_level = finest;
   report.field_level = response.displacement.empty() ? finest : finest_displaced(body, response);
-  return report;
 }
 
-Elastostatic::StepReport held(Status status, std::uint64_t work) {
-  Elastostatic::StepReport report;
+void hold(Status status, std::uint64_t work, Elastostatic::StepReport& report) {
   report.status = status;
   report.work = work;
   report.error = std::numeric_limits<float>::infinity();
-  return report;
 }
 
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
@@ -172,8 +174,8 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
 }
 
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
-void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, float* force,
-                  Elastostatic::StepReport& report) {
+[[gnu::noinline]] void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
+                                    float* force, Elastostatic::StepReport& report) {
   body.glide.advance(contacts, body.planned, body.last);
   const float* const older = solve_older_level(body, contacts, budget, report.work);
   const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
@@ -245,10 +247,14 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
   return report.details.glide < 1 ? larger(error, body.last.error()) : error;
 }
 
+// with the details of all nodes that were asked for, at the finest level
+bool is_finest(const Body& body, const Plan& plan) {
+  return plan.level + 1 == body.view->levels && plan.field_levels.details == plan.field_levels.nodes;
+}
+
 // no contacts, but known forces
-Elastostatic::StepReport answer_loads(Body& body, const Plan& plan, std::uint64_t work,
-                                      const Elastostatic::Response& response) {
-  Elastostatic::StepReport report;
+void answer_loads(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work,
+                  const Elastostatic::Response& response, Elastostatic::StepReport& report) {
   report.work = report.details.needed_work = work + force_work(body.counts.prices, plan.counts) + plan.field;
   report.constraint_level = plan.level;
   report.field_level = plan.field_levels.details;
@@ -256,103 +262,126 @@ Elastostatic::StepReport answer_loads(Body& body, const Plan& plan, std::uint64_
     reconstruct(body, {}, {}, plan.field_levels, response.displacement);
   }
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
-  const bool whole = plan.field_levels.details == plan.field_levels.nodes;
-  report.status = plan.level + 1 == body.view->levels && whole ? Status::ok : Status::coarser;
+  report.status = is_finest(body, plan) ? Status::ok : Status::coarser;
   body.last.release();
   body.answered = true;
-  return report;
+  hand_out_forces(body, contacts, response.force, report);
 }
 
-Elastostatic::StepReport answer(Body& body, const Contacts& all, const Plan& plan, std::uint64_t work,
-                                std::uint64_t budget, const Elastostatic::Response& response) {
-  const std::span<const Constraint> contacts = all.held;
-  const ContactSet& set = body.planned;
-  const std::uint64_t needed =
-      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+// the forces of the columns of the planned set, in Body::column_force, and of its contacts; `work` grows by what that
+// took
+Status hold_contacts(Body& body, const Contacts& contacts, const Plan& plan, Factor*& factor, std::uint64_t& work) {
   body.factoring.spent = 0;
-  Factor* const factor = find_factor(body, plan);
+  factor = find_factor(body, plan);
   work += plan.cached != nullptr ? 0 : plan.factor - plan.bounded + body.factoring.spent;
   if (factor == nullptr) {
-    return held(Status::held_singular, work);
+    return Status::held_singular;
   }
   const float* displaced = nullptr;
   if (body.is_loaded) {
-    work += displace_by_loads_work(body.counts, plan.counts, plan.loads, displace_by_loads(body));
-    displaced = body.column_displaced;
+    work += displace_by_loads_work(body.counts, plan.counts, body.loads->counts, displace_by_loads(body));
+    displaced = body.loads->column_displaced;
   }
   work += force_work(body.counts.prices, plan.counts);
-  if (!solve_forces(body, contacts, set, *factor, displaced, body.column_force)) {
-    return held(Status::held_overflow, work);
+  if (!solve_forces(body, contacts.held, body.planned, *factor, displaced, body.column_force)) {
+    return Status::held_overflow;
   }
-  float* const force = all.force;
-  share_forces(body.column_force, contacts.size(), set, force);
+  share_forces(body.column_force, contacts.held.size(), body.planned, contacts.force);
+  return Status::ok;
+}
+
+void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work, std::uint64_t budget,
+            const Elastostatic::Response& response, Elastostatic::StepReport& report) {
+  const ContactSet& set = body.planned;
+  report.details.needed_work =
+      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+  Factor* factor = nullptr;
+  const Status held = hold_contacts(body, contacts, plan, factor, work);
+  if (held != Status::ok) {
+    report.details.needed_work = 0;
+    return hold(held, work, report);
+  }
   if (!response.displacement.empty()) {
     work += plan.field;
-    reconstruct(body, contacts, {set.columns, set.column, body.column_force}, plan.field_levels, response.displacement);
+    reconstruct(body, contacts.held, {set.columns, set.column, body.column_force}, plan.field_levels,
+                response.displacement);
   }
-  Elastostatic::StepReport report;
   report.work = work;
   report.constraint_level = set.level();
   report.field_level = plan.field_levels.details;
-  report.details.needed_work = needed;
-  report.details.held_contacts = static_cast<std::uint16_t>(contacts.size() - set.waiting);
+  report.details.held_contacts = static_cast<std::uint16_t>(contacts.held.size() - set.waiting);
   report.details.waiting_contacts = static_cast<std::uint16_t>(set.waiting);
-  const bool moving = !body.last.stays(contacts);
-  glide_forces(body, contacts, budget, force, report);
+  const bool moving = !body.last.stays(contacts.held);
+  glide_forces(body, contacts.held, budget, contacts.force, report);
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
   body.last.set_error(report.error);
   body.cache.use(*factor);
-  prepare_factor(body, contacts, plan, moving, budget, report);
+  prepare_factor(body, contacts.held, plan, moving, budget, report);
   report.details.cached_factor = plan.cached != nullptr;
   report.details.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
-  const bool finest = report.constraint_level + 1 == body.view->levels && set.waiting == 0 &&
-                      plan.field_levels.details == plan.field_levels.nodes;
-  report.status = finest && report.details.glide == 1 ? Status::ok : Status::coarser;
+  const bool finest = is_finest(body, plan) && set.waiting == 0 && report.details.glide == 1;
+  report.status = finest ? Status::ok : Status::coarser;
   body.answered = true;
-  return report;
+  hand_out_forces(body, contacts, response.force, report);
 }
 
-Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> constraints,
-                                   const Elastostatic::Loads& loads, Budget budget,
-                                   const Elastostatic::Response& response) {
-  body.answered = false;
-  const Status request = check_request(body, constraints.size(), loads, budget, response);
-  if (request != Status::ok) {
-    return held(request, 0);
+// what comes of checking a step's inputs, the units that took, and the contacts among them
+struct Accepted {
+  Status status = Status::ok;
+  std::uint32_t refused = StepReport::no_constraint;
+  std::uint64_t work = 0;
+  Contacts contacts;
+};
+
+// apart, so that it does not stand on the stack of an answer
+[[gnu::noinline]] void accept_inputs(Body& body, std::span<const Constraint> constraints,
+                                     const Elastostatic::Loads& loads, Budget budget,
+                                     const Elastostatic::Response& response, Accepted& accepted) {
+  accepted.status = check_request(body, constraints.size(), loads, budget, response);
+  if (accepted.status != Status::ok) {
+    return;
   }
   const Prices& prices = body.counts.prices;
-  const std::uint32_t most_forces = body.counts.max_forces;
-  const std::uint64_t forces = most_forces > 0 ? count_forces(constraints, loads.masks) : 0;
-  const std::uint64_t masked = forces < most_forces ? forces : most_forces;
-  std::uint64_t work = check_contacts_work(prices, constraints.size() + masked);
-  const auto [checked, refused] = check_contacts(constraints, body.view->node_count, body.facts,
-                                                 {body.counts.max_contacts, most_forces, loads.masks});
-  if (checked != Status::ok) {
-    Elastostatic::StepReport report = held(checked, work);
-    report.refused = refused;
-    return report;
+  const std::uint32_t most = body.counts.max_forces;
+  const std::uint64_t forces = most > 0 ? count_forces(constraints, loads.masks) : 0;
+  accepted.work = check_contacts_work(prices, constraints.size() + (forces < most ? forces : most));
+  const CheckedContacts checked =
+      check_contacts(constraints, body.view->node_count, body.facts, {body.counts.max_contacts, most, loads.masks});
+  accepted.status = checked.status;
+  accepted.refused = checked.refused;
+  if (checked.status != Status::ok) {
+    return;
   }
-  Contacts contacts;
-  work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
-  if (!take_loads(body, constraints, loads, response.force, contacts)) {
-    return held(Status::held_overflow, work);
+  accepted.work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
+  if (!take_loads(body, constraints, loads, response.force, accepted.contacts)) {
+    accepted.status = Status::held_overflow;
   }
+}
+
+void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads, Budget budget,
+               const Elastostatic::Response& response, Elastostatic::StepReport& report) {
+  body.answered = false;
+  Accepted accepted;
+  accept_inputs(body, constraints, loads, budget, response, accepted);
+  report.refused = accepted.refused;
+  if (accepted.status != Status::ok) {
+    return hold(accepted.status, accepted.work, report);
+  }
+  const Contacts& contacts = accepted.contacts;
   if (contacts.held.empty() && !body.is_loaded) {
-    return release(body, response, work);
+    return release(body, response, accepted.work, report);
   }
   const bool wants_field = !response.displacement.empty();
   const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
-  const Plan plan = make_plan(body, contacts.held, budget.work - work, wants_field, displaced);
-  work += plan.work;
+  const Plan plan = make_plan(body, contacts.held, budget.work - accepted.work, wants_field, displaced);
+  const std::uint64_t work = accepted.work + plan.work;
   if (!plan.fits) {
-    return held(Status::held_over_budget, work);
+    return hold(Status::held_over_budget, work, report);
   }
-  Elastostatic::StepReport report = contacts.held.empty() ? answer_loads(body, plan, work, response)
-                                                          : answer(body, contacts, plan, work, budget.work, response);
-  if (answered(report.status) && (forces > 0 || loads.stiffness != 1)) {
-    hand_out_forces(body, constraints, contacts, response.force, report);
+  if (contacts.held.empty()) {
+    return answer_loads(body, contacts, plan, work, response, report);
   }
-  return report;
+  answer(body, contacts, plan, work, budget.work, response, report);
 }
 
 }  // namespace
@@ -418,12 +447,17 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
-  return step(contacts, {}, budget, response);
+  StepReport report;
+  static constexpr Loads none{};
+  take_step(*body_, contacts, none, budget, response, report);
+  assert(Arena::intact(body_->last_red_zone));
+  return report;
 }
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
                                             const Response& response) noexcept {
-  const StepReport report = take_step(*body_, constraints, loads, budget, response);
+  StepReport report;
+  take_step(*body_, constraints, loads, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }

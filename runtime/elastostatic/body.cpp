@@ -134,12 +134,16 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.read = arena.take<std::uint8_t>(view.domain_count);
 }
 
-void carve_loads(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body) {
-  body.forces.carve(arena, view, sizes.counts.max_forces);
-  body.held = arena.take<Constraint>(sizes.counts.max_contacts);
-  body.held_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
-  body.column_displaced = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
-  body.displaced = arena.take_zeroed<Float4>(view.domain_count);
+LoadState* carve_loads(Arena& arena, const ModelView& view, const BodySizes& sizes) {
+  auto* const memory = arena.take<LoadState>(1);
+  LoadState counted;
+  LoadState& loads = memory == nullptr ? counted : *new (memory) LoadState;
+  loads.forces.carve(arena, view, sizes.counts.max_forces);
+  loads.held = arena.take<Constraint>(sizes.counts.max_contacts);
+  loads.held_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
+  loads.column_displaced = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
+  loads.displaced = arena.take_zeroed<Float4>(view.domain_count);
+  return memory;
 }
 
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
@@ -166,7 +170,7 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
   if (sizes.counts.takes_loads()) {
-    carve_loads(arena, view, sizes, body);
+    body.loads = carve_loads(arena, view, sizes);
   }
   body.cache.carve<3>(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.job.carve<3>(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);

@@ -22,6 +22,17 @@
 
 namespace greenloop {
 
+/// What a body keeps of what acts on it beside its contacts.
+struct LoadState {
+  KnownForces forces;                 ///< of a step
+  std::uint32_t amounts = 0;          ///< loads of the model that act in it
+  LoadCounts counts;                  ///< of the plan
+  Constraint* held = nullptr;         ///< [contacts] among constraints of other kinds
+  float* held_force = nullptr;        ///< [3 * contacts]
+  float* column_displaced = nullptr;  ///< [3 * columns] by the loads alone
+  Float4* displaced = nullptr;        ///< [domain], zero between steps
+};
+
 /// Everything that a body keeps in its arena.
 struct Body {
   const ModelView* view = nullptr;  ///< its own
@@ -53,15 +64,9 @@ struct Body {
   float* other_column_force = nullptr;
   float* older_force = nullptr;  ///< [3 * contacts] by the level before
   Float4* force = nullptr;       ///< [domain], zero between steps
-  // where loads act; null where the limits ask for none
-  bool is_loaded = false;             ///< something but contacts acts in this step
-  float stiffness = 1;                ///< of this step, over the model's; all below is of the model's
-  KnownForces forces;                 ///< of this step
-  std::uint32_t amounts = 0;          ///< loads of the model that act
-  Constraint* held = nullptr;         ///< [contacts] among constraints of other kinds
-  float* held_force = nullptr;        ///< [3 * contacts]
-  float* column_displaced = nullptr;  ///< [3 * columns] by the loads alone
-  Float4* displaced = nullptr;        ///< [domain], zero between steps
+  float stiffness = 1;           ///< of this step, over the model's; all that is kept is of the model's
+  bool is_loaded = false;        ///< something but contacts acts in this step
+  LoadState* loads = nullptr;    ///< null where the limits ask for none
   FactorCache cache;
   FactorJob job;  ///< the factor of a finer level
   LastAnswer last;

@@ -8,8 +8,9 @@
 
 namespace greenloop {
 
-/// The constraints of a step, apart: contacts, and where their forces go.
+/// The constraints of a step, the contacts among them, and where the forces of these go.
 struct Contacts {
+  std::span<const Constraint> all;
   std::span<const Constraint> held;
   float* force = nullptr;  ///< [3 * held] N, over the stiffness scale
 };
@@ -19,13 +20,13 @@ struct Contacts {
 bool take_loads(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads,
                 std::span<Vec3> force, Contacts& contacts) noexcept;
 
-/// What the loads of a planned step displace of the columns of its contacts, into Body::column_displaced. Returns the
-/// blocks between the two. For the loop; work: displace_by_loads_work.
+/// What the loads of a planned step displace of the columns of its contacts, into LoadState::column_displaced. Returns
+/// the blocks between the two. For the loop; work: displace_by_loads_work.
 std::uint64_t displace_by_loads(const Body& body) noexcept;
 
-/// Hands the forces of all constraints out, and the report's forces and energies, by the stiffness scale. For the loop;
-/// work: within list_forces_work, or within that of the glide.
-void hand_out_forces(const Body& body, std::span<const Constraint> constraints, const Contacts& contacts,
-                     std::span<Vec3> force, Elastostatic::StepReport& report) noexcept;
+/// Hands the forces of all constraints of an answered step out, and the report's forces and energies, by the stiffness
+/// scale; where they stand already, it does nothing. For the loop; work: within list_forces_work, or that of the glide.
+void hand_out_forces(const Body& body, const Contacts& contacts, std::span<Vec3> force,
+                     Elastostatic::StepReport& report) noexcept;
 
 }  // namespace greenloop
