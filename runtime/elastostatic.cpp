@@ -28,10 +28,6 @@ std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& r
   return layout::none;
 }
 
-// of Young's modulus
-constexpr float least_stiffness = 0x1p-20F;
-constexpr float most_stiffness = 0x1p20F;
-
 Status check_request(const Body& body, std::size_t constraints, const Elastostatic::Loads& loads, Budget budget,
                      const Elastostatic::Response& response) {
   if (budget.work < body.least_work) {
@@ -40,11 +36,9 @@ Status check_request(const Body& body, std::size_t constraints, const Elastostat
   if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
     return Status::held_out_of_range;
   }
-  if (!std::isfinite(loads.stiffness)) {
-    return Status::held_not_finite;
-  }
-  if (loads.stiffness < least_stiffness || loads.stiffness > most_stiffness) {
-    return Status::held_out_of_range;
+  const Status acting = check_loads(body, loads);
+  if (acting != Status::ok) {
+    return acting;
   }
   const bool field_fits = response.displacement.empty() ||
                           (finest_displaced(body, response) != layout::none &&
@@ -104,11 +98,12 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   return sum <= body.force_limit && sum * body.stiffness <= FLT_MAX;
 }
 
-// sums of what acts beside the contacts
-[[gnu::noinline]] void add_loads(const Body& body, const FieldLevels& levels) {
+// sums of the known forces; returns the model's loads
+[[gnu::noinline]] ActingLoads sum_known_forces(const Body& body, const FieldLevels& levels) {
   const KnownForces& forces = body.loads->forces;
   sum_forces<3>(body.field_model(), forces.on_columns(), forces.touched, domain_up_to(*body.view, levels.details),
                 body.field_scratch());
+  return body.loads->acting();
 }
 
 // displacements by the forces of the planned set, and what acts besides; apart, so that what makes a factor does not
@@ -116,10 +111,8 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 [[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
                                    const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  if (body.is_loaded) {
-    add_loads(body, levels);
-  }
-  compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
+  const ActingLoads loads = body.is_loaded ? sum_known_forces(body, levels) : ActingLoads{};
+  compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x, loads);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].value;

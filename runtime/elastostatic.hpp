@@ -28,6 +28,7 @@ class Elastostatic {
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
     std::uint32_t max_forces = 0;  ///< 0..4096, nodes that known forces are on in a step, those of masks each time; 0:
                                    ///< constraints of other kinds than hold are refused
+    bool model_loads = false;      ///< the model's loads may act, gravity and pressures
     Prices prices{};               ///< that make work units of what a step does
   };
 
@@ -47,7 +48,9 @@ class Elastostatic {
   /// What acts on a body in a step beside its constraints, and how stiff it is.
   struct Loads {
     std::span<const Mask> masks{};  ///< that constraints of kind pattern name
-    float stiffness = 1;          ///< 2^-20..2^20, Young's modulus over the model's
+    Vec3 gravity{};  ///< m/s^2, of the whole body, where the model has accelerations (ElastostaticView::has_gravity)
+    std::span<const float> pressure{};  ///< Pa, of the model's first pressures, in their order
+    float stiffness = 1;                ///< 2^-20..2^20, Young's modulus over the model's
   };
 
   /// The answer of a step; the caller owns the memory. The size of `displacement` says which nodes are displaced: all,

@@ -139,6 +139,9 @@ LoadState* carve_loads(Arena& arena, const ModelView& view, const BodySizes& siz
   LoadState counted;
   LoadState& loads = memory == nullptr ? counted : *new (memory) LoadState;
   loads.forces.carve(arena, view, sizes.counts.max_forces);
+  loads.load = arena.take<std::uint32_t>(sizes.counts.model_loads);
+  loads.amount = arena.take<float>(sizes.counts.model_loads);
+  loads.largest = arena.take<float>(sizes.counts.model_loads);
   loads.held = arena.take<Constraint>(sizes.counts.max_contacts);
   loads.held_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   loads.column_displaced = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
@@ -262,6 +265,10 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
     return nullptr;
   }
   body.force_limit = largest_force_sum(view, body.lifting);
+  const double growth = body.counts.model_loads > 0 ? transform_growth(view, prediction_of(view), body.lifting) : 0;
+  for (std::uint32_t k = 0; k < body.counts.model_loads; ++k) {
+    body.loads->largest[k] = static_cast<float>(growth * largest_coefficient(view, k));
+  }
   body.last_red_zone = arena.last_red_zone();
   return &body;
 }

@@ -26,11 +26,16 @@ namespace greenloop {
 struct LoadState {
   KnownForces forces;                 ///< of a step
   std::uint32_t amounts = 0;          ///< loads of the model that act in it
+  std::uint32_t* load = nullptr;      ///< [loads of the model] those
+  float* amount = nullptr;            ///< [loads of the model] of each, over the stiffness scale
+  float* largest = nullptr;           ///< [loads of the model] m a unit, no displacement is larger
   LoadCounts counts;                  ///< of the plan
   Constraint* held = nullptr;         ///< [contacts] among constraints of other kinds
   float* held_force = nullptr;        ///< [3 * contacts]
   float* column_displaced = nullptr;  ///< [3 * columns] by the loads alone
   Float4* displaced = nullptr;        ///< [domain], zero between steps
+
+  [[nodiscard]] ActingLoads acting() const noexcept { return {amounts, load, amount}; }
 };
 
 /// Everything that a body keeps in its arena.

@@ -15,6 +15,9 @@ struct Contacts {
   float* force = nullptr;  ///< [3 * held] N, over the stiffness scale
 };
 
+/// Whether a body takes such loads, but for the masks. For the loop; work: a unit a pressure.
+[[nodiscard]] Status check_loads(const Body& body, const Elastostatic::Loads& loads) noexcept;
+
 /// Takes what acts in a step, out of checked constraints, into the body. False if it could overflow the answer. For the
 /// loop; work: list_forces_work where constraints of other kinds than hold are among them.
 bool take_loads(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads,

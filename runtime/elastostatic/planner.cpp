@@ -61,6 +61,7 @@ void plan_loads(const Body& body, std::uint32_t level, Plan& plan) {
   clear(forces.touched);
   touch(body.refinement, forces.column, forces.count, forces.touched);
   SetCounts& counts = body.loads->counts.forces;
+  body.loads->counts.amounts = body.loads->amounts;
   counts.columns = forces.count;
   counts.coefficients = forces.touched.coefficients();
   counts.visits = forces.touched.visits;

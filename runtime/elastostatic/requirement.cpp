@@ -24,6 +24,7 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
   counts.max_forces = limits.max_forces;
+  counts.model_loads = limits.model_loads ? static_cast<std::uint32_t>(view.loads.size()) : 0;
   counts.keeps_capacitance = limits.keep_capacitance;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
