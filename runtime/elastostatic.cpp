@@ -126,6 +126,8 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 // nothing is touched: the body is at rest
 void release(Body& body, const Elastostatic::Response& response, std::uint64_t work, Elastostatic::StepReport& report) {
   body.last.release();
+  body.planned.columns = 0;
+  body.answered = true;
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
@@ -453,28 +455,6 @@ Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constrai
   take_step(*body_, constraints, loads, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
-}
-
-bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept {
-  const Body& body = *body_;
-  const ContactSet& set = body.planned;
-  if (!body.answered || i >= body.last.contacts() || j >= body.last.contacts() || !set.holds(i) || !set.holds(j)) {
-    return false;
-  }
-  const Factor* const factor = body.cache.find(set.all());
-  if (factor == nullptr || factor->capacitance == nullptr) {
-    return false;
-  }
-  const std::size_t row = std::size_t{3} * factor->position[set.place[i]];
-  const std::size_t column = std::size_t{3} * factor->position[set.place[j]];
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      const std::size_t a = row + r, b = column + c;
-      block[3 * c + r] =
-          factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b] / body.stiffness;
-    }
-  }
-  return true;
 }
 
 }  // namespace greenloop

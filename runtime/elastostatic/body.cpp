@@ -146,6 +146,12 @@ LoadState* carve_loads(Arena& arena, const ModelView& view, const BodySizes& siz
   loads.held_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   loads.column_displaced = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
   loads.displaced = arena.take_zeroed<Float4>(view.domain_count);
+  if (sizes.counts.max_points > 0) {
+    const std::uint64_t forced = std::uint64_t{sizes.counts.max_contacts} + sizes.counts.max_forces;
+    loads.point_column = arena.take<std::uint32_t>(std::uint64_t{3} * sizes.counts.max_points);
+    loads.asked_column = arena.take<std::uint32_t>(forced);
+    loads.asked_force = arena.take<float>(3 * forced);
+  }
   return memory;
 }
 
@@ -172,7 +178,7 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.older_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
-  if (sizes.counts.takes_loads()) {
+  if (sizes.counts.takes_loads() || sizes.counts.max_points > 0) {
     body.loads = carve_loads(arena, view, sizes);
   }
   body.cache.carve<3>(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);

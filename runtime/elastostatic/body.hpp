@@ -34,6 +34,10 @@ struct LoadState {
   float* held_force = nullptr;        ///< [3 * contacts]
   float* column_displaced = nullptr;  ///< [3 * columns] by the loads alone
   Float4* displaced = nullptr;        ///< [domain], zero between steps
+  // of selected answers
+  std::uint32_t* point_column = nullptr;  ///< [3 * points]
+  std::uint32_t* asked_column = nullptr;  ///< [contacts + forces]
+  float* asked_force = nullptr;           ///< [3 * (contacts + forces)]
 
   [[nodiscard]] ActingLoads acting() const noexcept { return {amounts, load, amount}; }
 };
@@ -44,6 +48,7 @@ struct Body {
   ModelCounts counts;
   std::uint64_t least_work = 0;
   float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
+  float stiffness = 1;    ///< of a step, over the model's; all that is kept is of the model's
   Lifting lifting;
   Refinement refinement;
   MirroredCouplings mirrored;
@@ -69,13 +74,12 @@ struct Body {
   float* other_column_force = nullptr;
   float* older_force = nullptr;  ///< [3 * contacts] by the level before
   Float4* force = nullptr;       ///< [domain], zero between steps
-  float stiffness = 1;           ///< of this step, over the model's; all that is kept is of the model's
-  bool is_loaded = false;        ///< something but contacts acts in this step
   LoadState* loads = nullptr;    ///< null where the limits ask for none
   FactorCache cache;
   FactorJob job;  ///< the factor of a finer level
   LastAnswer last;
-  bool answered = false;  ///< `planned` is the set of the last answer
+  bool answered = false;   ///< `planned` is the set of the last answer
+  bool is_loaded = false;  ///< something but contacts acts in the step
   Glide glide;
   const std::byte* last_red_zone = nullptr;
 

@@ -85,17 +85,23 @@ bool take_loads(Body& body, std::span<const Constraint> constraints, const Elast
   return bounded;
 }
 
-std::uint64_t displace_by_loads(const Body& body) noexcept {
+std::uint64_t displace(const Body& body, const ColumnForces& forces, const ActingLoads& acting) noexcept {
   const LoadState& loads = *body.loads;
-  const KnownForces& forces = loads.forces;
+  const Touched& forced = loads.forces.touched;
   std::uint64_t between = 0;
   if (forces.count > 0) {
-    transform_forces<3>(body.refinement, forces.on_columns(), forces.touched, body.force);
-    between = couple_coefficients(body.refinement, forces.touched, body.force, body.touched, loads.displaced);
-    clear_forces<3>(forces.touched, body.force);
+    transform_forces<3>(body.refinement, forces, forced, body.force);
+    between = couple_coefficients(body.refinement, forced, body.force, body.touched, loads.displaced);
+    clear_forces<3>(forced, body.force);
   }
-  add_loads(*body.view, loads.acting(), body.touched, loads.displaced);
+  add_loads(*body.view, acting, body.touched, loads.displaced);
   displace_columns(body.refinement, body.touched, loads.displaced);
+  return between;
+}
+
+std::uint64_t displace_by_loads(const Body& body) noexcept {
+  const LoadState& loads = *body.loads;
+  const std::uint64_t between = displace(body, loads.forces.on_columns(), loads.acting());
   for (std::uint32_t k = 0; k < body.planned.columns; ++k) {
     const Float4 displaced = loads.displaced[column_place(body.planned.column[k])];
     for (std::size_t r = 0; r < 3; ++r) {

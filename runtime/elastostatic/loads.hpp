@@ -23,6 +23,11 @@ struct Contacts {
 bool take_loads(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads,
                 std::span<Vec3> force, Contacts& contacts) noexcept;
 
+/// What forces and loads displace of the columns that `Body::touched` is touched by: LoadState::displaced at their
+/// places, to be cleared by it. The forces' own coefficients are touched in LoadState::forces. Returns the blocks
+/// between the two. For the loop; work: displace_by_loads_work.
+std::uint64_t displace(const Body& body, const ColumnForces& forces, const ActingLoads& acting) noexcept;
+
 /// What the loads of a planned step displace of the columns of its contacts, into LoadState::column_displaced. Returns
 /// the blocks between the two. For the loop; work: displace_by_loads_work.
 std::uint64_t displace_by_loads(const Body& body) noexcept;

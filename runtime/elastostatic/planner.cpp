@@ -25,16 +25,6 @@ std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
                                        count_field_blocks(body.field_blocks, loads.forces.touched, details));
 }
 
-std::uint64_t stored_blocks(const Body& body, const Touched& touched) {
-  std::uint64_t blocks = 0;
-  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      blocks += body.stored[touched.list[q][k]];
-    }
-  }
-  return blocks;
-}
-
 // touches the coefficients of the set
 void touch_set(Body& body, Plan& plan) {
   clear(body.touched);
@@ -47,7 +37,7 @@ void touch_set(Body& body, Plan& plan) {
 // bounds what the loads take, whose coefficients are touched as those of the set are
 void count_displaced(const Body& body, Plan& plan) {
   LoadCounts& loads = body.loads->counts;
-  loads.set_stored = stored_blocks(body, body.touched);
+  loads.set_stored = count_stored(body.stored, body.touched);
   plan.work += count_field_work(body.counts.prices, plan.counts);
   plan.displaced = plan.counts.columns == 0 ? 0
                                             : displace_by_loads_work(body.counts, plan.counts, loads,
@@ -65,7 +55,7 @@ void plan_loads(const Body& body, std::uint32_t level, Plan& plan) {
   counts.columns = forces.count;
   counts.coefficients = forces.touched.coefficients();
   counts.visits = forces.touched.visits;
-  counts.stored = stored_blocks(body, forces.touched);
+  counts.stored = count_stored(body.stored, forces.touched);
   plan.work += plan_loads_work(body.counts, {}, body.loads->counts);
   count_displaced(body, plan);
 }
