@@ -118,7 +118,7 @@ TEST_CASE("docs/format.md: the sections of a level stand in the order it says, a
   const auto place = [&](std::uint32_t kind) { return std::find(order.begin(), order.end(), kind) - order.begin(); };
   std::set<std::uint32_t> seen;
   for (const layout::Wavelet wavelet : layout::wavelets) {
-    ModelMutant plain(SyntheticOptions{.levels = 2, .wavelet = wavelet, .vertices = 5});
+    ModelMutant plain(SyntheticOptions{.levels = 2, .wavelet = wavelet, .vertices = 5, .gravity = true});
     REQUIRE(plain.verdict().ok());
     ModelMutant file(ready_file(plain.bytes(), std::vector<std::uint8_t>(plain.view().domain_count, 1)));
     std::uint32_t before = 0;

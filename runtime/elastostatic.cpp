@@ -28,10 +28,6 @@ std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& r
   return layout::none;
 }
 
-// of Young's modulus
-constexpr float least_stiffness = 0x1p-20F;
-constexpr float most_stiffness = 0x1p20F;
-
 Status check_request(const Body& body, std::size_t constraints, const Elastostatic::Loads& loads, Budget budget,
                      const Elastostatic::Response& response) {
   if (budget.work < body.least_work) {
@@ -40,11 +36,9 @@ Status check_request(const Body& body, std::size_t constraints, const Elastostat
   if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
     return Status::held_out_of_range;
   }
-  if (!std::isfinite(loads.stiffness)) {
-    return Status::held_not_finite;
-  }
-  if (loads.stiffness < least_stiffness || loads.stiffness > most_stiffness) {
-    return Status::held_out_of_range;
+  const Status acting = check_loads(body, loads);
+  if (acting != Status::ok) {
+    return acting;
   }
   const bool field_fits = response.displacement.empty() ||
                           (finest_displaced(body, response) != layout::none &&
@@ -109,16 +103,21 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   return !can_overflow(body, set, force);
 }
 
+// sums of the known forces; returns the model's loads
+[[gnu::noinline]] ActingLoads sum_known_forces(const Body& body, const FieldLevels& levels) {
+  const KnownForces& forces = body.loads->forces;
+  sum_forces<3>(body.field_model(), forces.on_columns(), forces.touched, domain_up_to(*body.view, levels.details),
+                body.field_scratch());
+  return body.loads->acting();
+}
+
 // displacements by the forces of the planned set, and what acts besides; apart, so that what makes a factor does not
 // stand on its stack
 [[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
                                    const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  if (body.is_loaded) {
-    sum_forces<3>(body.field_model(), body.forces.on_columns(), body.forces.touched,
-                  domain_up_to(*body.view, levels.details), body.field_scratch());
-  }
-  compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
+  const ActingLoads loads = body.is_loaded ? sum_known_forces(body, levels) : ActingLoads{};
+  compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x, loads);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].value;
@@ -130,65 +129,24 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 }
 
 // nothing is touched: the body is at rest
-Elastostatic::StepReport release(Body& body, const Elastostatic::Response& response, std::uint64_t work) {
+void release(Body& body, const Elastostatic::Response& response, std::uint64_t work, Elastostatic::StepReport& report) {
   body.last.release();
+  body.planned.columns = 0;
+  body.answered = true;
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
     work += priced(response.displacement.size(), body.counts.prices.node);
   }
-  Elastostatic::StepReport report;
   report.work = work;
   report.constraint_level = finest;
   report.field_level = response.displacement.empty() ? finest : finest_displaced(body, response);
-  return report;
 }
 
-Elastostatic::StepReport held(Status status, std::uint64_t work) {
-  Elastostatic::StepReport report;
+void hold(Status status, std::uint64_t work, Elastostatic::StepReport& report) {
   report.status = status;
   report.work = work;
   report.error = std::numeric_limits<float>::infinity();
-  return report;
-}
-
-// a solution for unilateral contacts whose residual is below this is as good as the compliance is
-constexpr float unilateral_residual = 2e-4F;
-
-// forces of unilateral contacts on the columns of a set; false, and none written, if they could overflow the answer.
-// allowance: for ContactProblem. work: grows by what they took
-bool push(Body& body, const Contacts& contacts, const ContactSet& set, const Factor& factor, const float* displaced,
-          std::uint64_t allowance, std::uint64_t& work) {
-  const UnilateralSet all{contacts.surfaces, set, displaced, body.stiffness};
-  ContactAnswer& found = *contacts.found;
-  found = solve_unilateral(all, factor, body.cache.stride(), {unilateral_residual, body.counts.iterations}, allowance,
-                           body.unilateral, body.column_force);
-  work += gather_unilateral_work(body.counts.prices, contacts.corners()) + found.work;
-  if (!found.valid || can_overflow(body, set, body.column_force)) {
-    return false;
-  }
-  hand_out_unilateral(all, body.unilateral, contacts.output);
-  return true;
-}
-
-// the forces of the planned set's columns and of its contacts; false, and none written, if they could overflow the
-// answer. displaced: as of solve_forces. spare: what the plan leaves of the budget. work: grows by what they took
-bool find_forces(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor, const float* displaced,
-                 std::uint64_t spare, std::uint64_t& work) {
-  const ContactSet& set = body.planned;
-  const Prices& prices = body.counts.prices;
-  if (contacts.are_held()) {
-    work += force_work(prices, plan.counts);
-    if (!solve_forces(body, contacts.held, set, factor, displaced, body.column_force)) {
-      return false;
-    }
-    share_forces(body.column_force, contacts.held.size(), set, contacts.force);
-    return true;
-  }
-  work += Glide::blend_work(prices, plan.counts.contacts);
-  const std::uint64_t planned = unilateral_work(prices, plan.counts.corners, plan.counts.iterations) -
-                                gather_unilateral_work(prices, plan.counts.corners);
-  return push(body, contacts, set, factor, displaced, planned + spare, work);
 }
 
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
@@ -216,18 +174,15 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
 }
 
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
-void glide_forces(Body& body, const Contacts& contacts, std::uint64_t budget, Elastostatic::StepReport& report) {
-  if (contacts.are_held()) {
-    body.glide.advance(contacts.held, body.planned, body.last);
-    const float* const older = solve_older_level(body, contacts.held, budget, report.work);
-    const GlideReport glide = body.glide.blend(contacts.held, body.last, older, contacts.force);
-    report.details.glide = glide.share;
-    report.details.level_difference = glide.difference;
-    report.details.switch_work = glide.work;
-  } else {
-    body.glide.stop(body.planned.level());
-  }
-  body.last.remember(contacts.held, body.planned, contacts.force);
+[[gnu::noinline]] void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
+                                    float* force, Elastostatic::StepReport& report) {
+  body.glide.advance(contacts, body.planned, body.last);
+  const float* const older = solve_older_level(body, contacts, budget, report.work);
+  const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
+  body.last.remember(contacts, body.planned, force);
+  report.details.glide = glide.share;
+  report.details.level_difference = glide.difference;
+  report.details.switch_work = glide.work;
 }
 
 // what the glide to a finer level begins with, if its factor has just been completed
@@ -293,10 +248,14 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
   return report.details.glide < 1 ? larger(error, body.last.error()) : error;
 }
 
+// with the details of all nodes that were asked for, at the finest level
+bool is_finest(const Body& body, const Plan& plan) {
+  return plan.level + 1 == body.view->levels && plan.field_levels.details == plan.field_levels.nodes;
+}
+
 // no contacts, but known forces
-Elastostatic::StepReport answer_loads(Body& body, const Plan& plan, std::uint64_t work,
-                                      const Elastostatic::Response& response) {
-  Elastostatic::StepReport report;
+void answer_loads(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work,
+                  const Elastostatic::Response& response, Elastostatic::StepReport& report) {
   report.work = report.details.needed_work = work + force_work(body.counts.prices, plan.counts) + plan.field;
   report.constraint_level = plan.level;
   report.field_level = plan.field_levels.details;
@@ -304,75 +263,212 @@ Elastostatic::StepReport answer_loads(Body& body, const Plan& plan, std::uint64_
     reconstruct(body, {}, {}, plan.field_levels, response.displacement);
   }
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
-  const bool whole = plan.field_levels.details == plan.field_levels.nodes;
-  report.status = plan.level + 1 == body.view->levels && whole ? Status::ok : Status::coarser;
+  report.status = is_finest(body, plan) ? Status::ok : Status::coarser;
   body.last.release();
   body.answered = true;
-  return report;
+  if (contacts.are_held()) {
+    hand_out_forces(body, contacts, response.force, report);
+  }
 }
 
-Elastostatic::StepReport answer(Body& body, const Contacts& all, const Plan& plan, std::uint64_t work,
-                                std::uint64_t budget, const Elastostatic::Response& response) {
-  const std::span<const Constraint> contacts = all.held;
-  const ContactSet& set = body.planned;
-  const std::uint64_t needed =
-      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+// a solution for unilateral contacts whose residual is below this is as good as the compliance is
+constexpr float unilateral_residual = 2e-4F;
+
+// forces of unilateral contacts on the columns of a set; false, and none written, if they could overflow the answer.
+// allowance: for ContactProblem. work: grows by what they took
+bool push(Body& body, const Contacts& contacts, const ContactSet& set, const Factor& factor, const float* displaced,
+          std::uint64_t allowance, std::uint64_t& work) {
+  const UnilateralSet all{contacts.surfaces, set, displaced, body.stiffness};
+  ContactAnswer& found = *contacts.found;
+  found = solve_unilateral(all, factor, body.cache.stride(), {unilateral_residual, body.counts.iterations}, allowance,
+                           body.unilateral, body.column_force);
+  work += gather_unilateral_work(body.counts.prices, contacts.corners()) + found.work;
+  if (!found.valid || can_overflow(body, set, body.column_force)) {
+    return false;
+  }
+  hand_out_unilateral(all, body.unilateral, contacts.output);
+  return true;
+}
+
+// the same on the planned set. spare: what the plan leaves of the budget
+bool push_planned(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor, const float* displaced,
+                  std::uint64_t spare, std::uint64_t& work) {
+  const Prices& prices = body.counts.prices;
+  const std::uint64_t corners = plan.counts.corners;
+  work += Glide::blend_work(prices, plan.counts.contacts);
+  const std::uint64_t planned =
+      unilateral_work(prices, corners, plan.counts.iterations) - gather_unilateral_work(prices, corners);
+  return push(body, contacts, body.planned, factor, displaced, planned + spare, work);
+}
+
+// the forces of the columns of the planned set, in Body::column_force, and of its contacts; `work` grows by what that
+// took. spare: what the plan leaves of the budget
+Status find_forces(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t spare, Factor*& factor,
+                   std::uint64_t& work) {
   body.factoring.spent = 0;
-  Factor* const factor = find_factor(body, plan);
+  factor = find_factor(body, plan);
   work += plan.cached != nullptr ? 0 : plan.factor - plan.bounded + body.factoring.spent;
   if (factor == nullptr) {
-    return held(Status::held_singular, work);
+    return Status::held_singular;
   }
   const float* displaced = nullptr;
   if (body.is_loaded) {
-    work += displace_by_loads_work(body.counts, plan.counts, plan.loads, displace_by_loads(body));
-    displaced = body.column_displaced;
+    work += displace_by_loads_work(body.counts, plan.counts, body.loads->counts, displace_by_loads(body));
+    displaced = body.loads->column_displaced;
   }
-  if (!find_forces(body, all, plan, *factor, displaced, budget - needed, work)) {
-    return held(Status::held_overflow, work);
+  if (!contacts.are_held()) {
+    return push_planned(body, contacts, plan, *factor, displaced, spare, work) ? Status::ok : Status::held_overflow;
+  }
+  work += force_work(body.counts.prices, plan.counts);
+  if (!solve_forces(body, contacts.held, body.planned, *factor, displaced, body.column_force)) {
+    return Status::held_overflow;
+  }
+  share_forces(body.column_force, contacts.held.size(), body.planned, contacts.force);
+  return Status::ok;
+}
+
+void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work, std::uint64_t budget,
+            const Elastostatic::Response& response, Elastostatic::StepReport& report) {
+  const ContactSet& set = body.planned;
+  report.details.needed_work =
+      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+  Factor* factor = nullptr;
+  const Status held = find_forces(body, contacts, plan, budget - report.details.needed_work, factor, work);
+  if (held != Status::ok) {
+    report.details.needed_work = 0;
+    return hold(held, work, report);
   }
   if (!response.displacement.empty()) {
     work += plan.field;
-    const std::span<const Constraint> held = all.are_held() ? contacts : std::span<const Constraint>();
-    reconstruct(body, held, {set.columns, set.column, body.column_force}, plan.field_levels, response.displacement);
+    const std::span<const Constraint> held_nodes = contacts.are_held() ? contacts.held : std::span<const Constraint>();
+    reconstruct(body, held_nodes, {set.columns, set.column, body.column_force}, plan.field_levels,
+                response.displacement);
   }
-  Elastostatic::StepReport report;
   report.work = work;
   report.constraint_level = set.level();
   report.field_level = plan.field_levels.details;
-  report.details.needed_work = needed;
-  report.details.held_contacts = static_cast<std::uint16_t>(contacts.size() - set.waiting);
+  report.details.held_contacts = static_cast<std::uint16_t>(contacts.held.size() - set.waiting);
   report.details.waiting_contacts = static_cast<std::uint16_t>(set.waiting);
-  const bool moving = !body.last.stays(contacts);
-  glide_forces(body, all, budget, report);
+  const bool moving = !body.last.stays(contacts.held);
+  if (contacts.are_held()) {
+    glide_forces(body, contacts.held, budget, contacts.force, report);
+  } else {
+    body.glide.stop(set.level());
+    body.last.remember(contacts.held, set, contacts.force);
+  }
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
   body.last.set_error(report.error);
   body.cache.use(*factor);
-  prepare_factor(body, all, plan, moving, budget, report);
+  prepare_factor(body, contacts, plan, moving, budget, report);
   report.details.cached_factor = plan.cached != nullptr;
   report.details.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
-  const bool finest = report.constraint_level + 1 == body.view->levels && set.waiting == 0 &&
-                      plan.field_levels.details == plan.field_levels.nodes;
-  report.status = finest && report.details.glide == 1 ? Status::ok : Status::coarser;
+  const bool finest = is_finest(body, plan) && set.waiting == 0 && report.details.glide == 1;
+  report.status = finest ? Status::ok : Status::coarser;
   body.answered = true;
-  return report;
+  if (contacts.are_held()) {
+    hand_out_forces(body, contacts, response.force, report);
+  }
 }
 
-// a step whose constraints are checked and whose loads are taken; work: spent on that
-Elastostatic::StepReport carry_out(Body& body, const Contacts& contacts, std::uint64_t work, std::uint64_t budget,
-                                   const Elastostatic::Response& response) {
+// what comes of checking a step's inputs, the units that took, and the contacts among them
+struct Accepted {
+  Status status = Status::ok;
+  std::uint32_t refused = StepReport::no_constraint;
+  std::uint64_t work = 0;
+  Contacts contacts;
+};
+
+// apart, so that it does not stand on the stack of an answer
+[[gnu::noinline]] void accept_inputs(Body& body, std::span<const Constraint> constraints,
+                                     const Elastostatic::Loads& loads, Budget budget,
+                                     const Elastostatic::Response& response, Accepted& accepted) {
+  accepted.status = check_request(body, constraints.size(), loads, budget, response);
+  if (accepted.status != Status::ok) {
+    return;
+  }
+  const Prices& prices = body.counts.prices;
+  const std::uint32_t most = body.counts.max_forces;
+  const std::uint64_t forces = most > 0 ? count_forces(constraints, loads.masks) : 0;
+  accepted.work = check_contacts_work(prices, constraints.size() + (forces < most ? forces : most));
+  const CheckedContacts checked =
+      check_contacts(constraints, body.view->node_count, body.facts, {body.counts.max_contacts, most, loads.masks});
+  accepted.status = checked.status;
+  accepted.refused = checked.refused;
+  if (checked.status != Status::ok) {
+    return;
+  }
+  accepted.work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
+  if (!take_loads(body, constraints, loads, response.force, accepted.contacts)) {
+    accepted.status = Status::held_overflow;
+  }
+}
+
+// the same of unilateral contacts, whose nodes are the contacts
+[[gnu::noinline]] void accept_inputs(Body& body, std::span<const UnilateralContact> surfaces,
+                                     const Elastostatic::Loads& loads, Budget budget,
+                                     const Elastostatic::UnilateralResponse& response, ContactAnswer& found,
+                                     Accepted& accepted) {
+  accepted.status = check_request(body, surfaces.size(), loads, budget, response);
+  const std::uint32_t most = body.counts.max_contacts;
+  const auto fits = [&](std::size_t size) { return size == 0 || size == surfaces.size(); };
+  if (accepted.status == Status::ok) {
+    accepted.status = !fits(response.state.size()) || !fits(response.gap.size()) ? Status::held_response_size
+                      : surfaces.size() > most                                   ? Status::held_out_of_range
+                      : body.counts.iterations == 0 && !surfaces.empty()         ? Status::held_unsupported
+                                                                                 : Status::ok;
+  }
+  if (accepted.status != Status::ok) {
+    return;
+  }
+  const Prices& prices = body.counts.prices;
+  UnilateralScratch& scratch = body.unilateral;
+  std::uint32_t nodes = 0;
+  CheckedContacts checked = list_unilateral(surfaces, body.view->node_count, most, scratch, nodes);
+  const std::span<const Constraint> holds{scratch.hold, nodes};
+  if (checked.status == Status::ok) {
+    checked = check_contacts(holds, body.view->node_count, body.facts, {most, 0, {}});
+    checked.refused = checked.status == Status::ok ? checked.refused : contact_of(scratch, checked.refused);
+  }
+  accepted.work = list_unilateral_work(prices, surfaces.size(), most) + check_contacts_work(prices, most);
+  accepted.status = checked.status;
+  accepted.refused = checked.refused;
+  if (checked.status != Status::ok) {
+    return;
+  }
+  if (!take_loads(body, holds, loads, {}, accepted.contacts)) {
+    accepted.status = Status::held_overflow;
+    return;
+  }
+  Contacts& contacts = accepted.contacts;
+  contacts.held = holds;
+  contacts.force = scratch.hold_force;
+  contacts.surfaces = surfaces;
+  contacts.output = {response.force, response.state, response.gap};
+  contacts.found = &found;
+  contacts.corner_count = surfaces.empty() ? 0 : scratch.begin[surfaces.size()];
+}
+
+// a step whose inputs are accepted
+void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elastostatic::Response& response,
+               Elastostatic::StepReport& report) {
+  report.refused = accepted.refused;
+  if (accepted.status != Status::ok) {
+    return hold(accepted.status, accepted.work, report);
+  }
+  const Contacts& contacts = accepted.contacts;
+  std::uint64_t work = accepted.work;
   if (contacts.held.empty() && !contacts.surfaces.empty()) {
     // surfaces that touch nothing that moves
     const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
     if (!push(body, contacts, {}, {}, nullptr, allowance, work)) {
-      return held(Status::held_overflow, work);
+      return hold(Status::held_overflow, work, report);
     }
   }
   if (contacts.held.empty() && !body.is_loaded) {
-    return release(body, response, work);
+    return release(body, response, work, report);
   }
   Wants wants;
-  wants.budget = budget - work;
+  wants.budget = budget.work - work;
   wants.field = !response.displacement.empty();
   wants.finest_displaced = wants.field ? finest_displaced(body, response) : body.counts.levels - 1;
   wants.corners = contacts.are_held() ? 0 : contacts.corners();
@@ -380,85 +476,20 @@ Elastostatic::StepReport carry_out(Body& body, const Contacts& contacts, std::ui
   const Plan plan = make_plan(body, contacts.held, wants);
   work += plan.work;
   if (!plan.fits) {
-    return held(Status::held_over_budget, work);
+    return hold(Status::held_over_budget, work, report);
   }
-  return contacts.held.empty() ? answer_loads(body, plan, work, response)
-                               : answer(body, contacts, plan, work, budget, response);
+  if (contacts.held.empty()) {
+    return answer_loads(body, contacts, plan, work, response, report);
+  }
+  answer(body, contacts, plan, work, budget.work, response, report);
 }
 
-Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> constraints,
-                                   const Elastostatic::Loads& loads, Budget budget,
-                                   const Elastostatic::Response& response) {
+void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads, Budget budget,
+               const Elastostatic::Response& response, Elastostatic::StepReport& report) {
   body.answered = false;
-  const Status request = check_request(body, constraints.size(), loads, budget, response);
-  if (request != Status::ok) {
-    return held(request, 0);
-  }
-  const Prices& prices = body.counts.prices;
-  const std::uint32_t most_forces = body.counts.max_forces;
-  const std::uint64_t forces = most_forces > 0 ? count_forces(constraints, loads.masks) : 0;
-  const std::uint64_t masked = forces < most_forces ? forces : most_forces;
-  std::uint64_t work = check_contacts_work(prices, constraints.size() + masked);
-  const auto [checked, refused] = check_contacts(constraints, body.view->node_count, body.facts,
-                                                 {body.counts.max_contacts, most_forces, loads.masks});
-  if (checked != Status::ok) {
-    Elastostatic::StepReport report = held(checked, work);
-    report.refused = refused;
-    return report;
-  }
-  Contacts contacts;
-  work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
-  if (!take_loads(body, constraints, loads, response.force, contacts)) {
-    return held(Status::held_overflow, work);
-  }
-  Elastostatic::StepReport report = carry_out(body, contacts, work, budget.work, response);
-  if (answered(report.status) && (forces > 0 || loads.stiffness != 1)) {
-    hand_out_forces(body, constraints, contacts, response.force, report);
-  }
-  return report;
-}
-
-Elastostatic::UnilateralReport take_step(Body& body, std::span<const UnilateralContact> surfaces,
-                                         const Elastostatic::Loads& loads, Budget budget,
-                                         const Elastostatic::UnilateralResponse& response) {
-  body.answered = false;
-  Status request = check_request(body, surfaces.size(), loads, budget, response);
-  const auto fits = [&](std::size_t size) { return size == 0 || size == surfaces.size(); };
-  if (request == Status::ok && !(fits(response.state.size()) && fits(response.gap.size()))) {
-    request = Status::held_response_size;
-  }
-  if (request == Status::ok && body.counts.iterations == 0 && !surfaces.empty()) {
-    request = Status::held_unsupported;
-  }
-  if (request == Status::ok && surfaces.size() > body.counts.max_contacts) {
-    request = Status::held_out_of_range;
-  }
-  if (request != Status::ok) {
-    return {held(request, 0)};
-  }
-  const Prices& prices = body.counts.prices;
-  const std::uint32_t most = body.counts.max_contacts;
-  UnilateralScratch& scratch = body.unilateral;
-  std::uint32_t holds = 0;
-  CheckedContacts checked = list_unilateral(surfaces, body.view->node_count, most, scratch, holds);
-  const std::span<const Constraint> nodes{scratch.hold, holds};
-  if (checked.status == Status::ok) {
-    checked = check_contacts(nodes, body.view->node_count, body.facts, {most, 0, {}});
-    checked.refused = checked.status == Status::ok ? checked.refused : contact_of(scratch, checked.refused);
-  }
-  const std::uint64_t work = list_unilateral_work(prices, surfaces.size(), most) + check_contacts_work(prices, most);
-  if (checked.status != Status::ok) {
-    Elastostatic::StepReport report = held(checked.status, work);
-    report.refused = checked.refused;
-    return {report};
-  }
-  Contacts contacts;
-  take_loads(body, nodes, loads, {}, contacts);
-  ContactAnswer found;
-  contacts = {nodes,    scratch.hold_force,
-              surfaces, {response.force, response.state, response.gap},
-              &found,   scratch.begin[surfaces.size()]};
-  return {carry_out(body, contacts, work, budget.work, response), found.residual, found.iterations};
+  Accepted accepted;
+  accept_inputs(body, constraints, loads, budget, response, accepted);
+  carry_out(body, accepted, budget, response, report);
 }
 
 }  // namespace
@@ -524,43 +555,34 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
-  return step(contacts, {}, budget, response);
+  StepReport report;
+  static constexpr Loads none{};
+  take_step(*body_, contacts, none, budget, response, report);
+  assert(Arena::intact(body_->last_red_zone));
+  return report;
 }
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
                                             const Response& response) noexcept {
-  const StepReport report = take_step(*body_, constraints, loads, budget, response);
+  StepReport report;
+  take_step(*body_, constraints, loads, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
 
 Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralContact> contacts, const Loads& loads,
                                                   Budget budget, const UnilateralResponse& response) noexcept {
-  const UnilateralReport report = take_step(*body_, contacts, loads, budget, response);
-  assert(Arena::intact(body_->last_red_zone));
+  Body& body = *body_;
+  body.answered = false;
+  ContactAnswer found;
+  Accepted accepted;
+  accept_inputs(body, contacts, loads, budget, response, found, accepted);
+  UnilateralReport report;
+  carry_out(body, accepted, budget, response, report);
+  report.residual = found.residual;
+  report.iterations = found.iterations;
+  assert(Arena::intact(body.last_red_zone));
   return report;
-}
-
-bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept {
-  const Body& body = *body_;
-  const ContactSet& set = body.planned;
-  if (!body.answered || i >= body.last.contacts() || j >= body.last.contacts() || !set.holds(i) || !set.holds(j)) {
-    return false;
-  }
-  const Factor* const factor = body.cache.find(set.all());
-  if (factor == nullptr || factor->capacitance == nullptr) {
-    return false;
-  }
-  const std::size_t row = std::size_t{3} * factor->position[set.place[i]];
-  const std::size_t column = std::size_t{3} * factor->position[set.place[j]];
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      const std::size_t a = row + r, b = column + c;
-      block[3 * c + r] =
-          factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b] / body.stiffness;
-    }
-  }
-  return true;
 }
 
 }  // namespace greenloop

@@ -34,8 +34,8 @@ struct Corner {
 };
 
 // false if it has no part, or is no node of these
-bool fill_corner(const Model& model, std::span<const float> area, const SurfacePoint& point, std::size_t k,
-                 float radius, Corner& corner) {
+bool fill_corner(const Model& model, std::span<const float> area, const MeshPoint& point, std::size_t k, float radius,
+                 Corner& corner) {
   const std::uint32_t node = point.node[k];
   if (node >= area.size() || !std::isfinite(point.weight[k])) {
     return false;
@@ -54,7 +54,7 @@ bool fill_corner(const Model& model, std::span<const float> area, const SurfaceP
 
 }  // namespace
 
-Mask make_mask(const Model& model, std::span<const float> area, const SurfacePoint& point, float radius,
+Mask make_mask(const Model& model, std::span<const float> area, const MeshPoint& point, float radius,
                std::span<std::uint32_t> node, std::span<float> weight) noexcept {
   if (area.size() > model.node_count() || !(radius > 0) || !std::isfinite(radius)) {
     return {};

@@ -10,12 +10,12 @@ namespace greenloop {
 
 /// A point of the surface: three corners and the share of each, as Surface::NearestPoint has it. A node is that node
 /// with a share of 1.
-struct SurfacePoint {
+struct MeshPoint {
   std::uint32_t node[3] = {};  ///< file indices
   float weight[3] = {};        ///< 0..1 with sum 1
 };
 
-constexpr SurfacePoint at_node(std::uint32_t node) { return {{node, node, node}, {1, 0, 0}}; }
+constexpr MeshPoint at_node(std::uint32_t node) { return {{node, node, node}, {1, 0, 0}}; }
 
 /// A scalar pressure mask (James & Pai 2001, section 6.1): the nodes that a force is spread over, and the part of it on
 /// each, area times pressure. A node may stand in it more than once: its parts add up.
@@ -32,7 +32,7 @@ struct Mask {
 /// node, weight: memory for the mask, which refers to it; as many as there are nodes within the radius of the corners.
 /// Empty if they do not fit, a node is not of `area` or of the model, nothing is within the radius, or a number is not
 /// finite. For the loop; work: some 60 operations per node of `area`.
-[[nodiscard]] Mask make_mask(const Model& model, std::span<const float> area, const SurfacePoint& point, float radius,
+[[nodiscard]] Mask make_mask(const Model& model, std::span<const float> area, const MeshPoint& point, float radius,
                              std::span<std::uint32_t> node, std::span<float> weight) noexcept;
 
 }  // namespace greenloop

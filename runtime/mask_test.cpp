@@ -25,7 +25,7 @@ struct Bench {
     node.resize(area.size());
     weight.resize(area.size());
   }
-  Mask make(const SurfacePoint& point, float radius) {
+  Mask make(const MeshPoint& point, float radius) {
     return make_mask(model.model(), area, point, radius, node, weight);
   }
   [[nodiscard]] double distance(std::uint32_t a, std::uint32_t b) const {
@@ -67,7 +67,7 @@ TEST_CASE("a mask is the linear profile times areas, normalised, on touchable no
 TEST_CASE("the mask of a point is the mean of its corners' by their weights") {
   Bench bench({.levels = 4});
   const std::vector<std::uint32_t> nodes = bench.model.touchable();
-  const SurfacePoint point{{nodes[3], nodes[17], nodes[29]}, {0.5F, 0.3F, 0.2F}};
+  const MeshPoint point{{nodes[3], nodes[17], nodes[29]}, {0.5F, 0.3F, 0.2F}};
   const double radius = 1.1 * bench.distance(nodes[3], nodes[17]);
   const Mask mask = bench.make(point, static_cast<float>(radius));
   std::vector<double> exact(bench.area.size());

@@ -8,6 +8,7 @@
 //   Level(q)                                         counts and measured errors of the model cut off after level q
 //   Nodes(q)                                         NodeRecord [node_count(q)]: M(q), domain nodes first
 //   BaseTriangles                                    only q = 0: u32 [3 * base_triangle_count]
+//   Loads                                            only q = 0, if Info::loads > 0: LoadRecord [Info::loads]
 //   Refinement(q)                                    only q > 0: RefinementRecord [node_count(q)]
 //   Stencils(q)                                      only q > 0, Butterfly: StencilRecord [domain_count(q)]
 //   Predictions(q)                                   only q > 0, Equilibrated: PredictionsHeader and its arrays
@@ -16,6 +17,7 @@
 //   Scales(q)                                        Scale<N> [domain_count(q)]
 //   Couplings(q, layer) for each layer               CouplingsHeader and its arrays
 //   Patterns(q) if q >= first                        PatternRecord[], by kind, then contacts; none: not measured
+//   LoadColumns(q)                                   if Info::loads > 0: f32 [Info::loads][domain_count(q)][3]
 //
 // and after the last level of a complete model, if the scene asked for it
 //
@@ -97,13 +99,14 @@ struct Info {
   std::uint32_t finest_constraint_level;  ///< L; in a file cut after level q the finest one present is q
   float quantum[layers];                  ///< of the scaled values of each layer of couplings, in [0, 1]
   float share;                            ///< of the loop's period that a step may take, 0..1; 0: the scene has none
-  std::uint8_t reserved[132];
+  std::uint32_t loads;                    ///< records of Loads, columns of LoadColumns; 0: neither section is there
+  std::uint8_t reserved[128];
 };
 static_assert(sizeof(Info) == 256 && offsetof(Info, problem) == offsetof(InfoStart, problem));
 
 /// The minor version that brought what an Info says.
 constexpr std::uint16_t first_minor(const Info& info) {
-  return info.share != 0 ? 5 : first_minor(static_cast<Problem>(info.problem));
+  return info.loads != 0 ? 6 : info.share != 0 ? 5 : first_minor(static_cast<Problem>(info.problem));
 }
 
 // Forces and fields are of one compliance, that of all couplings: u = W^-1 (W U W^T) T^-T f for forces f on constraint
@@ -259,6 +262,26 @@ struct Scale {
   float diagonal[N * (N + 1) / 2];  ///< R^-1 (W U W^T)_ii R^-1
 };
 static_assert(sizeof(Scale<3>) == 48 && sizeof(Scale<1>) == 8);
+
+/// What a load of a model is, and its unit.
+enum class LoadKind : std::uint32_t {
+  acceleration_x = 1,  ///< of the whole body: each of its parts is pulled by its mass times so many m/s^2 along x
+  acceleration_y = 2,
+  acceleration_z = 3,
+  pressure = 4,  ///< Pa on a part of the surface, in the directions that the scene chose
+};
+inline constexpr std::uint32_t load_kinds = 4;
+inline constexpr std::uint32_t accelerations = 3;  ///< stand first and in this order, or are absent
+inline constexpr std::uint32_t most_loads = 64;
+
+/// A load whose displacements the model holds. LoadColumns(q) say of each load and each coefficient of M(q) the
+/// wavelet coefficient of the displacement (m) under one unit of the load.
+struct LoadRecord {
+  std::uint32_t kind;  ///< LoadKind
+  float resultant[3];  ///< N a unit: the sum of its forces; of an acceleration the body's mass (kg) along it
+  char name[48];       ///< of a pressure: printable ASCII, none twice, zeros behind; of an acceleration all zeros
+};
+static_assert(sizeof(LoadRecord) == 64);
 
 /// Sparse NxN blocks by columns. With n = columns, m = block_count, and arrays at 64-byte multiples in the section:
 ///   begin  u32 [n + 1]     first block of each column

@@ -10,9 +10,10 @@ template <class Visit>
 bool visit_elastostatic_level(const Info& info, std::uint32_t q, Visit visit) {
   const auto wavelet = static_cast<Wavelet>(info.wavelet);
   const std::uint32_t first = info.coarsest_constraint_level;
-  const bool base = q == 0, constrained = q >= first;
+  const bool base = q == 0, constrained = q >= first, loaded = info.loads > 0;
   if (!visit(SectionKind::level, q, 0) || !visit(SectionKind::nodes, q, 0)) return false;
   if (!(base ? visit(SectionKind::base_triangles, 0, 0) : visit(SectionKind::refinement, q, 0))) return false;
+  if (base && loaded && !visit(SectionKind::loads, 0, 0)) return false;
   if (!base && is_butterfly(wavelet) && !visit(SectionKind::stencils, q, 0)) return false;
   if (!base && wavelet == Wavelet::equilibrated && !visit(SectionKind::predictions, q, 0)) return false;
   for (std::uint32_t c = first; c <= q; ++c) {
@@ -25,7 +26,8 @@ bool visit_elastostatic_level(const Info& info, std::uint32_t q, Visit visit) {
   for (std::uint32_t layer = 0; layer < layers; ++layer) {
     if (!visit(SectionKind::couplings, q, layer)) return false;
   }
-  return !constrained || visit(SectionKind::patterns, q, 0);
+  if (constrained && !visit(SectionKind::patterns, q, 0)) return false;
+  return !loaded || visit(SectionKind::load_columns, q, 0);
 }
 
 /// The sections of a ready file that follow all others, likewise. Work: layers + 2 calls.

@@ -33,7 +33,9 @@
   ROW(stencils, 12, "Stencils", 1, StencilRecord, words)                        \
   ROW(patterns, 13, "Patterns", 1, PatternRecord, words)                        \
   ROW(predictions, 14, "Predictions", 1, std::byte, predictions)                \
-  ROW(vertex_map, 15, "VertexMap", 0, VertexRecord, bytes)
+  ROW(vertex_map, 15, "VertexMap", 0, VertexRecord, bytes)                      \
+  ROW(loads, 19, "Loads", 0, LoadRecord, bytes)                                 \
+  ROW(load_columns, 20, "LoadColumns", 1, float[3], words)
 
 /// What follows from those before, in files that are ready: formats/write/ready_file.hpp writes it.
 #define GREENLOOP_READY_SECTIONS(ROW)                       \
@@ -94,6 +96,7 @@ constexpr bool is_ready_kind(SectionKind kind) {
 
 /// The minor version that brought the kind; those before 4.1 are not told apart.
 constexpr std::uint16_t first_minor(SectionKind kind) {
+  if (kind == SectionKind::loads || kind == SectionKind::load_columns) return 6;
   return is_ready_kind(kind) ? 4 : kind == SectionKind::vertex_map ? 2 : 0;
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "formats/testing/dense_wavelet.hpp"
 #include "formats/testing/synthetic_sphere.hpp"
@@ -21,6 +22,7 @@ using Sphere = SyntheticSphere;
 constexpr double range = 0.05;     // m, of the kernel
 constexpr double softness = 1e-3;  // m/N, or of a scalar problem's units
 constexpr double twist = 0.5;
+constexpr double area_density = 100;  // kg/m^2, of what gravity pulls
 
 // The quantum of each layer over SyntheticOptions::quantum; of 16 bits over what holds the largest value. All differ,
 // so that a reader that takes another layer's is found out.
@@ -121,6 +123,17 @@ class Compression {
     choose_quanta(form);
     for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) add_couplings(q, form);
     measure(form);
+  }
+
+  // of forces (N) a unit of each load, [3 domain x loads]
+  void add_loads(const MatrixXd& compliance, const MatrixXd& forces) {
+    MatrixXd columns = compliance * forces;
+    for (std::uint32_t q = wavelet_.levels(); q-- > 1;) wavelet_.forward(q, columns.topRows(wavelet_.rows(q)));
+    for (std::uint32_t q = 0; q < wavelet_.levels(); ++q) {
+      const Index begin = 3 * wavelet_.begin(q);
+      const MatrixXd own = columns.middleRows(begin, wavelet_.rows(q) - begin);
+      model_.levels[q].load_columns.assign(own.data(), own.data() + own.size());
+    }
   }
 
  private:
@@ -302,6 +315,40 @@ std::vector<layout::VertexRecord> vertex_map(const Sphere& sphere, std::uint32_t
   return map;
 }
 
+// N a unit of each load on each domain node, 3 domain x loads
+MatrixXd load_forces(const Sphere& sphere, const SyntheticOptions& options) {
+  const Index accelerations = options.gravity ? layout::accelerations : 0;
+  MatrixXd forces = MatrixXd::Zero(0, accelerations + options.pressures);
+  for (std::uint32_t i = 0; i < sphere.count(); ++i) {
+    if (!sphere.has(i, layout::node_domain)) continue;
+    const Sphere::Point& x = sphere.positions[i];
+    forces.conservativeResize(forces.rows() + 3, Eigen::NoChange);
+    forces.bottomRows<3>().setZero();
+    for (Index k = 0; k < accelerations; ++k) forces(forces.rows() - 3 + k, k) = area_density * sphere.areas[i];
+    for (std::uint32_t k = 0; k < options.pressures; ++k) {
+      if (x[k % 3] < 0) continue;
+      forces.col(accelerations + k).tail<3>() = -sphere.areas[i] / Sphere::radius * Eigen::Vector3d(x[0], x[1], x[2]);
+    }
+  }
+  return forces;
+}
+
+std::vector<layout::LoadRecord> load_records(const MatrixXd& forces, const SyntheticOptions& options) {
+  std::vector<layout::LoadRecord> records;
+  for (Index load = 0; load < forces.cols(); ++load) {
+    const bool pressure = !options.gravity || load >= layout::accelerations;
+    layout::LoadRecord record{};
+    record.kind =
+        pressure ? static_cast<std::uint32_t>(layout::LoadKind::pressure) : static_cast<std::uint32_t>(load + 1);
+    const MatrixXd own = forces.col(load).reshaped(3, forces.rows() / 3);
+    for (Index k = 0; k < 3; ++k) record.resultant[k] = static_cast<float>(own.row(k).sum());
+    const std::string name = "pressure " + std::to_string(options.gravity ? load - layout::accelerations : load);
+    if (pressure) std::copy(name.begin(), name.end(), record.name);
+    records.push_back(record);
+  }
+  return records;
+}
+
 void set_problem(layout::Info& info, std::uint32_t components) {
   const bool scalar = components == 1;
   info.problem = static_cast<std::uint32_t>(scalar ? layout::Problem::scalar : layout::Problem::elastostatic);
@@ -312,7 +359,13 @@ void set_problem(layout::Info& info, std::uint32_t components) {
 
 template <unsigned N>
 void compress(const Sphere& sphere, const SyntheticOptions& options, ModelData& model) {
-  Compression<N>(model, options).run(exact_compliance<N>(sphere));
+  const MatrixXd compliance = exact_compliance<N>(sphere);
+  Compression<N> compression(model, options);
+  compression.run(compliance);
+  if (!options.gravity && options.pressures == 0) return;
+  const MatrixXd forces = load_forces(sphere, options);
+  model.loads = load_records(forces, options);
+  compression.add_loads(compliance, forces);
 }
 
 }  // namespace

@@ -13,11 +13,13 @@ struct SyntheticOptions {
   std::uint32_t levels = 3;                     ///< 1..6 mesh levels: 6, 18, 66, 258, 1026, 4098 nodes
   std::uint32_t coarsest_constraint_level = 0;  ///< < levels
   layout::Wavelet wavelet = layout::Wavelet::lifted_linear;
-  double epsilon = 0.005;      ///< scaled blocks of smaller norm over root 3 are dropped; 0 keeps all
-  double quantum = 0.002;      ///< of the 8-bit layer; that of 4 bits differs
-  double touchable_above = 0;  ///< nodes with z >= this times the radius may be contacts; at most 1
-  double read_above = -1;      ///< domain nodes with z >= this times the radius are read
-  std::uint32_t vertices = 0;  ///< of a vertex map; 0: there is none
+  double epsilon = 0.005;       ///< scaled blocks of smaller norm over root 3 are dropped; 0 keeps all
+  double quantum = 0.002;       ///< of the 8-bit layer; that of 4 bits differs
+  double touchable_above = 0;   ///< nodes with z >= this times the radius may be contacts; at most 1
+  double read_above = -1;       ///< domain nodes with z >= this times the radius are read
+  std::uint32_t vertices = 0;   ///< of a vertex map; 0: there is none
+  bool gravity = false;         ///< accelerations among the loads; each node has a mass of 100 kg/m^2 times its area
+  std::uint32_t pressures = 0;  ///< more loads, "pressure 0" and so on: number k inwards where x_(k mod 3) >= 0
 };
 
 /// The exact compliance of that body between points x and y (m): 1e-3 m/N exp(-|x - y| / 0.05 m) Q(x) C Q(y)^T with a

@@ -39,6 +39,7 @@ void write_all(const std::filesystem::path& folder) {
       }
     }
   }
+  write_file(folder / "sphere_loads.gloop", encode(synthetic_model({.levels = 2, .gravity = true, .pressures = 2})));
   write_file(folder / "sphere_cut.gloop", truncate_to_level(encode(synthetic_model({.levels = 3})), 1));
 }
 

@@ -57,6 +57,11 @@ void check_round_trip(const Bytes& model) {
   }
 }
 
+TEST_CASE("transport: a model with loads comes back, and all its prefixes") {
+  check_round_trip(
+      encode(synthetic_model({.levels = 3, .coarsest_constraint_level = 1, .gravity = true, .pressures = 2})));
+}
+
 TEST_CASE("transport: a model with a share of the period comes back, and all its prefixes") {
   ModelData data = synthetic_model({.levels = 3});
   data.info.share = 0.4F;

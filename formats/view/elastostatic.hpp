@@ -38,7 +38,12 @@ struct LevelView {
   const void* scales = nullptr;  ///< layout::Scale<components> [domain nodes]
   CouplingsView couplings[layout::layers];
   std::span<const layout::PatternRecord> patterns;  ///< empty: not measured, or no constraint level
+  const float* load_columns = nullptr;              ///< m a unit, [loads][domain nodes][3]; null: the model has none
 
+  /// The coefficients of the level's domain nodes under one unit of a load: [domain nodes][3], m.
+  [[nodiscard]] const float* load_column(std::uint32_t load) const noexcept {
+    return load_columns + std::size_t{3} * counts->domain_count * load;
+  }
   /// N: the model's components.
   template <unsigned N>
   [[nodiscard]] const layout::Scale<N>* scales_of() const noexcept {
@@ -95,7 +100,13 @@ struct ElastostaticView {
   /// [constraint level][mesh level]
   const std::uint32_t* representatives[layout::max_levels][layout::max_levels] = {};
   std::span<const layout::VertexRecord> vertices;  ///< of the author's surface, in its order; empty: not kept
+  std::span<const layout::LoadRecord> loads;       ///< accelerations along x, y and z or none of them, then pressures
   ReadyTables ready;
+
+  /// Whether the first three loads are the accelerations.
+  [[nodiscard]] bool has_gravity() const noexcept {
+    return !loads.empty() && loads[0].kind == static_cast<std::uint32_t>(layout::LoadKind::acceleration_x);
+  }
 };
 
 }  // namespace greenloop

@@ -76,6 +76,25 @@ std::string_view pattern_name(std::uint32_t kind) {
   return "unknown";
 }
 
+std::string load_name(const layout::LoadRecord& load) {
+  switch (static_cast<layout::LoadKind>(load.kind)) {
+    case layout::LoadKind::acceleration_x:
+      return "acceleration along x";
+    case layout::LoadKind::acceleration_y:
+      return "acceleration along y";
+    case layout::LoadKind::acceleration_z:
+      return "acceleration along z";
+    case layout::LoadKind::pressure:
+      return load.name;
+  }
+  return "unknown";
+}
+
+std::string_view load_unit(std::uint32_t kind) {
+  if (kind < 1 || kind > layout::load_kinds) return "";
+  return static_cast<layout::LoadKind>(kind) == layout::LoadKind::pressure ? "Pa" : "m/s^2";
+}
+
 std::string_view rule_name(VerifyRule rule) { return rule_text(rule).name; }
 
 std::string describe(const VerifyResult& result) {

@@ -19,6 +19,12 @@ namespace greenloop {
 /// "pinch": the name of a layout::PatternKind; "unknown" if it is none. Offline only.
 [[nodiscard]] std::string_view pattern_name(std::uint32_t kind);
 
+/// "acceleration along x" or the name of a pressure. Offline only.
+[[nodiscard]] std::string load_name(const layout::LoadRecord& load);
+
+/// "m/s^2" or "Pa": the unit of a load of a layout::LoadKind; empty if it is none. Offline only.
+[[nodiscard]] std::string_view load_unit(std::uint32_t kind);
+
 /// "section_checksum": the rule's name as in VerifyRule. Offline only.
 [[nodiscard]] std::string_view rule_name(VerifyRule rule);
 

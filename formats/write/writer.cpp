@@ -114,8 +114,8 @@ Bytes encode_predictions(const PredictionsData& data, std::uint32_t nodes, std::
 // The sections of a model in the order of layout/elastostatic_order.hpp.
 class SectionList {
  public:
-  explicit SectionList(const ModelData& model) : model_(model) {
-    add(SectionKind::info, 0, 0, bytes_of_one(completed_info()));
+  explicit SectionList(const ModelData& model) : model_(model), info_(completed_info()) {
+    add(SectionKind::info, 0, 0, bytes_of_one(info_));
     add(SectionKind::provenance, 0, 0, bytes_of(std::vector<char>(model.provenance.begin(), model.provenance.end())));
     for (std::uint32_t q = 0; q < levels(); ++q) add_level(q);
     if (!model.vertices.empty()) add(SectionKind::vertex_map, 0, 0, vertex_map_bytes(0, 0));
@@ -138,7 +138,7 @@ class SectionList {
   void add_level(std::uint32_t q) {
     check_sizes(q);
     const std::size_t place = sections_.size();
-    layout::visit_elastostatic_level(model_.info, q, [&](SectionKind kind, std::uint32_t a, std::uint32_t b) {
+    layout::visit_elastostatic_level(info_, q, [&](SectionKind kind, std::uint32_t a, std::uint32_t b) {
       add(kind, a, b, section_bytes(kind, a, b));
       return true;
     });
@@ -164,6 +164,7 @@ class SectionList {
     }
     check("scales", level.scales.numbers.size(), std::size_t{components()} * (components() + 1) * domain_count(q));
     if (!constrained) check("patterns", level.patterns.size(), 0);
+    check("load_columns", level.load_columns.size(), 3 * model_.loads.size() * domain_count(q));
   }
 
   // a, b: the indices of the section's name
@@ -185,6 +186,8 @@ class SectionList {
   Bytes stencils_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].stencils); }
   Bytes patterns_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].patterns); }
   Bytes vertex_map_bytes(std::uint32_t, std::uint32_t) { return bytes_of(model_.vertices); }
+  Bytes loads_bytes(std::uint32_t, std::uint32_t) { return bytes_of(model_.loads); }
+  Bytes load_columns_bytes(std::uint32_t q, std::uint32_t) { return bytes_of(model_.levels[q].load_columns); }
   Bytes representatives_bytes(std::uint32_t c, std::uint32_t q) {
     return bytes_of(model_.levels[c].representatives[q]);
   }
@@ -221,6 +224,7 @@ class SectionList {
     layout::Info info = model_.info;
     info.levels = levels();
     info.finest_constraint_level = levels() - 1;
+    info.loads = static_cast<std::uint32_t>(model_.loads.size());
     for (std::size_t k = 0; k < 3; ++k) {
       info.box_min[k] = std::numeric_limits<float>::infinity();
       info.box_max[k] = -std::numeric_limits<float>::infinity();
@@ -247,6 +251,7 @@ class SectionList {
   }
 
   const ModelData& model_;
+  const layout::Info info_;
   std::vector<SectionBytes> sections_;
   std::uint64_t kept_blocks_ = 0;  // in the sections so far
 };

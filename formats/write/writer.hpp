@@ -57,6 +57,7 @@ struct LevelData {
   ScalesData scales;  ///< [domain nodes]
   std::array<CouplingsData, layout::layers> couplings;
   std::vector<layout::PatternRecord> patterns;  ///< by kind, then contacts; empty below the coarsest constraint level
+  std::vector<float> load_columns;              ///< m a unit, [loads][domain nodes][3]
 };
 
 /// A whole model before encoding. Offline only.
@@ -66,12 +67,13 @@ struct ModelData {
   std::vector<std::uint32_t> base_triangles;
   std::vector<LevelData> levels;
   std::vector<layout::VertexRecord> vertices;  ///< of the author's surface; empty: no VertexMap
+  std::vector<layout::LoadRecord> loads;       ///< accelerations along x, y and z or none of them, then pressures
 };
 
 /// The bytes of a model file: deterministic, complete, checksummed; of Info::components 1 or 3. Throws
 /// std::invalid_argument naming the field that does not fit. Filled in from the vectors, whatever stands there:
-/// Info::levels, finest_constraint_level and the box; Level's node, domain, triangle, kept and dense counts. The result
-/// has passed verify.
+/// Info::levels, finest_constraint_level, loads and the box; Level's node, domain, triangle, kept and dense counts. The
+/// result has passed verify.
 [[nodiscard]] std::vector<std::byte> encode(const ModelData& model);
 
 /// The form of one section of couplings.

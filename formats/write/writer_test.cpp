@@ -94,6 +94,24 @@ TEST_CASE("writer: what the view shows is what was given") {
   }
 }
 
+TEST_CASE("writer: loads and their columns are those given, and as long as the domain") {
+  ModelData data = synthetic_model({.levels = 3, .gravity = true, .pressures = 1});
+  data.info.loads = 77;
+  ModelMutant file(encode(data));
+  REQUIRE(file.verdict().ok());
+  CHECK(same_bytes(file.view().loads.data(), data.loads));
+  for (std::uint32_t q = 0; q < 3; ++q) {
+    CHECK(!data.levels[q].load_columns.empty());
+    CHECK(same_bytes(file.view().level[q].load_columns, data.levels[q].load_columns));
+  }
+  CHECK(names(encode_refusal([](ModelData& without) {
+                without.levels[1].load_columns = {1, 2, 3};
+              }),
+              "levels[1].load_columns has 3 entries, expected 0"));
+  data.loads.pop_back();
+  CHECK(names(refusal([&] { (void)encode(data); }), "levels[0].load_columns has"));
+}
+
 TEST_CASE("writer: counts, box and levels are filled in, whatever was there") {
   ModelData data = synthetic_model({.levels = 2});
   data.info.levels = 9;

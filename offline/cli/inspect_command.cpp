@@ -4,6 +4,7 @@
 #include <fmt/ostream.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -138,6 +139,14 @@ Json quality_here(const ModelView& view, const Json& budget) {
                      .speed = "on this machine"});
 }
 
+Json loads_of(const ModelView& view) {
+  Json loads = Json::array();
+  for (const layout::LoadRecord& load : view.loads) {
+    loads.push_back({{"name", load_name(load)}, {"unit", load_unit(load.kind)}, {"resultant", load.resultant}});
+  }
+  return loads;
+}
+
 Json inspection_of(const ModelFile& model) {
   const ModelView& view = model.view;
   const layout::Info& info = *view.info;
@@ -181,6 +190,7 @@ Json inspection_of(const ModelFile& model) {
       {"constraint_levels", levels_of(view)},
       {"patterns", patterns_of(view)},
       {"mesh_error", recorded(view, "mesh_error", nullptr)},
+      {"loads", loads_of(view)},
       {"vertices", view.vertices.size()},
       {"ready", view.ready.read != nullptr},
       {"ready_bytes", ready_bytes(view)},
@@ -214,6 +224,17 @@ std::string certificate_text(const Json& found) {
                      found["lambda_min"].get<double>(), unit.is_null() ? "" : " " + unit.get<std::string>());
 }
 
+// "acceleration along x (0.12, 0, 0 N per m/s^2); ..."
+std::string loads_text(const Json& loads) {
+  std::string text;
+  for (const Json& load : loads) {
+    const auto force = load["resultant"].get<std::array<float, 3>>();
+    text += fmt::format("{}{} ({:.4g} N per {})", text.empty() ? "" : "; ", load["name"].get<std::string>(),
+                        fmt::join(force, ", "), load["unit"].get<std::string>());
+  }
+  return text.empty() ? "none" : text;
+}
+
 // what the mesh itself costs, as the build estimated it
 std::string mesh_error_text(const Json& error) {
   if (!error.is_object() || !error.contains("force") || !error["force"].is_number()) return "not estimated";
@@ -245,6 +266,7 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
     row("material",
         fmt::format("Young's modulus {} Pa, Poisson's ratio {}", material["young"].dump(), material["poisson"].dump()));
   }
+  row("loads", loads_text(found["loads"]));
   row("vertex map", found["vertices"] == 0 ? "none" : fmt::format("{} vertices", found["vertices"].dump()));
   row("ready", found["ready"].get<bool>() ? "yes, " + bytes_text(found["ready_bytes"]) + " of the file" : "no");
   row("scene", fmt::format("{} Hz, at most {} contacts, {} units of work per step", scene["rate"].dump(),

@@ -31,7 +31,7 @@ class Walk {
         if (!representatives(c, q)) return false;
       }
     }
-    return vertices() && ready();
+    return vertices() && loads() && ready();
   }
 
  private:
@@ -75,7 +75,7 @@ class Walk {
     if (!array(level.stencils, stencils) || !all(level.stencils, stencils, known)) return false;
     return all(level.nodes, count(q), [](const auto& node) { return std::isfinite(node.position[2] + node.area); }) &&
            (q == 0 || all(level.refinement, count(q), coarser)) && predictions(q) &&
-           (components() == 1 ? scales<1>(q) : scales<3>(q)) && all_couplings(q) && patterns(q);
+           (components() == 1 ? scales<1>(q) : scales<3>(q)) && all_couplings(q) && patterns(q) && load_columns(q);
   }
 
   bool predictions(std::uint32_t q) const {
@@ -98,6 +98,21 @@ class Walk {
              std::isfinite(record.field_error[2] + record.field_peak[0] + record.total_force_error[1]);
     };
     return array(patterns.data(), patterns.size()) && all(patterns.data(), patterns.size(), right);
+  }
+
+  bool loads() const {
+    const auto right = [](const layout::LoadRecord& load) {
+      return load.kind >= 1 && load.kind <= layout::load_kinds && std::isfinite(load.resultant[2]) &&
+             *std::prev(std::end(load.name)) == 0;
+    };
+    return view_.loads.size() == view_.info->loads && (!view_.has_gravity() || view_.loads.size() >= 3) &&
+           array(view_.loads.data(), view_.loads.size()) && all(view_.loads.data(), view_.loads.size(), right);
+  }
+
+  bool load_columns(std::uint32_t q) const {
+    const std::uint64_t numbers = std::uint64_t{3} * view_.info->loads * domain(q);
+    return array(view_.level[q].load_columns, numbers) &&
+           all(view_.level[q].load_columns, numbers, [](float number) { return std::isfinite(number); });
   }
 
   bool vertices() const {

@@ -61,19 +61,27 @@ double relative_error(std::span<const float> computed, std::size_t stride, const
 // float rounding of the matrix, the factors and the sums, amplified by the condition
 double tolerance_of(const DenseAnswer& dense) { return 60 * dense.condition * 0x1p-24; }
 
-constexpr Elastostatic::Limits limits{.max_contacts = 12, .cached_factors = 4, .max_forces = 24};
+constexpr Elastostatic::Limits limits{.max_contacts = 12, .cached_factors = 4, .max_forces = 24, .model_loads = true};
+
+// of two pressures
+SyntheticOptions loaded(std::uint32_t levels, layout::Wavelet kind) {
+  return {.levels = levels, .wavelet = kind, .gravity = true, .pressures = 2};
+}
 
 TEST_CASE("contacts and known forces agree with a dense double-precision solution at every level") {
   for (const layout::Wavelet kind : layout::wavelets) {
     CAPTURE(static_cast<std::uint32_t>(kind));
-    const ModelData data = synthetic_model({.levels = 4, .wavelet = kind});
+    const ModelData data = synthetic_model(loaded(4, kind));
     const TestModel model(encode(data));
     const DenseReference reference(data);
     std::mt19937_64 random(3);
     std::uint32_t levels_seen = 0;
     for (int trial = 0; trial < 40; ++trial) {
       const Problem problem(model, random, static_cast<std::size_t>(trial) % 12, random() % 8, 1 + random() % 3);
-      const Elastostatic::Loads loads{.masks = problem.masks, .stiffness = trial % 2 == 0 ? 1.0F : 3.7F};
+      const float pressure[] = {1e3F * uniform(random), 1e3F * uniform(random)};
+      Elastostatic::Loads loads{.masks = problem.masks, .stiffness = trial % 2 == 0 ? 1.0F : 3.7F};
+      if (trial % 3 != 0) loads.gravity = {9.81F * uniform(random), 9.81F * uniform(random), 9.81F * uniform(random)};
+      if (trial % 5 < 3) loads.pressure = std::span(pressure).first(static_cast<std::size_t>(trial) % 5);
       TestBody body(model, limits);
       Elastostatic::StepReport report = body.step(problem.constraints, loads, any_budget, true);
       const std::uint32_t wanted = static_cast<std::uint32_t>(trial) % model.view().levels;
@@ -96,15 +104,35 @@ TEST_CASE("contacts and known forces agree with a dense double-precision solutio
   }
 }
 
+TEST_CASE("gravity alone bends the body, and needs no known forces") {
+  const ModelData data = synthetic_model(loaded(4, layout::Wavelet::linear));
+  const TestModel model(encode(data));
+  const DenseReference reference(data);
+  TestBody body(model, {.max_contacts = 4, .cached_factors = 2, .model_loads = true});
+  const Elastostatic::Loads loads{.gravity = {0, 3, -9.81F}};
+  const Elastostatic::StepReport report = body.step({}, loads, any_budget, true);
+  CHECK(report.status == Status::ok);
+  const DenseAnswer dense = solve_dense(model.view(), reference, 3, {}, loads);
+  REQUIRE(dense.displacement.cwiseAbs().maxCoeff() > 0);
+  CHECK(relative_error(body.field(), 4, dense.displacement) <= tolerance_of(dense));
+  // a held body feels its weight, and without it stands as before
+  const std::vector<Constraint> still = {{model.touchable()[7], {}}};
+  REQUIRE(body.step(still, loads, any_budget, true).status == Status::ok);
+  CHECK(relative_error(body.force(), 3, solve_dense(model.view(), reference, 3, still, loads).force) <=
+        tolerance_of(dense));
+  REQUIRE(body.step({}).status == Status::ok);
+  CHECK(std::all_of(body.field().begin(), body.field().end(), [](float x) { return x == 0; }));
+}
+
 TEST_CASE("forces are the same without a field, and where no fields are made") {
-  const TestModel model({.levels = 4});
+  const TestModel model(loaded(4, layout::Wavelet::equilibrated));
   std::mt19937_64 random(4);
   Elastostatic::Limits alone = limits;
   alone.forces_only = true;
   TestBody body(model, limits), lean(model, alone);
   for (int trial = 0; trial < 20; ++trial) {
     const Problem problem(model, random, 5, 4, 2);
-    const Elastostatic::Loads loads{.masks = problem.masks};
+    const Elastostatic::Loads loads{.masks = problem.masks, .gravity = {0, 0, -9.81F}};
     REQUIRE(body.step(problem.constraints, loads, any_budget, true).status == Status::ok);
     const std::vector<float> with_field(body.force().begin(), body.force().end());
     REQUIRE(body.step(problem.constraints, loads, any_budget, false).status == Status::ok);
@@ -161,10 +189,11 @@ TEST_CASE("a stiffer body takes more force, and moves less under a known one") {
 
 TEST_CASE("any budget from the least on is held, and no step takes more than is declared") {
   for (const layout::Wavelet kind : {layout::Wavelet::linear, layout::Wavelet::equilibrated}) {
-    const TestModel model({.levels = 4, .wavelet = kind});
-    for (const std::uint32_t forces : {1U, 24U}) {
+    const TestModel model(loaded(4, kind));
+    for (const std::uint32_t forces : {0U, 1U, 24U}) {
       Elastostatic::Limits of_few = limits;
       of_few.max_forces = forces;
+      of_few.model_loads = forces != 1;
       TestBody body(model, of_few);
       const Elastostatic::Requirement& need = body.requirement();
       std::mt19937_64 random(8);
@@ -173,8 +202,10 @@ TEST_CASE("any budget from the least on is held, and no step takes more than is 
         const Problem problem(model, random, random() % 13, random() % (forces - 5 * patterns + 1), patterns);
         const std::uint64_t most = need.worst_work[model.view().levels - 1];
         const std::uint64_t budget = trial % 3 == 0 ? need.least_work : need.least_work + random() % most;
-        const Elastostatic::StepReport report =
-            body.step(problem.constraints, {.masks = problem.masks}, budget, random() % 4 != 0);
+        const float pressure[] = {1, 2};
+        Elastostatic::Loads loads{.masks = problem.masks};
+        if (of_few.model_loads) loads = {.masks = problem.masks, .gravity = {1, 0, 0}, .pressure = pressure};
+        const Elastostatic::StepReport report = body.step(problem.constraints, loads, budget, random() % 4 != 0);
         CAPTURE(trial);
         CHECK(answered(report.status));
         CHECK(report.work <= budget);
@@ -255,9 +286,27 @@ TEST_CASE("what is wrong with known forces is refused by name") {
   CHECK(step({force}, nan).status == Status::held_not_finite);
   for (const float stiffness : {0.0F, -1.0F, 1e9F}) CHECK(step({force}, stiffness).status == Status::held_out_of_range);
   CHECK(std::equal(before.begin(), before.end(), body.field().begin()));
+  CHECK(body.step({}, {.gravity = {0, 0, 1}}, any_budget, true).status == Status::held_unsupported);
+  CHECK(body.step({}, {.pressure = halves}, any_budget, true).status == Status::held_unsupported);
+  CHECK(body.step({}, {.gravity = {0, nan, 1}}, any_budget, true).status == Status::held_not_finite);
   TestBody holds(model, {.max_contacts = 2, .cached_factors = 1});
   CHECK(holds.step(std::vector<Constraint>{force}).status == Status::held_unsupported);
   CHECK(holds.step(std::vector<Constraint>{pattern(0)}).status == Status::held_unsupported);
+}
+
+TEST_CASE("what is wrong with loads of the model is refused by name") {
+  const TestModel model(loaded(3, layout::Wavelet::linear));
+  TestBody body(model, {.max_contacts = 2, .cached_factors = 1, .model_loads = true});
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float three[] = {1, 2, 3}, spoilt[] = {1, nan}, large[] = {1e38F};
+  const auto status = [&](const Elastostatic::Loads& loads) { return body.step({}, loads, any_budget, true).status; };
+  CHECK(status({.pressure = three}) == Status::held_out_of_range);
+  CHECK(status({.pressure = spoilt}) == Status::held_not_finite);
+  CHECK(status({.gravity = {1e38F, 0, 0}, .stiffness = 0x1p-20F}) == Status::held_overflow);
+  CHECK(status({.pressure = large, .stiffness = 0x1p-20F}) == Status::held_overflow);
+  CHECK(status({.gravity = {0, 0, -9.81F}, .pressure = std::span(three).first(2)}) == Status::ok);
+  TestBody lean(model, {.max_contacts = 2, .cached_factors = 1});
+  CHECK(lean.step({}, {.gravity = {0, 0, 1}}, any_budget, true).status == Status::held_unsupported);
 }
 
 }  // namespace

@@ -15,20 +15,12 @@ std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
   const std::uint32_t details = plan.field_levels.details;
   const std::uint64_t of_contacts = field_work(body.counts, plan.counts, plan.field_levels,
                                                count_field_blocks(body.field_blocks, body.touched, details));
-  return body.is_loaded
-             ? of_contacts + load_field_work(body.counts, plan.loads, details,
-                                             count_field_blocks(body.field_blocks, body.forces.touched, details))
-             : of_contacts;
-}
-
-std::uint64_t stored_blocks(const Body& body, const Touched& touched) {
-  std::uint64_t blocks = 0;
-  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
-    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
-      blocks += body.stored[touched.list[q][k]];
-    }
+  if (!body.is_loaded) {
+    return of_contacts;
   }
-  return blocks;
+  const LoadState& loads = *body.loads;
+  return of_contacts + load_field_work(body.counts, loads.counts, details,
+                                       count_field_blocks(body.field_blocks, loads.forces.touched, details));
 }
 
 // touches the coefficients of the set
@@ -42,26 +34,27 @@ void touch_set(Body& body, Plan& plan) {
 
 // bounds what the loads take, whose coefficients are touched as those of the set are
 void count_displaced(const Body& body, Plan& plan) {
-  plan.loads.set_stored = stored_blocks(body, body.touched);
+  LoadCounts& loads = body.loads->counts;
+  loads.set_stored = count_stored(body.stored, body.touched);
   plan.work += count_field_work(body.counts.prices, plan.counts);
   plan.displaced = plan.counts.columns == 0 ? 0
-                                            : displace_by_loads_work(body.counts, plan.counts, plan.loads,
-                                                                     most_coupling_blocks(plan.counts, plan.loads));
+                                            : displace_by_loads_work(body.counts, plan.counts, loads,
+                                                                     most_coupling_blocks(plan.counts, loads));
 }
 
 // resolves the known forces and touches their coefficients
-void plan_loads(Body& body, std::uint32_t level, Plan& plan) {
-  KnownForces& forces = body.forces;
+void plan_loads(const Body& body, std::uint32_t level, Plan& plan) {
+  KnownForces& forces = body.loads->forces;
   resolve_forces(*body.view, body.facts, level, forces);
   clear(forces.touched);
   touch(body.refinement, forces.column, forces.count, forces.touched);
-  plan.loads.amounts = body.amounts;
-  SetCounts& counts = plan.loads.forces;
+  SetCounts& counts = body.loads->counts.forces;
+  body.loads->counts.amounts = body.loads->amounts;
   counts.columns = forces.count;
   counts.coefficients = forces.touched.coefficients();
   counts.visits = forces.touched.visits;
-  counts.stored = stored_blocks(body, forces.touched);
-  plan.work += plan_loads_work(body.counts, {}, plan.loads);
+  counts.stored = count_stored(body.stored, forces.touched);
+  plan.work += plan_loads_work(body.counts, {}, body.loads->counts);
   count_displaced(body, plan);
 }
 
@@ -212,8 +205,8 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wa
   }
   while (!plan.fits && wants.field && plan.field_levels.details > 0) {
     --plan.field_levels.details;
-    plan.work +=
-        count_field_work(body.counts.prices, plan.counts) + count_field_work(body.counts.prices, plan.loads.forces);
+    plan.work += count_field_work(body.counts.prices, plan.counts) +
+                 (body.is_loaded ? count_field_work(body.counts.prices, body.loads->counts.forces) : 0);
     plan.field = planned_field_work(body, plan);
     plan.fits = planned_work(body, plan) <= wants.budget;
   }

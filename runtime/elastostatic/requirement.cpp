@@ -25,6 +25,8 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.prediction = prediction_of(view);
   counts.forces_only = limits.forces_only;
   counts.max_forces = limits.max_forces;
+  counts.max_points = limits.max_points;
+  counts.model_loads = limits.model_loads ? static_cast<std::uint32_t>(view.loads.size()) : 0;
   counts.iterations = limits.iterations;
   counts.keeps_capacitance = limits.keep_capacitance || limits.iterations > 0;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
@@ -139,12 +141,41 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
   }
 }
 
+// columns of two sets, which may have none in common
+SetCounts both(const SetCounts& a, const SetCounts& b) {
+  SetCounts sum;
+  sum.columns = a.columns + b.columns;
+  sum.coefficients = a.coefficients + b.coefficients;
+  sum.visits = a.visits + b.visits;
+  sum.stored = a.stored + b.stored;
+  return sum;
+}
+
+// of a call of `displacements`, forces resolved at any level, or of `masked_compliance`, at the finest
+std::uint64_t bound_selected(const ModelView& view, const MostOf& most_of, const ReachBound& reach,
+                             const BodySizes& sizes) {
+  const ModelCounts& counts = sizes.counts;
+  const SetCounts points = most_point_counts(view, std::uint64_t{3} * counts.max_points, reach, sizes.lifting);
+  const SetCounts node = most_point_counts(view, 1, reach, sizes.lifting);
+  const auto work = [&](const SetCounts& moved, const SetCounts& forces, std::uint64_t times) {
+    const LoadCounts loads{forces, counts.model_loads, moved.stored};
+    return ask_work(counts, moved, loads) +
+           times * displace_by_loads_work(counts, moved, loads, most_coupling_blocks(moved, loads));
+  };
+  std::uint64_t most = 0;
+  for (std::uint32_t c = view.info->coarsest_constraint_level; c < view.levels; ++c) {
+    most = larger(most, work(points, both(most_of.contacts[c].set, most_of.forces[c].set), 1));
+  }
+  const std::uint32_t finest = view.levels - 1;
+  return larger(most, work(node, both(most_of.contacts[finest].set, most_of.forces[finest].set), 3));
+}
+
 }  // namespace
 
 bool in_range(const Elastostatic::Limits& limits) noexcept {
   return limits.max_contacts >= 1 && limits.max_contacts <= 4096 && limits.cached_factors >= 1 &&
          limits.cached_factors <= 1024 && limits.glide_cycles >= 1 && limits.glide_cycles <= 256 &&
-         limits.max_forces <= 4096 && limits.iterations <= 1024 &&
+         limits.max_forces <= 4096 && limits.max_points <= 4096 && limits.iterations <= 1024 &&
          (limits.iterations == 0 || limits.max_contacts <= ContactProblem::most_candidates);
 }
 
@@ -188,6 +219,10 @@ void measure_body(const ModelView& view, const Elastostatic::Limits& limits, Bod
   sizes.slots = (entries < view.domain_count ? entries : view.domain_count) + sizes.set_columns;
   sizes.counts.capacitance_room = capacitance_room(sizes.slots, sizes.set_columns);
   bound_work(view, limits, {most_of, most_forces}, sizes, requirement);
+  if (limits.max_points > 0) {
+    const ReachBound reach = bound_reach(view, view.levels - 1, sizes.lifting);
+    requirement.selected_work = bound_selected(view, {most_of, most_forces}, reach, sizes);
+  }
   sizes.supported = true;
 }
 

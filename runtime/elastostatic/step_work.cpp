@@ -89,6 +89,10 @@ std::uint64_t displace_by_loads_work(const ModelCounts& model, const SetCounts& 
          (coupled ? couple_work(prices, both, between) : 0);
 }
 
+std::uint64_t ask_work(const ModelCounts& model, const SetCounts& points, const LoadCounts& loads) noexcept {
+  return touch_work(model.prices, points) + touch_work(model.prices, loads.forces);
+}
+
 std::uint64_t load_field_work(const ModelCounts& model, const LoadCounts& loads, std::uint32_t details,
                               std::uint64_t blocks) noexcept {
   const Prices& prices = model.prices;
@@ -119,6 +123,32 @@ std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touch
     }
   }
   return sum;
+}
+
+std::uint64_t count_stored(const std::uint32_t* stored, const Touched& touched) noexcept {
+  std::uint64_t sum = 0;
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      sum += stored[touched.list[q][k]];
+    }
+  }
+  return sum;
+}
+
+SetCounts most_point_counts(const ModelView& view, std::uint64_t columns, const ReachBound& reach,
+                            const LiftingCounts* lifting) noexcept {
+  SetCounts most;
+  most.columns = most.visits = columns;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const std::uint64_t touched = smaller(view.level[q].counts->domain_count, columns * reach.coefficients[q]);
+    ValueCounts<> stored;
+    count_stored(view, q, stored);
+    most.coefficients += touched;
+    most.stored += stored.largest(touched);
+    most.visits +=
+        (q > 0 ? prediction_of(view).length * touched : 0) + std::uint64_t{OddNeighbours::most} * lifting[q].records;
+  }
+  return most;
 }
 
 MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max_contacts, const ColumnBounds& bounds,

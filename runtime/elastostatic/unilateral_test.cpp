@@ -208,7 +208,7 @@ TEST_CASE("whatever the budget, every answer obeys the laws and holds the budget
     const std::uint64_t least = body.requirement().least_work;
     const std::uint64_t worst = body.requirement().worst_work[model.view().levels - 1];
     CHECK(least < worst);
-    std::uint32_t coarsest = 9, finest = 0;
+    std::uint32_t finest = 0;
     std::mt19937_64 random(3);
     for (int cycle = 0; cycle < 400; ++cycle) {
       const double share = static_cast<double>(random() >> 11) * 0x1p-53;
@@ -221,11 +221,15 @@ TEST_CASE("whatever the budget, every answer obeys the laws and holds the budget
       REQUIRE(answered(report.status));
       CHECK(report.work <= budget);
       check_laws(contacts, body);
-      coarsest = std::min(coarsest, report.constraint_level);
       finest = std::max(finest, report.constraint_level);
     }
+    PushedBody cold(model, limits);
+    const auto contacts = pushed_patch(model, 24, 1e-3, 0, 0.4);
+    const auto report = cold.step(contacts, least);
+    REQUIRE(answered(report.status));
+    check_laws(contacts, cold);
     CHECK(finest == model.view().levels - 1);
-    CHECK(coarsest < finest);
+    CHECK(report.constraint_level < finest);
   }
 }
 

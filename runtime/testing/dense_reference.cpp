@@ -106,7 +106,32 @@ MatrixXd DenseReference::averages(std::uint32_t q, MatrixXd x) const {
   return x;
 }
 
+MatrixXd DenseReference::load_field(const ModelView& view, std::uint32_t q) const {
+  MatrixXd x = MatrixXd::Zero(Index{3} * view.domain_count, static_cast<Index>(view.loads.size()));
+  for (std::uint32_t l = 0; l <= q; ++l) {
+    const LevelView& level = view.level[l];
+    for (std::uint32_t load = 0; load < view.loads.size(); ++load) {
+      for (Index i = 0; i < 3 * level.counts->domain_count; ++i) {
+        x(Index{3} * level.domain_begin + i, load) = double{level.load_column(load)[i]};
+      }
+    }
+  }
+  for (std::uint32_t l = 1; l < view.levels; ++l)
+    x.topRows(wavelet_.rows(l)) = inverse_step(view, l) * x.topRows(wavelet_.rows(l));
+  return x;
+}
+
 namespace {
+
+Eigen::VectorXd load_amounts(const ModelView& view, const Elastostatic::Loads& loads) {
+  Eigen::VectorXd amounts = Eigen::VectorXd::Zero(static_cast<Index>(view.loads.size()));
+  const Index accelerations = view.has_gravity() ? layout::accelerations : 0;
+  if (accelerations > 0) amounts.head<3>() << loads.gravity.x, loads.gravity.y, loads.gravity.z;
+  for (std::size_t k = 0; k < loads.pressure.size(); ++k) {
+    amounts(accelerations + static_cast<Index>(k)) = double{loads.pressure[k]};
+  }
+  return amounts;
+}
 
 // who stands for a contact
 std::uint32_t dense_column(const ModelView& view, std::uint32_t node, std::uint32_t c) {
@@ -154,7 +179,9 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
   }
   const double softness = 1 / double{loads.stiffness};
   const auto n = static_cast<Index>(members.size());
-  const Eigen::VectorXd by_known = softness * (reference.compliance(level) * known);
+  const Eigen::VectorXd by_loads = softness * (reference.load_field(view, view.levels - 1) * load_amounts(view, loads));
+  const Eigen::VectorXd by_known =
+      softness * (reference.compliance(level) * known) + reference.averages(level, by_loads);
   MatrixXd capacitance(3 * n, 3 * n);
   Eigen::VectorXd prescribed = Eigen::VectorXd::Zero(3 * n);
   Index j = 0;
@@ -185,7 +212,7 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
     }
     ++j;
   }
-  const Eigen::VectorXd displacement = softness * (reference.field(level) * known);
+  const Eigen::VectorXd displacement = softness * (reference.field(level) * known) + by_loads;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const Index count = 3 * view.level[q].counts->domain_count;
     answer.displacement.segment(Index{3} * view.level[q].node_begin, count) =

@@ -41,6 +41,11 @@ bool verify_quanta(SectionCheck& check, const layout::Info& info) {
   return true;
 }
 
+// only elastostatic models have loads
+bool verify_load_count(SectionCheck& check, const layout::Info& info) {
+  return check.require_at_most("loads", 0, info.loads, info.components == 3 ? layout::most_loads : 0);
+}
+
 bool verify_box(SectionCheck& check, const layout::Info& info) {
   for (std::uint32_t k = 0; k < 3; ++k) {
     if (!check.require_finite("box_min", k, info.box_min[k]) ||
@@ -73,7 +78,7 @@ bool verify_info(const Section& section, VerifyContext& context) {
          check.require_at_most("max_contacts", 0, info.max_contacts, layout::most_contacts) &&
          check.require_at_most("coarsest_constraint_level", 0, info.coarsest_constraint_level, present - 1) &&
          check.require_equal("finest_constraint_level", 0, info.finest_constraint_level, info.levels - 1) &&
-         verify_quanta(check, info) &&
+         verify_quanta(check, info) && verify_load_count(check, info) &&
          check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
                        VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
 }

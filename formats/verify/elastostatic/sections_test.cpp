@@ -222,7 +222,7 @@ TEST_CASE("verify refuses: a quantum of any layer that is negative, above one or
 }
 
 TEST_CASE("verify refuses: reserved bytes of Info and Level in use") {
-  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[131] = 1; });
+  check_info(VerifyRule::reserved_not_zero, "reserved", 0, [](Info& info) { info.reserved[127] = 1; });
   check_level(1, VerifyRule::out_of_range, "cut_error", [](Level& level) { level.cut_error = -1; });
 }
 
