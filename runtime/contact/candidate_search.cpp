@@ -1,0 +1,228 @@
+#include "runtime/contact/candidate_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "runtime/contact/approach.hpp"
+
+namespace greenloop {
+namespace {
+
+// cosine between the normals of surface and tool: what faces away by more is behind the part that the tool meets
+constexpr double most_away = 0.2;
+
+constexpr std::uint64_t tool_price = 300, box_price = 120, node_price = 90, candidate_price = 100, sort_price = 60;
+
+bool is_good(const CandidateSearch::Limits& limits) {
+  return limits.max_tools > 0 && limits.max_tools <= 254 && limits.max_points <= Shape::max_points &&
+         limits.max_candidates > 0 && limits.max_candidates < layout::none && limits.margin >= 0 &&
+         limits.margin <= 1e6;
+}
+
+ToolFault fault_of(PoseError error) {
+  switch (error) {
+    case PoseError::not_finite:
+      return ToolFault::not_finite;
+    case PoseError::too_far:
+      return ToolFault::too_far;
+    case PoseError::not_unit:
+      return ToolFault::not_unit;
+    case PoseError::none:
+      break;
+  }
+  return ToolFault::none;
+}
+
+// the order in which candidates are listed
+bool comes_before(const Candidate& a, const Candidate& b) {
+  if (a.tool != b.tool) return a.tool < b.tool;
+  const bool is_node_a = a.triangle == layout::none, is_node_b = b.triangle == layout::none;
+  if (is_node_a != is_node_b) return is_node_a;
+  return is_node_a ? a.node[0] < b.node[0] : a.feature < b.feature;
+}
+
+bool is_deeper(const Candidate& a, const Candidate& b) { return a.gap != b.gap ? a.gap < b.gap : comes_before(a, b); }
+
+std::uint64_t sort_work(std::uint64_t count) {
+  std::uint64_t passes = 1;
+  while ((std::uint64_t{1} << passes) < count) ++passes;
+  return sort_price * count * passes;
+}
+
+template <class T>
+void start_all(T* some, std::uint64_t count) {
+  for (std::uint64_t i = 0; some != nullptr && i < count; ++i) new (some + i) T;
+}
+
+}  // namespace
+
+void CandidateSearch::carve(Arena& arena) noexcept {
+  const std::uint64_t proxies = std::uint64_t{limits_.max_tools} * limits_.max_points;
+  tool_ = arena.take<ToolState>(limits_.max_tools);
+  proxy_ = arena.take<Proxy>(proxies);
+  candidate_ = arena.take<Candidate>(limits_.max_candidates + std::uint64_t{1});
+  start_all(tool_, limits_.max_tools);
+  start_all(proxy_, proxies);
+  start_all(candidate_, limits_.max_candidates + std::uint64_t{1});
+}
+
+std::size_t CandidateSearch::required(const Limits& limits) noexcept {
+  if (!is_good(limits)) return 0;
+  Arena arena;
+  CandidateSearch counted;
+  counted.limits_ = limits;
+  counted.carve(arena);
+  return static_cast<std::size_t>(arena.bytes());
+}
+
+CandidateSearch::Created CandidateSearch::create(const Limits& limits, std::span<std::byte> memory) noexcept {
+  Created created;
+  created.requested = required(limits);
+  created.available = memory.size();
+  if (created.requested == 0) {
+    created.error = CreateError::bad_limits;
+  } else if (created.requested > memory.size()) {
+    created.error = CreateError::arena_too_small;
+    created.missing = created.requested - memory.size();
+  } else if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
+    created.error = CreateError::arena_misaligned;
+  }
+  if (!created) return created;
+  Arena arena(memory.data());
+  created.search.limits_ = limits;
+  created.search.carve(arena);
+  return created;
+}
+
+CandidateSearch::Found CandidateSearch::find(const DeformedSurface& surface, std::span<const Tool> tools,
+                                             std::uint64_t& work) noexcept {
+  count_ = 0;
+  found_ = {};
+  const auto heeded = static_cast<std::uint32_t>(std::min<std::size_t>(tools.size(), limits_.max_tools));
+  for (std::uint32_t t = 0; t < heeded; ++t) look(surface, tools[t], t, work);
+  std::sort(candidate_, candidate_ + count_, comes_before);
+  work += sort_work(count_);
+  found_.candidates = {candidate_, count_};
+  return found_;
+}
+
+std::uint64_t CandidateSearch::find_work(const DeformedSurface& surface, std::span<const Tool> tools) const noexcept {
+  const std::size_t heeded = std::min<std::size_t>(tools.size(), limits_.max_tools);
+  std::uint64_t work = sort_work(limits_.max_candidates);
+  for (const Tool& tool : tools.first(heeded)) {
+    const std::uint64_t box = box_price + tool.shape.distance_work();
+    const std::uint64_t taken = candidate_price + sort_work(limits_.max_candidates) / limits_.max_candidates;
+    const std::uint64_t node =
+        node_price + tool.shape.distance_work() + approach_work(tool.shape) + surface.surround_work() + taken;
+    work += tool_price + surface.box_count() * box + surface.node_count() * node +
+            limits_.max_points * (Proxy::move_work(surface) + taken);
+  }
+  return work;
+}
+
+void CandidateSearch::look(const DeformedSurface& surface, const Tool& tool, std::uint32_t number,
+                           std::uint64_t& work) noexcept {
+  work += tool_price;
+  ToolState& state = tool_[number];
+  const Placed placed = place(tool.pose);
+  state.fault = fault_of(placed.error);
+  if (tool.shape.check() != Shape::Error::none) state.fault = ToolFault::bad_shape;
+  if (state.fault == ToolFault::none && tool.shape.point_count() > limits_.max_points) {
+    state.fault = ToolFault::too_many_points;
+  }
+  if (state.fault != ToolFault::none) return;
+  if (!state.has_history || state.points != tool.shape.point_count()) {
+    state.points = tool.shape.point_count();
+    state.last = placed.placement;
+    start_all(proxy_ + std::size_t{limits_.max_points} * number, state.points);
+  }
+  const Step step{surface, tool.shape, state.last, placed.placement, number};
+  if (tool.shape.kind() != Shape::Kind::point) look_at_nodes(step, work);
+  look_at_points(step, work);
+  state.has_history = true;
+  state.last = placed.placement;
+}
+
+// A place in a box is never farther from the box's middle than half its diagonal, and the middle is on its way never
+// farther from its end than the way is long: what the tool does not come near by as much cannot be near.
+void CandidateSearch::look_at_nodes(const Step& step, std::uint64_t& work) noexcept {
+  const double radius = step.shape.bounding_radius();
+  const auto comes_near = [&](const Double3& place, double reach) {
+    const Double3 to = step.present.to_tool(place);
+    const double near = limits_.margin + reach + norm(to - step.last.to_tool(place));
+    return norm(to) - radius <= near && step.shape.distance(to).distance <= near;
+  };
+  const auto enters = [&](const TriangleBox& box) {
+    work += box_price + step.shape.distance_work();
+    const Double3 low{box.low[0], box.low[1], box.low[2]}, high{box.high[0], box.high[1], box.high[2]};
+    return comes_near(0.5 * (low + high), 0.5 * norm(high - low));
+  };
+  step.surface.visit(enters, [&](std::uint32_t patch) {
+    for (const std::uint32_t node : step.surface.own_nodes_of(patch)) {
+      if (!step.surface.is_touchable(node)) continue;
+      work += node_price + step.shape.distance_work();
+      if (comes_near(step.surface.position(node), 0)) look_at_node(step, node, work);
+    }
+  });
+}
+
+void CandidateSearch::look_at_node(const Step& step, std::uint32_t node, std::uint64_t& work) noexcept {
+  const Double3 position = step.surface.position(node);
+  const Approach near = approach(step.shape, step.last, step.present, position);
+  work += approach_work(step.shape);
+  if (!(near.gap <= limits_.margin)) return;
+  if (!(dot(step.surface.node_normal(node, work), near.normal) <= most_away)) return;
+  take({.node = {node, layout::none, layout::none},
+        .weight = {1, 0, 0},
+        .tool = step.tool,
+        .gap = near.gap,
+        .normal = near.normal,
+        .position = position,
+        .motion = near.motion});
+  work += candidate_price;
+}
+
+void CandidateSearch::look_at_points(const Step& step, std::uint64_t& work) noexcept {
+  for (std::uint32_t i = 0; i < step.shape.point_count(); ++i) {
+    Proxy& proxy = proxy_[std::size_t{limits_.max_points} * step.tool + i];
+    const double margin = limits_.margin + step.shape.point_radius();
+    proxy.move(step.surface, step.present.to_model(step.shape.point(i)), margin, work);
+    if (proxy.point().triangle != layout::none && proxy.height() <= margin) take_point(step, i, proxy);
+    work += candidate_price;
+  }
+}
+
+void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Proxy& proxy) noexcept {
+  const auto& [a, b, c] = step.surface.triangle(proxy.point().triangle).node;
+  if (!step.surface.is_touchable(a) && !step.surface.is_touchable(b) && !step.surface.is_touchable(c)) return;
+  const double* w = proxy.point().weight;
+  const Double3 motion = step.present.to_tool(proxy.position()) - step.last.to_tool(proxy.position());
+  take({.node = {a, b, c},
+        .weight = {w[0], w[1], w[2]},
+        .triangle = proxy.point().triangle,
+        .tool = step.tool,
+        .feature = point,
+        .gap = proxy.height() - step.shape.point_radius(),
+        .normal = -proxy.normal(),
+        .position = proxy.position(),
+        .motion = step.present.turned(motion)});
+}
+
+// while there are too many the shallowest stands first, as in a heap, and goes
+void CandidateSearch::take(const Candidate& candidate) noexcept {
+  candidate_[count_++] = candidate;
+  if (count_ <= limits_.max_candidates) return;
+  Candidate* const end = candidate_ + count_;
+  if (found_.left_out == 0) {
+    std::make_heap(candidate_, end, is_deeper);
+  } else {
+    std::push_heap(candidate_, end, is_deeper);
+  }
+  std::pop_heap(candidate_, end, is_deeper);
+  const Candidate& gone = candidate_[--count_];
+  if (found_.left_out == 0 || is_deeper(gone, found_.deepest_left_out)) found_.deepest_left_out = gone;
+  ++found_.left_out;
+}
+
+}  // namespace greenloop
