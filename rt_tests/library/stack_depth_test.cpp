@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/surface.hpp"
+#include "runtime/testing/search_bench.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -113,6 +114,27 @@ TEST_CASE("a query of the surface keeps below 1 kB") {
     CHECK(node.node != layout::none);
     CHECK(point.triangle != layout::none);
     CHECK(bytes < 1024);
+  }
+}
+
+TEST_CASE("a search for candidates keeps below 3 kB") {
+  DeformedBody body({.levels = 4, .touchable_above = -0.4}, 0.1F);
+  const CandidateSearch::Limits limits{.max_tools = 2, .max_candidates = 16, .margin = 0.01};
+  AlignedBytes memory(CandidateSearch::required(limits));
+  auto created = CandidateSearch::create(limits, {memory.data(), memory.size()});
+  REQUIRE(created);
+  for (const double x : {0.05, -0.05, 0.001}) {
+    const Tool tools[] = {{Shape::box({0.01, 0.02, 0.03}), {{x, 0, 0}, {1, 0, 0, 0}}},
+                          {Shape::sphere(0.1), {{x, 0, 0.1}, {1, 0, 0, 0}}}};
+    std::uint64_t work = 0;
+    CandidateSearch::Found found;
+    const std::size_t bytes = depth_of([&] {
+      body.surface.update(body.displacement, work);
+      found = created.search.find(body.surface, tools, work);
+    });
+    MESSAGE("deepest stack of a search: ", bytes, " bytes");
+    CHECK(found.left_out > 0);
+    CHECK(bytes < 3072);
   }
 }
 

@@ -19,6 +19,7 @@
 
 #include "rt_tests/harness/minor_faults.hpp"
 #include "runtime/surface.hpp"
+#include "runtime/testing/search_bench.hpp"
 #include "runtime/testing/test_body.hpp"
 #include "sim_hw/guard/guarded.hpp"
 
@@ -150,6 +151,31 @@ TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is 
   mutex_guard::disarm();
   allocation_guard::disarm();
   CHECK(right);
+  CHECK(allocation_guard::count() == allocations);
+  CHECK(mutex_guard::count() == locks);
+}
+
+TEST_CASE("no allocation and no lock in a search for candidates, nor when it is made") {
+  DeformedBody body({.levels = 4, .touchable_above = -0.4}, 0.1F);
+  const CandidateSearch::Limits limits{.max_tools = 2, .max_candidates = 16, .margin = 0.01};
+  AlignedBytes memory(CandidateSearch::required(limits));
+  const std::uint64_t allocations = allocation_guard::count();
+  const std::uint64_t locks = mutex_guard::count();
+  allocation_guard::arm();
+  mutex_guard::arm();
+  auto created = CandidateSearch::create(limits, {memory.data(), memory.size()});
+  std::uint64_t work = 0;
+  std::size_t candidates = 0;
+  for (int i = 0; created && i < cycles; ++i) {
+    const double x = 0.1 - 1e-4 * i;
+    const Tool tools[] = {{Shape::box({0.01, 0.02, 0.03}), {{x, 0, 0}, {1, 0, 0, 0}}},
+                          {Shape::capsule(0.01, 0.02), {{-x, 0.01, 0.02}, {1, 0, 0, 0}}}};
+    body.surface.update(body.displacement, work);
+    candidates += created.search.find(body.surface, tools, work).candidates.size();
+  }
+  mutex_guard::disarm();
+  allocation_guard::disarm();
+  CHECK(candidates > 1000);
   CHECK(allocation_guard::count() == allocations);
   CHECK(mutex_guard::count() == locks);
 }

@@ -12,7 +12,7 @@ namespace {
 // cosine between the normals of surface and tool: what faces away by more is behind the part that the tool meets
 constexpr double most_away = 0.2;
 
-constexpr std::uint64_t tool_price = 300, box_price = 120, node_price = 90, candidate_price = 100, sort_price = 60;
+constexpr std::uint64_t tool_price = 300, box_price = 130, node_price = 130, candidate_price = 300, sort_price = 60;
 
 bool is_good(const CandidateSearch::Limits& limits) {
   return limits.max_tools > 0 && limits.max_tools <= 254 && limits.max_points <= Shape::max_points &&

@@ -186,7 +186,7 @@ Double3 DeformedSurface::node_normal(std::uint32_t node, std::uint64_t& work) co
     const Double3 at = position(a);
     sum += cross(position(b) - at, position(c) - at);
   }
-  work += (end - begin) * SurfacePrices::triangle;
+  work += SurfacePrices::query + (end - begin) * SurfacePrices::triangle;
   return unit(sum);
 }
 
@@ -208,7 +208,7 @@ Double3 DeformedSurface::normal(const SurfacePoint& point, std::uint64_t& work) 
     }
     sum += angle_between(side[0], side[1]) * triangle_normal(t);
   });
-  work += around_work();
+  work += SurfacePrices::query + around_work();
   return unit(sum);
 }
 

@@ -23,11 +23,11 @@ struct ClosestSurfacePoint {
 
 /// What queries of a deformed surface cost, in work units: about instructions of an x86-64 processor.
 struct SurfacePrices {
-  static constexpr std::uint64_t query = 100;     ///< whatever it finds
-  static constexpr std::uint64_t box = 90;        ///< a box that is looked at
+  static constexpr std::uint64_t query = 100;     ///< a question, whatever is found
+  static constexpr std::uint64_t box = 145;       ///< a box that is looked at
   static constexpr std::uint64_t triangle = 260;  ///< a triangle
-  static constexpr std::uint64_t node = 12;       ///< a node of a patch whose box is made anew
-  static constexpr std::uint64_t patch = 60;      ///< such a box, and one above it
+  static constexpr std::uint64_t node = 13;       ///< a node of a patch whose box is made anew
+  static constexpr std::uint64_t patch = 65;      ///< such a box, and one above it
   static constexpr std::uint64_t neighbour = 12;  ///< a triangle around a node
 };
 
@@ -75,12 +75,12 @@ class DeformedSurface {
   /// Outward unit normals: of a triangle; of a node, the mean of the triangles' around it by area; of a point of the
   /// surface, the triangle's or, on an edge or a corner, that by whose side inside and outside are told apart for what
   /// has its closest point there: the mean by angle (Baerentzen & Aanaes 2005). Zero where triangles have no area.
-  /// Work: a `triangle` for each triangle around it, at most surround_work().
+  /// Work: a `triangle` for each triangle around it, at most surround_work(), is added to `work`.
   [[nodiscard]] Double3 triangle_normal(std::uint32_t t) const noexcept;
   [[nodiscard]] Double3 node_normal(std::uint32_t node, std::uint64_t& work) const noexcept;
   [[nodiscard]] Double3 normal(const SurfacePoint& point, std::uint64_t& work) const noexcept;
   [[nodiscard]] std::uint64_t surround_work() const noexcept {
-    return most_around_ * SurfacePrices::triangle + around_work();
+    return SurfacePrices::query + most_around_ * SurfacePrices::triangle + around_work();
   }
   /// Of finding the triangles around a point, at most.
   [[nodiscard]] std::uint64_t around_work() const noexcept { return most_around_ * SurfacePrices::neighbour; }

@@ -156,8 +156,9 @@ TEST_CASE("distances: where the normal leads is the surface, and no direction le
   const Solid solid = wedge();
   REQUIRE(solid.created);
   std::mt19937_64 random(6);
-  for (const auto& [name, shape] : all_shapes(solid)) {
-    CAPTURE(name);
+  for (const auto& some : all_shapes(solid)) {
+    const Shape& shape = some.second;
+    CAPTURE(some.first);
     for (int i = 0; i < 2000; ++i) {
       const Double3 at = random_vector(random, 0.05);
       const SignedDistance d = shape.distance(at);
@@ -176,9 +177,10 @@ TEST_CASE("supports: no point of the shape is farther along the direction") {
   const Solid solid = wedge();
   REQUIRE(solid.created);
   std::mt19937_64 random(7);
-  for (const auto& [name, shape] : all_shapes(solid)) {
+  for (const auto& some : all_shapes(solid)) {
+    const Shape& shape = some.second;
     if (shape.kind() == Shape::Kind::plane) continue;
-    CAPTURE(name);
+    CAPTURE(some.first);
     for (int i = 0; i < 500; ++i) {
       const Double3 direction = unit(random_vector(random, 1)), farthest = shape.support(direction);
       REQUIRE(std::abs(shape.distance(farthest).distance) < 1e-15);
@@ -198,8 +200,9 @@ TEST_CASE("shapes have points to follow, on their surface or their radius inside
   REQUIRE(solid.created);
   const std::array<std::uint32_t, 6> expected{1, 1, 7, 8, 0, 4};
   std::size_t at = 0;
-  for (const auto& [name, shape] : all_shapes(solid)) {
-    CAPTURE(name);
+  for (const auto& some : all_shapes(solid)) {
+    const Shape& shape = some.second;
+    CAPTURE(some.first);
     REQUIRE(shape.check() == Shape::Error::none);
     CHECK(shape.point_count() == expected[at++]);
     for (std::uint32_t i = 0; i < shape.point_count(); ++i) {
