@@ -4,6 +4,7 @@
 #include <cmath>
 #include <new>
 
+#include "runtime/algebra/merge_sort.hpp"
 #include "runtime/contact/approach.hpp"
 
 namespace greenloop {
@@ -12,7 +13,8 @@ namespace {
 // cosine between the normals of surface and tool: what faces away by more is behind the part that the tool meets
 constexpr double most_away = 0.2;
 
-constexpr std::uint64_t tool_price = 300, box_price = 130, node_price = 130, candidate_price = 300, sort_price = 60;
+constexpr std::uint64_t tool_price = 300, box_price = 130, node_price = 130, take_price = 200, list_price = 80,
+                        compare_price = 15;
 
 bool is_good(const CandidateSearch::Limits& limits) {
   return limits.max_tools > 0 && limits.max_tools <= 254 && limits.max_points <= Shape::max_points &&
@@ -44,10 +46,16 @@ bool comes_before(const Candidate& a, const Candidate& b) {
 
 bool is_deeper(const Candidate& a, const Candidate& b) { return a.gap != b.gap ? a.gap < b.gap : comes_before(a, b); }
 
-std::uint64_t sort_work(std::uint64_t count) {
-  std::uint64_t passes = 1;
-  while ((std::uint64_t{1} << passes) < count) ++passes;
-  return sort_price * count * passes;
+// of room for so many, and listing those that there are
+std::uint64_t list_work(std::uint64_t room, std::uint64_t count) {
+  return room + list_price * count + compare_price * merge_sort_steps(count);
+}
+
+// of a candidate that is found, and of the heap if there are too many
+std::uint64_t take_work(std::uint64_t room) {
+  std::uint64_t halvings = 1;
+  while (room >> halvings > 0) ++halvings;
+  return take_price + 2 * compare_price * halvings;
 }
 
 template <class T>
@@ -62,9 +70,13 @@ void CandidateSearch::carve(Arena& arena) noexcept {
   tool_ = arena.take<ToolState>(limits_.max_tools);
   proxy_ = arena.take<Proxy>(proxies);
   candidate_ = arena.take<Candidate>(limits_.max_candidates + std::uint64_t{1});
+  listed_ = arena.take<Candidate>(limits_.max_candidates);
+  order_ = arena.take<std::uint32_t>(limits_.max_candidates + std::uint64_t{1});
+  spare_ = arena.take<std::uint32_t>(limits_.max_candidates + std::uint64_t{1});
   start_all(tool_, limits_.max_tools);
   start_all(proxy_, proxies);
   start_all(candidate_, limits_.max_candidates + std::uint64_t{1});
+  start_all(listed_, limits_.max_candidates);
 }
 
 std::size_t CandidateSearch::required(const Limits& limits) noexcept {
@@ -99,20 +111,23 @@ CandidateSearch::Found CandidateSearch::find(const DeformedSurface& surface, std
                                              std::uint64_t& work) noexcept {
   count_ = 0;
   found_ = {};
+  for (std::uint32_t i = 0; i <= limits_.max_candidates; ++i) order_[i] = i;
   const auto heeded = static_cast<std::uint32_t>(std::min<std::size_t>(tools.size(), limits_.max_tools));
   for (std::uint32_t t = 0; t < heeded; ++t) look(surface, tools[t], t, work);
-  std::sort(candidate_, candidate_ + count_, comes_before);
-  work += sort_work(count_);
-  found_.candidates = {candidate_, count_};
+  merge_sort(count_, order_, spare_,
+             [this](std::uint32_t a, std::uint32_t b) { return comes_before(candidate_[a], candidate_[b]); });
+  for (std::uint32_t i = 0; i < count_; ++i) listed_[i] = candidate_[order_[i]];
+  work += list_work(limits_.max_candidates, count_);
+  found_.candidates = {listed_, count_};
   return found_;
 }
 
 std::uint64_t CandidateSearch::find_work(const DeformedSurface& surface, std::span<const Tool> tools) const noexcept {
   const std::size_t heeded = std::min<std::size_t>(tools.size(), limits_.max_tools);
-  std::uint64_t work = sort_work(limits_.max_candidates);
+  const std::uint64_t taken = take_work(limits_.max_candidates);
+  std::uint64_t work = list_work(limits_.max_candidates, limits_.max_candidates);
   for (const Tool& tool : tools.first(heeded)) {
     const std::uint64_t box = box_price + tool.shape.distance_work();
-    const std::uint64_t taken = candidate_price + sort_work(limits_.max_candidates) / limits_.max_candidates;
     const std::uint64_t node =
         node_price + tool.shape.distance_work() + approach_work(tool.shape) + surface.surround_work() + taken;
     work += tool_price + surface.box_count() * box + surface.node_count() * node +
@@ -180,7 +195,7 @@ void CandidateSearch::look_at_node(const Step& step, std::uint32_t node, std::ui
         .normal = near.normal,
         .position = position,
         .motion = near.motion});
-  work += candidate_price;
+  work += take_work(limits_.max_candidates);
 }
 
 void CandidateSearch::look_at_points(const Step& step, std::uint64_t& work) noexcept {
@@ -189,7 +204,7 @@ void CandidateSearch::look_at_points(const Step& step, std::uint64_t& work) noex
     const double margin = limits_.margin + step.shape.point_radius();
     proxy.move(step.surface, step.present.to_model(step.shape.point(i)), margin, work);
     if (proxy.point().triangle != layout::none && proxy.height() <= margin) take_point(step, i, proxy);
-    work += candidate_price;
+    work += take_work(limits_.max_candidates);
   }
 }
 
@@ -208,18 +223,19 @@ void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Pr
         .motion = step.present.turned(motion)});
 }
 
-// while there are too many the shallowest stands first, as in a heap, and goes
+// While there are too many, those in order_ are a heap with the shallowest first, which goes; its slot is the next to
+// be written to, as beyond the count there stand the slots that are free.
 void CandidateSearch::take(const Candidate& candidate) noexcept {
-  candidate_[count_++] = candidate;
+  candidate_[order_[count_++]] = candidate;
   if (count_ <= limits_.max_candidates) return;
-  Candidate* const end = candidate_ + count_;
+  const auto order = [this](std::uint32_t a, std::uint32_t b) { return is_deeper(candidate_[a], candidate_[b]); };
   if (found_.left_out == 0) {
-    std::make_heap(candidate_, end, is_deeper);
+    std::make_heap(order_, order_ + count_, order);
   } else {
-    std::push_heap(candidate_, end, is_deeper);
+    std::push_heap(order_, order_ + count_, order);
   }
-  std::pop_heap(candidate_, end, is_deeper);
-  const Candidate& gone = candidate_[--count_];
+  std::pop_heap(order_, order_ + count_, order);
+  const Candidate& gone = candidate_[order_[--count_]];
   if (found_.left_out == 0 || is_deeper(gone, found_.deepest_left_out)) found_.deepest_left_out = gone;
   ++found_.left_out;
 }

@@ -93,6 +93,9 @@ class CandidateSearch {
   ToolState* tool_ = nullptr;       ///< [max_tools]
   Proxy* proxy_ = nullptr;          ///< [max_tools * max_points]
   Candidate* candidate_ = nullptr;  ///< [max_candidates + 1]
+  Candidate* listed_ = nullptr;     ///< [max_candidates]
+  std::uint32_t* order_ = nullptr;  ///< [max_candidates + 1] of candidate_
+  std::uint32_t* spare_ = nullptr;  ///< as many
   std::uint32_t count_ = 0;
   Found found_;
 };

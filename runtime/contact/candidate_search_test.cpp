@@ -184,6 +184,26 @@ TEST_CASE("candidates: faulty tools are named and left alone, and go on from whe
   CHECK(CandidateSearch::required({.margin = nothing}) == 0);
 }
 
+TEST_CASE("candidates: of a displacement that is not finite there are none, and what is held stays on its side") {
+  DeformedBody ear({.levels = 4, .touchable_above = -0.4}, 0.01F);
+  const Tool before{Shape::sphere(0.004), at({0.02, 0, 0})}, behind{Shape::sphere(0.004), at({-0.02, 0, 0})};
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), HUGE_VALF}) {
+    SearchBench bench(ear, usual);
+    bench.find({before});
+    bench.find({behind});
+    std::fill(ear.displacement.begin(), ear.displacement.end(), Vec4{bad, bad, bad, 0});
+    ear.update();
+    CHECK(bench.find({behind}).candidates.empty());
+    std::fill(ear.displacement.begin(), ear.displacement.end(), Vec4{});
+    ear.update();
+    bench.find({behind});
+    CHECK(bench.search.proxy(0, 0).is_held());
+    CHECK(bench.search.proxy(0, 0).normal().x > 0.9);
+    bench.find({before});
+    CHECK(!bench.search.proxy(0, 0).is_held());
+  }
+}
+
 /// Numbers that every library makes alike.
 class Random {
  public:
@@ -268,6 +288,7 @@ TEST_CASE(
   Fnv1a digest;
   for (int step = 0; step < 4000; ++step) {
     std::vector<Tool> tools;
+    tools.reserve(shapes.size());
     for (const auto& some : shapes) tools.push_back({some.second, hostile_pose(ear.surface, random)});
     if (step % 7 == 0) {
       for (Vec4& u : ear.displacement) u.x = static_cast<float>(random.between(-0.01, 0.01));

@@ -146,7 +146,7 @@ bool has(const Surface::Triangle& triangle, const Surface::Triangle& of, const T
 }  // namespace
 
 TrianglePoint cast(const DeformedSurface& surface, const Double3& from, const Double3& to, const TrianglePoint& left,
-                  std::uint64_t& work) noexcept {
+                   std::uint64_t& work) noexcept {
   work += SurfacePrices::query;
   const double slack = relative_slack * surface.extent();
   Segment segment{from, to};

@@ -10,7 +10,7 @@ namespace greenloop {
 /// Benthin & Wald 2013), and a way that begins less than a few 1e-7 of the body's extent inside counts as beginning
 /// outside. For the loop; work: what was looked at is added to `work`, at most cast_work().
 [[nodiscard]] TrianglePoint cast(const DeformedSurface& surface, const Double3& from, const Double3& to,
-                                const TrianglePoint& left, std::uint64_t& work) noexcept;
+                                 const TrianglePoint& left, std::uint64_t& work) noexcept;
 
 [[nodiscard]] std::uint64_t cast_work(const DeformedSurface& surface) noexcept;
 

@@ -61,7 +61,7 @@ void Proxy::enter(const DeformedSurface& surface, const Double3& to, std::uint64
 void Proxy::follow(const DeformedSurface& surface, const Double3& to, std::uint64_t& work) noexcept {
   for (int landing = 0; landing < most_landings; ++landing) {
     is_nearest_ = slide(surface, to, work);
-    if (!is_nearest_ || side(surface, to, work) < 0) return;
+    if (!is_nearest_ || !(side(surface, to, work) >= 0)) return;
     const TrianglePoint entered = cast(surface, surface.position(point_), to, point_, work);
     if (entered.triangle == layout::none) {
       is_held_ = false;

@@ -33,6 +33,7 @@ struct Solid {
 
 std::vector<Double3> corners(const Double3& half, const Double3& centre = {}) {
   std::vector<Double3> vertex;
+  vertex.reserve(8);
   for (int i = 0; i < 8; ++i) {
     vertex.push_back(centre + Double3{i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z});
   }
