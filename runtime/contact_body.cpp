@@ -4,6 +4,7 @@
 #include <limits>
 #include <new>
 
+#include "runtime/contact_body/energy_account.hpp"
 #include "runtime/contact_body/touched_body.hpp"
 #include "runtime/memory/arena.hpp"
 
@@ -50,6 +51,8 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.candidate = arena.take<Candidate>(body.max_contacts);
   body.contact = arena.take<UnilateralContact>(body.max_contacts);
   body.stick_place = arena.take<Double3>(body.max_contacts);
+  body.rest_place = arena.take<Double3>(body.max_contacts);
+  body.felt = arena.take<FeltTool>(limits.max_tools);
   body.force = arena.take<Vec3>(body.max_contacts);
   body.gap = arena.take<Vec4>(body.max_contacts);
   body.state = arena.take<ContactState>(body.max_contacts);
@@ -98,6 +101,15 @@ Double3 pushed_displacement(const TouchedBody& body, const Candidate& candidate)
     if (body.deformed.is_touchable(candidate.node[k])) sum += candidate.weight[k] * Double3{u.x, u.y, u.z};
   }
   return sum;
+}
+
+Double3 rest_place(const TouchedBody& body, const Candidate& candidate) {
+  Double3 place = candidate.position;
+  for (int k = 0; k < 3 && candidate.node[k] != layout::none; ++k) {
+    const Vec4& u = body.displacement[candidate.node[k]];
+    place = place - candidate.weight[k] * Double3{u.x, u.y, u.z};
+  }
+  return place;
 }
 
 void put(float (&to)[3], const Double3& from) {
@@ -226,11 +238,21 @@ void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Gr
   body.grips.add(made);
 }
 
+bool is_behind(const TouchedBody& body, std::uint32_t tool) {
+  bool behind = false;
+  const std::uint32_t points = body.tool[tool].shape.point_count();
+  for (std::uint32_t i = 0; i < points && body.search.fault(tool) == ToolFault::none; ++i) {
+    behind = behind || body.search.proxy(tool, i).is_held();
+  }
+  return behind;
+}
+
 void write_answer(TouchedBody& body, std::uint32_t count, std::span<const ContactBody::ToolInput> tools) {
   for (std::uint32_t t = 0; t < tools.size(); ++t) {
     body.tool_answer[t] = {};
     body.tool_answer[t].fault = body.search.fault(t);
     body.tool_answer[t].first_contact = count;
+    body.tool_answer[t].is_behind = is_behind(body, t);
   }
   body.tool_count = static_cast<std::uint32_t>(tools.size());
   body.answered_count = count;
@@ -251,7 +273,9 @@ void write_answer(TouchedBody& body, std::uint32_t count, std::span<const Contac
     contact.normal = candidate.normal;
     contact.force = double3(body.force[i]);
     const Vec4& gap = body.gap[i];
-    contact.gap = dot(candidate.normal, {gap.x, gap.y, gap.z});
+    const Double3 from_stick{gap.x, gap.y, gap.z};
+    contact.gap = dot(candidate.normal, from_stick);
+    contact.slip = contact.state == ContactState::open ? Double3{} : from_stick - contact.gap * candidate.normal;
     ContactBody::ToolAnswer& answer = body.tool_answer[candidate.tool];
     answer.first_contact = i < answer.first_contact ? i : answer.first_contact;
     ++answer.contacts;
@@ -262,9 +286,32 @@ void write_answer(TouchedBody& body, std::uint32_t count, std::span<const Contac
   body.grips.turn();
 }
 
-std::uint64_t touching_work(const TouchedBody& body, std::span<const Tool> tools) {
+void account_energy(TouchedBody& body, std::span<const ContactBody::ToolInput> tools) {
+  ContactBody::Energy& energy = body.energy;
+  for (std::uint32_t t = 0; t < body.max_tools; ++t) {
+    FeltTool felt;
+    if (t < tools.size() && body.tool_answer[t].fault == ToolFault::none) {
+      felt = {body.placement[t], body.tool_answer[t].force, body.tool_answer[t].torque, true};
+    }
+    energy.in += tool_work(body.felt[t], felt);
+    body.felt[t] = felt;
+  }
+  energy.stored = 0;
+  for (std::uint32_t i = 0; i < body.answered_count; ++i) {
+    const ContactBody::Contact& contact = body.answered[i];
+    energy.stored += 0.5 * dot(contact.force, contact.position - body.rest_place[i]);
+    energy.dissipated += slip_work(contact.force, contact.slip);
+  }
+  energy.generated = std::fmax(energy.generated, energy.stored + energy.dissipated - energy.in);
+}
+
+// what choose takes, if every pass leaves one out
+std::uint64_t most_choosing(std::uint64_t contacts) { return contacts * contacts * 8; }
+
+std::uint64_t most_touching(const TouchedBody& body, std::span<const Tool> tools) {
+  const std::uint64_t contacts = body.max_contacts;
   return body.deformed.update_work() + body.search.find_work(body.deformed, tools) + tools.size() * tool_price +
-         std::uint64_t{body.max_contacts} * contact_price;
+         contacts * contact_price + most_choosing(contacts);
 }
 
 ContactBody::StepReport held(Status status) {
@@ -318,7 +365,7 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
     return created;
   }
   body.rigid_softness = rigid_softness(model, limits);
-  body.elastostatic_least = Elastostatic::required(model, limits.elastostatic).least_work;
+  for (std::uint32_t t = 0; t < body.max_tools; ++t) body.felt[t] = {};
   created.body.body_ = &body;
   return created;
 }
@@ -329,8 +376,6 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   if (tools.size() > body.max_tools) return held(Status::held_out_of_range);
   for (std::size_t t = 0; t < tools.size(); ++t) body.tool[t] = tools[t].tool;
   const std::span<const Tool> shapes{body.tool, tools.size()};
-  const std::uint64_t reserved = touching_work(body, shapes);
-  if (budget.work < reserved + body.elastostatic_least) return held(Status::held_over_budget);
   std::uint64_t work = tools.size() * tool_price;
   body.deformed.update({body.displacement, body.nodes}, work);
   const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work);
@@ -344,6 +389,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
     Candidate& candidate = body.candidate[i];
     const Grip* const grip = body.grips.find(grip_key(candidate));
     hold_place(body, grip, candidate);
+    body.rest_place[i] = rest_place(body, candidate);
     body.contact[i] = contact_of(body, candidate, grip, tools[candidate.tool].friction, body.stick_place[i]);
   }
   work += count * contact_price;
@@ -352,13 +398,23 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   response.displacement = {body.displacement, body.nodes};
   response.state = {body.state, count};
   response.gap = {body.gap, count};
-  static_cast<Elastostatic::UnilateralReport&>(report) = body.elastostatic.step(
-      std::span<const UnilateralContact>(body.contact, count), loads, {budget.work - work}, response);
-  report.work += work;
+  static_cast<Elastostatic::UnilateralReport&>(report) =
+      body.elastostatic.step(std::span<const UnilateralContact>(body.contact, count), loads, budget, response);
   report.touching_work = work;
-  if (answered(report.status)) write_answer(body, count, tools);
+  if (answered(report.status)) {
+    write_answer(body, count, tools);
+    account_energy(body, tools);
+  }
   return report;
 }
+
+std::uint64_t ContactBody::touching_work(std::span<const ToolInput> tools) const noexcept {
+  std::uint64_t work = 0;
+  for (const ToolInput& tool : tools) work += most_touching(*body_, {&tool.tool, 1});
+  return work;
+}
+
+const ContactBody::Energy& ContactBody::energy() const noexcept { return body_->energy; }
 
 std::span<const ContactBody::ToolAnswer> ContactBody::tools() const noexcept {
   return {body_->tool_answer, body_->tool_count};

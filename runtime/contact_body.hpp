@@ -24,10 +24,10 @@ class ContactBody {
   struct Limits {
     Elastostatic::Limits elastostatic{};  ///< max_contacts: at most 256, the corners of triangles count each;
                                           ///< iterations above 0; forces_only false
-    std::uint32_t max_tools = 2;   ///< 1..16
-    std::uint32_t max_points = 8;  ///< of a tool that are followed, 1..128: Shape::point_count
-    double margin = 0;             ///< m, how near the surface is looked at: 0 is a quarter of its mean edge length
-    double rigid_stiffness = 0;    ///< N/m, of places that cannot move; 0: what the model's material has over 1 mm
+    std::uint32_t max_tools = 2;          ///< 1..16
+    std::uint32_t max_points = 8;         ///< of a tool that are followed, 1..128: Shape::point_count
+    double margin = 0;           ///< m, how near the surface is looked at: 0 is a quarter of its mean edge length
+    double rigid_stiffness = 0;  ///< N/m, of places that cannot move; 0: what the model's material has over 1 mm
   };
 
   /// One step's tool.
@@ -44,6 +44,7 @@ class ContactBody {
     std::uint32_t first_contact = 0;    ///< among contacts()
     std::uint32_t contacts = 0;         ///< places that may touch, of which those with a force do
     double depth = 0;                   ///< m, how far the tool was inside of the surface before this step's answer
+    bool is_behind = false;             ///< a point of it that is followed (Shape::point) is behind the surface
   };
 
   /// A place of the surface that may touch a tool.
@@ -56,14 +57,25 @@ class ContactBody {
     Double3 normal;    ///< unit, out of the tool
     Double3 force;     ///< N, on the body
     double gap = 0;    ///< m, from the tool along the normal
+    Double3 slip;      ///< m, along the tool's surface in this step
+  };
+
+  /// J, of all steps so far. The tools' work is that of the mean of what they feel at both ends of a step, the elastic
+  /// energy that of the contacts' forces; what a quasi-static step leaves out is the gap that opens or closes in it.
+  struct Energy {
+    double in = 0;          ///< work of the tools on the body
+    double stored = 0;      ///< in the body
+    double dissipated = 0;  ///< by friction
+    /// The most that stored and dissipated energy were ever above the work.
+    double generated = 0;
   };
 
   struct Requirement : greenloop::Requirement {
-    std::uint64_t worst_work = 0;  ///< of a step at the finest level
+    std::uint64_t worst_work = 0;  ///< of the answer at the finest level
   };
 
   struct StepReport : Elastostatic::UnilateralReport {
-    std::uint64_t touching_work = 0;  ///< units of `work` that finding contacts took
+    std::uint64_t touching_work = 0;  ///< units that finding what touches took, which are not in `work`
     std::uint32_t left_out = 0;       ///< places that may touch, but for which there was no room: the deepest were kept
     double deepest_left_out = 0;      ///< m, depth of the deepest of these
   };
@@ -81,13 +93,18 @@ class ContactBody {
   /// One cycle of the loop: finds what may touch the tools, continuously in their motion since the last step, and the
   /// forces of contact. A tool is known from step to step by its place among them; those beyond max_tools are refused:
   /// held_out_of_range. No heap, lock, system call, exception or clock; the same model, limits, tools, history and
-  /// budget give the same bits. On a `held_` status the last answer stands. Work: at most budget.work.
+  /// budget give the same bits. On a `held_` status the last answer stands. Work: at most budget.work for the answer,
+  /// and touching_work() before it.
   StepReport step(std::span<const ToolInput> tools, const Elastostatic::Loads& loads, Budget budget) noexcept;
+
+  /// The most that finding what touches such tools takes, units. Constant work, and a polyhedron's vertices.
+  [[nodiscard]] std::uint64_t touching_work(std::span<const ToolInput> tools) const noexcept;
 
   // The last answer, until the next step.
   [[nodiscard]] std::span<const ToolAnswer> tools() const noexcept;
   [[nodiscard]] std::span<const Contact> contacts() const noexcept;
   [[nodiscard]] std::span<const Vec4> displacement() const noexcept;  ///< [nodes] m
+  [[nodiscard]] const Energy& energy() const noexcept;
 
   /// The tool is somewhere else without having been between.
   void forget(std::uint32_t tool) noexcept;

@@ -280,8 +280,9 @@ bool push(Body& body, const Contacts& contacts, const ContactSet& set, const Fac
           std::uint64_t allowance, std::uint64_t& work) {
   const UnilateralSet all{contacts.surfaces, set, displaced, body.stiffness};
   ContactAnswer& found = *contacts.found;
-  found = solve_unilateral(all, factor, body.cache.stride(), {unilateral_residual, body.counts.iterations}, allowance,
-                           body.unilateral, body.column_force);
+  const std::uint64_t most = body.counts.iterations * ContactProblem::least_work(contacts.corners());
+  found = solve_unilateral(all, factor, body.cache.stride(), {unilateral_residual, body.counts.iterations},
+                           allowance < most ? allowance : most, body.unilateral, body.column_force);
   work += gather_unilateral_work(body.counts.prices, contacts.corners()) + found.work;
   if (!found.valid || can_overflow(body, set, body.column_force)) {
     return false;

@@ -26,7 +26,8 @@ class Elastostatic {
     bool keep_capacitance = false;     ///< capacitance matrices beside their factors, for `compliance`
     std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
-    std::uint32_t iterations = 0;  ///< 0..1024 for unilateral contacts, at most 256 of them; 0: they are refused
+    std::uint32_t iterations = 0;  ///< 0..1024 for unilateral contacts, at most 256 of them, in pairs of sweeps; 0:
+                                   ///< they are refused
     std::uint32_t max_forces = 0;  ///< 0..4096, nodes that known forces are on in a step, those of masks each time; 0:
                                    ///< constraints of other kinds than hold are refused
     bool model_loads = false;      ///< the model's loads may act, gravity and pressures

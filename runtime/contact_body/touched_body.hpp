@@ -5,6 +5,7 @@
 #include "runtime/contact/candidate_search.hpp"
 #include "runtime/contact/deformed_surface.hpp"
 #include "runtime/contact_body.hpp"
+#include "runtime/contact_body/energy_account.hpp"
 #include "runtime/contact_body/grip.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/memory/arena.hpp"
@@ -21,12 +22,14 @@ struct TouchedBody {
   std::uint32_t nodes = 0, max_contacts = 0, max_tools = 0;
   double mean_edge = 0;      ///< m
   float rigid_softness = 0;  ///< m/N
-  std::uint64_t elastostatic_least = 0;
 
-  Tool* tool = nullptr;                      ///< [max_tools] of this step
-  Placement* placement = nullptr;            ///< [max_tools] the same
-  Candidate* candidate = nullptr;            ///< [max_contacts] of this step, by their keys
-  UnilateralContact* contact = nullptr;      ///< [max_contacts] the same
+  Tool* tool = nullptr;                  ///< [max_tools] of this step
+  Placement* placement = nullptr;        ///< [max_tools] the same
+  Candidate* candidate = nullptr;        ///< [max_contacts] of this step, by their keys
+  UnilateralContact* contact = nullptr;  ///< [max_contacts] the same
+  Double3* rest_place = nullptr;         ///< [max_contacts] m, where each stands at rest
+  FeltTool* felt = nullptr;              ///< [max_tools] of the last answer
+  ContactBody::Energy energy;
   Double3* stick_place = nullptr;            ///< [max_contacts] m, where each stands if it does not slip
   Vec3* force = nullptr;                     ///< [max_contacts]
   Vec4* gap = nullptr;                       ///< [max_contacts]

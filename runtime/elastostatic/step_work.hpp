@@ -46,7 +46,7 @@ struct LoadCounts {
 [[nodiscard]] std::uint64_t older_forces_work(const ModelCounts& model, std::uint64_t contacts) noexcept;
 
 /// Iterations over unilateral contacts that an answer has at least, of so many that it may have.
-constexpr std::uint32_t least_iterations(std::uint32_t iterations) { return iterations < 4 ? iterations : 4; }
+constexpr std::uint32_t least_iterations(std::uint32_t iterations) { return iterations < 8 ? iterations : 8; }
 
 /// Work units of the forces, given the factor, and of their glide.
 [[nodiscard]] std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept;

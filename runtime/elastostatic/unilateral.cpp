@@ -217,8 +217,7 @@ std::uint64_t gather_unilateral_work(const Prices& prices, std::uint64_t corners
 }
 
 std::uint64_t unilateral_work(const Prices& prices, std::uint64_t corners, std::uint64_t iterations) noexcept {
-  return gather_unilateral_work(prices, corners) + ContactProblem::least_work(corners) +
-         (iterations - 1) * ContactProblem::iteration_work(corners);
+  return gather_unilateral_work(prices, corners) + iterations * ContactProblem::least_work(corners);
 }
 
 ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, std::uint32_t stride,

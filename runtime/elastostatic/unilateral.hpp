@@ -63,7 +63,8 @@ struct UnilateralSet {
 /// Work units of solve_unilateral but for ContactProblem::solve.
 [[nodiscard]] std::uint64_t gather_unilateral_work(const Prices& prices, std::uint64_t corners) noexcept;
 
-/// Work units of solve_unilateral with so many iterations, at least one. corners: no less than contacts.
+/// Work units of solve_unilateral with what so many iterations take at least, which are one or more. corners: no less
+/// than contacts.
 [[nodiscard]] std::uint64_t unilateral_work(const Prices& prices, std::uint64_t corners,
                                             std::uint64_t iterations) noexcept;
 

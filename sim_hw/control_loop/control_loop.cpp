@@ -11,15 +11,13 @@ namespace {
 
 constexpr double largest_place = 1e12;  // m, and m per count: farther than any body, and its squares are finite
 
-}  // namespace
-
-ControlLoop::ControlLoop(LoopBody& body, const BodySurface& surface, const LoopSetup& setup)
-    : body_(&body), setup_(setup), touchable_(surface.touchable_nodes()) {
-  const SurfaceNodes nodes{surface.position, surface.normal, touchable_};
-  const SphereContacts::Limits limits{.radius = setup.probe_radius, .max_contacts = setup.max_contacts};
-  contact_memory_ = AlignedBytes(SphereContacts::required(nodes, limits));
-  sphere_contacts_ = SphereContacts::create(nodes, limits, {contact_memory_.data(), contact_memory_.size()}).contacts;
+void put(double (&to)[3], const Double3& from) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
 }
+
+}  // namespace
 
 void ControlLoop::cycle(const DeviceState& state) noexcept {
   if (!read(state)) {
@@ -28,59 +26,52 @@ void ControlLoop::cycle(const DeviceState& state) noexcept {
     report_.work = 0;
     return;
   }
-  contacts_ = sphere_contacts_.find(probes(), field());
-  step(state.cycle);
-  if (!answered(report_.status)) return;  // the hands feel the last good force
-  sphere_contacts_.settle(probes(), body_->force());
-  sum_hand_force();
+  field_is_new_ = state.cycle % setup_.field_every == 0;
+  if (state.cycle == setup_.overrun_cycle) {
+    overrun();
+  } else {
+    report_ = body_->step(tools(), loads_, setup_.budget);
+  }
 }
 
-/// False, with the probes as they were, if a place is not finite.
+/// False, with the tools as they were, if a number is not finite.
 bool ControlLoop::read(const DeviceState& state) noexcept {
   cycle_ = state.cycle;
-  const double scale = norm({state.origin[0], state.origin[1], state.origin[2]}) + std::abs(state.resolution);
+  const double scale = norm({state.origin[0], state.origin[1], state.origin[2]}) + std::abs(state.resolution) +
+                       norm({state.gravity[0], state.gravity[1], state.gravity[2]});
   if (!(scale < largest_place)) return false;
-  probe_count_ = std::min(state.num_tools, max_tools);
+  tool_count_ = std::min(state.num_tools, max_tools);
   const Double3 origin{state.origin[0], state.origin[1], state.origin[2]};
-  for (std::size_t p = 0; p < probe_count_; ++p) {
-    probe_[p].centre = origin + encoder_value(state.tools[p].position, state.resolution);
-    const std::int16_t(&axis)[3] = state.tools[p].axis;
-    probe_[p].axis = unit({static_cast<double>(axis[0]), static_cast<double>(axis[1]), static_cast<double>(axis[2])});
+  for (std::size_t t = 0; t < tool_count_; ++t) {
+    const ToolState& measured = state.tools[t];
+    ContactBody::ToolInput& tool = tool_[t];
+    tool.tool.shape = Shape::sphere(setup_.probe_radius);
+    tool.tool.pose.position = origin + encoder_value(measured.position, state.resolution);
+    for (int i = 0; i < 4; ++i) {
+      tool.tool.pose.quaternion[i] = static_cast<double>(measured.orientation[i]) / ToolState::unit;
+    }
+    tool.friction = setup_.friction;
+  }
+  if (setup_.gravity) {
+    loads_.gravity = {static_cast<float>(state.gravity[0]), static_cast<float>(state.gravity[1]),
+                      static_cast<float>(state.gravity[2])};
   }
   return true;
 }
 
-void ControlLoop::step(std::int64_t cycle) noexcept {
-  field_is_new_ = cycle % setup_.field_every == 0;
-  if (cycle == setup_.overrun_cycle) {
-    overrun();
-  } else {
-    report_ = body_->step(contacts_, setup_.budget.work, field_is_new_);
-  }
-}
-
 /// Repeats the step without a limit until more than the budget is spent.
 void ControlLoop::overrun() noexcept {
-  constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
+  constexpr Budget unlimited{std::numeric_limits<std::uint64_t>::max() / 2};
   std::uint64_t work = 0;
   do {
-    report_ = body_->step(contacts_, unlimited, field_is_new_);
+    report_ = body_->step(tools(), loads_, unlimited);
     work += std::max<std::uint64_t>(report_.work, 1);
   } while (work <= setup_.budget.work);
   report_.work = work;
 }
 
-void ControlLoop::sum_hand_force() noexcept {
-  hand_force_ = {};
-  const auto force = body_->force();
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    hand_force_[sphere_contacts_.holder(i)] += -Double3{force[3 * i], force[3 * i + 1], force[3 * i + 2]};
-  }
-}
-
 void ControlLoop::answer(LoopCommand& command) noexcept {
-  const auto force = body_->force();
-  digest_.add(std::as_bytes(force));
+  for (const ContactBody::Contact& contact : contacts()) digest_.add(std::as_bytes(std::span(&contact.force, 1)));
   if (field_is_new_) digest_.add(std::as_bytes(field()));
   command.cycle = cycle_;
   command.work = static_cast<std::int64_t>(report_.work);
@@ -89,17 +80,22 @@ void ControlLoop::answer(LoopCommand& command) noexcept {
   command.field_level = static_cast<std::int32_t>(report_.field_level);
   command.status = static_cast<std::int32_t>(report_.status);
   command.digest = static_cast<std::int64_t>(digest_.value());
-  command.num_tools = static_cast<std::uint32_t>(probe_count_);
-  for (std::size_t p = 0; p < probe_count_; ++p) {
-    const Double3& force_on_hand = hand_force_[p];
-    command.tool_force[p][0] = force_on_hand.x;
-    command.tool_force[p][1] = force_on_hand.y;
-    command.tool_force[p][2] = force_on_hand.z;
+  command.num_tools = static_cast<std::uint32_t>(tool_count_);
+  for (std::size_t t = 0; t < tool_count_; ++t) {
+    const bool known = t < answers().size();
+    put(command.tools[t].force, known ? answers()[t].force : Double3{});
+    put(command.tools[t].torque, known ? answers()[t].torque : Double3{});
   }
-  command.num_contacts = static_cast<std::uint32_t>(contacts_.size());
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    command.contacts[i].node = contacts_[i].node;
-    std::copy_n(&force[3 * i], 3, command.contacts[i].force);
+  command.num_contacts = static_cast<std::uint32_t>(std::min<std::size_t>(contacts().size(), command.max_contacts));
+  for (std::size_t i = 0; i < command.num_contacts; ++i) {
+    const ContactBody::Contact& contact = contacts()[i];
+    ContactForce& force = command.contacts[i];
+    force.node = contact.node[0];
+    force.tool = static_cast<std::uint8_t>(contact.tool);
+    force.state = static_cast<std::uint8_t>(contact.state);
+    force.force[0] = static_cast<float>(contact.force.x);
+    force.force[1] = static_cast<float>(contact.force.y);
+    force.force[2] = static_cast<float>(contact.force.z);
   }
 }
 

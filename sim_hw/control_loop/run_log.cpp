@@ -31,16 +31,25 @@ RunLog::RunLog(std::size_t cycles, std::size_t nodes) : largest_field_(4 * nodes
 
 void RunLog::add(const ControlLoop& loop, std::int64_t cycle, double cpu_us) noexcept {
   if (records_.size() == records_.capacity()) return;
-  CycleRecord record{.cycle = cycle, .report = loop.report(), .cpu_us = cpu_us};
-  for (std::size_t p = 0; p < loop.probes().size(); ++p) {
-    record.centre[p] = loop.probes()[p].centre;
-    record.hand_force[p] = loop.hand_force()[p];
+  CycleRecord record{.cycle = cycle, .report = loop.report(), .energy = loop.energy(), .cpu_us = cpu_us};
+  for (std::size_t p = 0; p < loop.tools().size(); ++p) record.centre[p] = loop.tools()[p].tool.pose.position;
+  for (const ContactBody::Contact& contact : loop.contacts()) {
+    if (contact.state == ContactState::open) continue;
+    ++record.touching[contact.tool];
+    ++record.contacts;
   }
-  record.contacts = static_cast<std::uint32_t>(loop.contacts().size());
+  for (std::size_t p = 0; p < loop.answers().size(); ++p) {
+    const ContactBody::ToolAnswer& answer = loop.answers()[p];
+    record.hand_force[p] = answer.force;
+    record.hand_torque[p] = answer.torque;
+    record.fell_through += answer.is_behind && norm(answer.force) == 0 ? 1 : 0;
+  }
+  record.touching_bound = loop.touching_bound();
   records_.push_back(record);
   if (loop.field_is_new() && record.total_force() > largest_force_) {
     largest_force_ = record.total_force();
-    std::copy(loop.field().begin(), loop.field().end(), largest_field_.begin());
+    const auto* field = reinterpret_cast<const float*>(loop.field().data());
+    std::copy_n(field, largest_field_.size(), largest_field_.begin());
   }
 }
 

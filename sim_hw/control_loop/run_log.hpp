@@ -12,10 +12,15 @@ namespace greenloop {
 /// What one cycle of the loop did.
 struct CycleRecord {
   std::int64_t cycle = 0;
-  std::array<Double3, max_tools> centre{};      ///< m, of the probes
-  std::array<Double3, max_tools> hand_force{};  ///< N, on the probes
-  std::uint32_t contacts = 0;
-  LoopReport report;
+  std::array<Double3, max_tools> centre{};          ///< m, of the probes
+  std::array<Double3, max_tools> hand_force{};      ///< N, on the probes
+  std::array<Double3, max_tools> hand_torque{};     ///< N m, on the probes about their centres
+  std::array<std::uint32_t, max_tools> touching{};  ///< places where each probe pushes the body
+  std::uint32_t contacts = 0;                       ///< all that push
+  std::uint32_t fell_through = 0;                   ///< probes that are behind the surface and feel nothing
+  std::uint64_t touching_bound = 0;                 ///< units, of report.touching_work
+  ContactBody::StepReport report;
+  ContactBody::Energy energy;
   double cpu_us = 0;  ///< thread CPU time of the cycle
 
   /// N, sum of the magnitudes: two fingers of a grasp do not cancel.
@@ -25,7 +30,7 @@ struct CycleRecord {
     return sum;
   }
   [[nodiscard]] bool missed(const Budget& budget) const {
-    return report.work > budget.work || !answered(report.status);
+    return report.work > budget.work || report.touching_work > touching_bound || !answered(report.status);
   }
 };
 

@@ -20,6 +20,13 @@ Coupling coupling(const layout::Info& info, const BodySurface& surface, const Pr
   return result;
 }
 
+Double3 Tilt::at(double time) const {
+  const double share = time / seconds - std::floor(time / seconds);
+  const double there = smoothstep(share < 0.5 ? 2 * share : 2 - 2 * share);
+  const Double3 direction = unit((1 - there) * down + there * to_the_side);
+  return norm(down) * direction;
+}
+
 HapticDevice::HapticDevice(DeviceSetup setup) : setup_(std::move(setup)), arrival_(setup_.faults) {
   for (std::size_t p = 0; p < setup_.motion.size(); ++p) hands_.emplace_back(setup_.hand, handle_target(p, 0));
   motor_force_.resize(hands_.size());
@@ -37,7 +44,7 @@ void HapticDevice::apply(const LoopCommand& command) {
   summary_.late_injected += arrival_.injected(cycle);
   if (!arrival_.late(cycle, command.work, command.budget)) {
     for (std::size_t p = 0; p < hands_.size(); ++p) {
-      const double(&force)[3] = command.tool_force[p];
+      const double(&force)[3] = command.tools[p].force;
       motor_force_[p] = setup_.coupling.force_scale * Double3{force[0], force[1], force[2]};
     }
   }
@@ -57,14 +64,21 @@ void HapticDevice::apply(const LoopCommand& command) {
 void HapticDevice::measure() {
   const double time = static_cast<double>(state_.cycle) * setup_.period;
   for (std::size_t p = 0; p < hands_.size(); ++p) {
-    const Double3 position = hands_[p].position(), axis = setup_.motion[p].target(time).axis;
-    const double coordinate[3] = {position.x, position.y, position.z}, direction[3] = {axis.x, axis.y, axis.z};
+    const Double3 position = hands_[p].position();
+    const double coordinate[3] = {position.x, position.y, position.z};
+    const ProbeTarget target = setup_.motion[p].target(time);
     for (int i = 0; i < 3; ++i) {
       state_.tools[p].position[i] = encoder_counts(coordinate[i], Coupling::resolution);
-      const double unit_counts = direction[i] * ToolState::axis_unit;
-      state_.tools[p].axis[i] = static_cast<std::int16_t>(encoder_counts(unit_counts, 1));
+    }
+    for (int i = 0; i < 4; ++i) {
+      state_.tools[p].orientation[i] =
+          static_cast<std::int16_t>(encoder_counts(target.quaternion[i] * ToolState::unit, 1));
     }
   }
+  const Double3 gravity = setup_.gravity.at(time);
+  state_.gravity[0] = gravity.x;
+  state_.gravity[1] = gravity.y;
+  state_.gravity[2] = gravity.z;
 }
 
 Double3 HapticDevice::handle_target(std::size_t probe, double time) const {

@@ -37,6 +37,15 @@ struct DeviceSummary {
   bool stopped = false;            ///< too many late commands in a row
 };
 
+/// How the device, and with it the body's frame, is turned against gravity: upright, or to one side and back.
+struct Tilt {
+  Double3 down;         ///< m/s^2, upright
+  Double3 to_the_side;  ///< m/s^2, where it points half way
+  double seconds = 1;   ///< there and back
+
+  [[nodiscard]] Double3 at(double time) const;
+};
+
 struct DeviceSetup {
   std::vector<MotionScript> motion;  ///< of each tool, at most max_tools
   Coupling coupling;
@@ -45,6 +54,7 @@ struct DeviceSetup {
   double period = 1e-3;     ///< s
   std::int64_t cycles = 0;  ///< how many the run has
   InjectedFaults faults;
+  Tilt gravity;
 };
 
 /// A simulated haptic device: hands that pull its handles along a script, encoders, and motors that render the

@@ -13,7 +13,7 @@ namespace {
 /// A hand that wants to stay where it is.
 DeviceSetup still(std::int64_t cycles, const InjectedFaults& faults = {}) {
   DeviceSetup setup;
-  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Double3{0, 0, 0}}, Double3{0, 0, -1}}}, 1.0);
+  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Double3{0, 0, 0}}, {}, {}}}, 1.0);
   setup.cycles = cycles;
   setup.faults = faults;
   return setup;
@@ -24,7 +24,7 @@ LoopCommand push(std::int64_t cycle, double force) {
   command.cycle = cycle;
   command.budget = 100;
   command.work = 50;
-  command.tool_force[0][2] = force;
+  command.tools[0].force[2] = force;
   return command;
 }
 

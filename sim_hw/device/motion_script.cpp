@@ -15,6 +15,16 @@ Double3 along(const std::vector<Double3>& knots, double fraction) {
   return (1 - share) * knots[first] + share * knots[second];
 }
 
+// by the tangent of a quarter of the angle times the axis: rational, so that it has the same bits everywhere
+void put_quaternion(const Double3& turned, double (&quaternion)[4]) {
+  const double squared = dot(turned, turned);
+  const double scale = 1 / (1 + squared);
+  quaternion[0] = (1 - squared) * scale;
+  quaternion[1] = 2 * scale * turned.x;
+  quaternion[2] = 2 * scale * turned.y;
+  quaternion[3] = 2 * scale * turned.z;
+}
+
 }  // namespace
 
 MotionScript::MotionScript(std::vector<MotionSegment> segments, double seconds) : segments_(std::move(segments)) {
@@ -30,7 +40,10 @@ ProbeTarget MotionScript::target(double time) const {
   const std::size_t i = std::min<std::size_t>(static_cast<std::size_t>(found - end_.begin()), end_.size() - 1);
   const double begin = i == 0 ? 0 : end_[i - 1];
   const double share = std::clamp((now - begin) / (end_[i] - begin), 0.0, 1.0);
-  return {along(segments_[i].knots, smoothstep(share)), segments_[i].axis};
+  const double s = smoothstep(share);
+  ProbeTarget target{along(segments_[i].knots, s)};
+  put_quaternion((1 - s) * segments_[i].turned_from + s * segments_[i].turned_to, target.quaternion);
+  return target;
 }
 
 }  // namespace greenloop

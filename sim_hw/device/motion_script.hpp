@@ -8,15 +8,17 @@ namespace greenloop {
 
 /// Where a person wants a probe to be, in the frame of the body.
 struct ProbeTarget {
-  Double3 centre;  ///< m
-  Double3 axis;    ///< unit vector, where the probe points
+  Double3 centre;                       ///< m
+  double quaternion[4] = {1, 0, 0, 0};  ///< w, x, y, z, of unit length
 };
 
 /// Part of a motion: from the first to the last knot, starting and ending at rest.
 struct MotionSegment {
   double duration = 0;         ///< share of the script, in any unit
   std::vector<Double3> knots;  ///< m, at least one; passed at equal intervals
-  Double3 axis;
+  /// The probe turns about this from one of these to the other: the tangent of a quarter of the angle times a unit
+  /// vector.
+  Double3 turned_from, turned_to;
 };
 
 /// The motion of one probe, made of segments and polynomials in time only.

@@ -27,29 +27,37 @@ class Track {
 
   void begin_above(const TouchPlace& place) { start_ = at_ = above(place); }
 
-  void move(double duration, std::vector<Double3> knots, const Double3& axis) {
+  void move(double duration, std::vector<Double3> knots) { turn(duration, std::move(knots), turned_); }
+
+  /// The same, while it turns: see MotionSegment.
+  void turn(double duration, std::vector<Double3> knots, const Double3& turned_to) {
     knots.insert(knots.begin(), at_);
     at_ = knots.back();
     elapsed_ += duration;
-    segments_.push_back({duration, std::move(knots), axis});
+    segments_.push_back({duration, std::move(knots), turned_, turned_to});
+    turned_ = turned_to;
   }
 
-  void wait(double duration) { move(duration, {}, segments_.empty() ? Double3{0, 0, -1} : segments_.back().axis); }
+  void wait(double duration) { move(duration, {}); }
 
   void press_in(const TouchPlace& place) {
-    move(0.8, {place.centre + (0.5 * depth_) * place.outward}, -place.outward);
-    move(1.0, {pressed(place)}, -place.outward);
+    move(0.8, {place.centre + (0.5 * depth_) * place.outward});
+    move(1.0, {pressed(place)});
   }
 
   void lift(const TouchPlace& place) {
-    move(1.0, {place.centre + (0.5 * depth_) * place.outward}, -place.outward);
-    move(0.8, {above(place)}, -place.outward);
+    move(1.0, {place.centre + (0.5 * depth_) * place.outward});
+    move(0.8, {above(place)});
   }
 
   [[nodiscard]] Double3 pressed(const TouchPlace& place) const { return place.centre - depth_ * place.outward; }
 
-  void travel(const Double3& to, const Double3& axis) { move(1.0, arc(unit(at_ - centre_), unit(to - centre_)), axis); }
-  void travel_home() { travel(start_, segments_.back().axis); }
+  void travel(const Double3& to) { move(1.0, arc(unit(at_ - centre_), unit(to - centre_))); }
+  void travel_home() { travel(start_); }
+
+  /// A little above a place, where it does not touch.
+  [[nodiscard]] Double3 over(const TouchPlace& place) const { return place.centre + (0.5 * depth_) * place.outward; }
+  [[nodiscard]] double depth() const { return depth_; }
 
   [[nodiscard]] double elapsed() const { return elapsed_; }
   [[nodiscard]] std::vector<MotionSegment> segments() && { return std::move(segments_); }
@@ -71,39 +79,108 @@ class Track {
 
   Double3 centre_;
   double shell_, depth_;
-  Double3 start_, at_;
+  Double3 start_, at_, turned_;
   double elapsed_ = 0;
   std::vector<MotionSegment> segments_;
 };
 
 void press(Track& track, const std::vector<TouchPlace>& places) {
   for (const TouchPlace& place : places) {
-    track.travel(track.above(place), -place.outward);
+    track.travel(track.above(place));
     track.press_in(place);
     track.wait(0.5);
     track.lift(place);
   }
 }
 
-void slide(Track& track, const std::vector<TouchPlace>& row) {
-  std::vector<Double3> there, back;
+std::vector<Double3> pressed_along(const Track& track, const std::vector<TouchPlace>& row) {
+  std::vector<Double3> there;
   for (const TouchPlace& place : row) there.push_back(track.pressed(place));
-  std::copy(there.rbegin(), there.rend(), std::back_inserter(back));
-  const Double3 axis = -row.front().outward;
-  track.travel(track.above(row.front()), axis);
+  return there;
+}
+
+std::vector<Double3> reversed(std::vector<Double3> knots) {
+  std::reverse(knots.begin(), knots.end());
+  return knots;
+}
+
+void slide(Track& track, const std::vector<TouchPlace>& row) {
+  const std::vector<Double3> there = pressed_along(track, row);
+  track.travel(track.above(row.front()));
   track.press_in(row.front());
-  track.move(2.0, there, axis);
-  track.move(2.0, back, axis);
+  track.move(2.0, there);
+  track.move(2.0, reversed(there));
   track.lift(row.front());
 }
 
-void grasp(Track& first, Track& second, const std::array<TouchPlace, 2>& places) {
+// a ball of this radius rolls along a row and back
+void roll(Track& track, const std::vector<TouchPlace>& row, double radius) {
+  const std::vector<Double3> there = pressed_along(track, row);
+  const Double3 way = there.back() - there.front();
+  const double quarter = 0.25 * norm(way) / radius;  // of the angle; its tangent follows
+  const Double3 turned = (quarter + quarter * quarter * quarter / 3) * unit(cross(row.front().outward, way));
+  track.travel(track.above(row.front()));
+  track.press_in(row.front());
+  track.turn(2.0, there, turned);
+  track.turn(2.0, reversed(there), {});
+  track.lift(row.front());
+}
+
+// falls on places and bounces off
+void drop(Track& track, const std::vector<TouchPlace>& places) {
+  for (const TouchPlace& place : places) {
+    track.travel(track.above(place));
+    track.move(0.05, {track.pressed(place)});
+    track.move(0.05, {track.above(place)});
+    track.wait(0.2);
+  }
+}
+
+// comes and goes, again and again
+void flap(Track& track, const TouchPlace& place) {
+  constexpr int times = 12;
+  track.travel(track.above(place));
+  track.move(0.5, {track.over(place)});
+  for (int i = 0; i < times; ++i) {
+    track.move(0.1, {track.pressed(place)});
+    track.move(0.1, {track.over(place)});
+  }
+  track.lift(place);
+}
+
+using Pair = std::array<TouchPlace, 2>;
+
+void begin_pair(Track& first, Track& second, const Pair& places) {
   second.wait(first.elapsed() - second.elapsed());
   const std::array<Track*, 2> tracks{&first, &second};
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    tracks[i]->travel(tracks[i]->above(places[i]), -places[i].outward);
+    tracks[i]->travel(tracks[i]->above(places[i]));
     tracks[i]->press_in(places[i]);
-    tracks[i]->wait(1.0);
+  }
+}
+
+// two probes hold the body between them and pull it to the side by friction
+void grasp(Track& first, Track& second, const Pair& places) {
+  begin_pair(first, second, places);
+  const Double3 aside = 0.5 * first.depth() * perpendicular(places[0].outward);
+  const std::array<Track*, 2> tracks{&first, &second};
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    tracks[i]->move(0.5, {tracks[i]->pressed(places[i]) + aside});
+    tracks[i]->move(0.5, {tracks[i]->pressed(places[i])});
+    tracks[i]->lift(places[i]);
+  }
+}
+
+// two probes squeeze it, again and again
+void pinch(Track& first, Track& second, const Pair& places) {
+  constexpr int times = 3;
+  begin_pair(first, second, places);
+  const std::array<Track*, 2> tracks{&first, &second};
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    for (int k = 0; k < times; ++k) {
+      tracks[i]->move(0.3, {places[i].centre});
+      tracks[i]->move(0.3, {tracks[i]->pressed(places[i])});
+    }
     tracks[i]->lift(places[i]);
   }
 }
@@ -140,21 +217,47 @@ ProbeSize probe_size(const BodySurface& surface) {
 std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe, double seconds,
                                       std::size_t probes) {
   const std::vector<TouchPlace> places = touch_places(surface, probe.radius, 3);
-  const bool wants_grasp = probes > 1 && (script == Script::grasp || script == Script::all);
-  const auto pair = wants_grasp ? opposing_places(surface, probe.radius) : std::nullopt;
-  if (script == Script::grasp && !pair) {
-    throw std::runtime_error(
-        "--script grasp: there are no two probes, or no two places that they could hold; use press");
+  const bool wants_pair = script == Script::grasp || script == Script::pinch || script == Script::all;
+  const auto pair = wants_pair && probes > 1 ? opposing_places(surface, probe.radius) : std::nullopt;
+  if (wants_pair && script != Script::all && !pair) {
+    throw std::runtime_error("--script " + std::string(script_names[static_cast<std::size_t>(script)]) +
+                             ": there are no two probes, or no two places that they could hold; use press");
   }
   std::vector<Track> tracks(1, Track(surface, probe));
-  tracks[0].begin_above(places.front());
-  if (script == Script::press || script == Script::all) press(tracks[0], places);
-  if (script == Script::slide || script == Script::all) {
-    slide(tracks[0], sliding_row(surface, probe.radius, 0.15 * surface.diagonal, places));
+  Track& first = tracks[0];
+  const auto row = [&] { return sliding_row(surface, probe.radius, 0.15 * surface.diagonal, places); };
+  first.begin_above(places.front());
+  switch (script) {
+    case Script::press:
+    case Script::lose_messages:
+      press(first, places);
+      break;
+    case Script::slide:
+      slide(first, row());
+      break;
+    case Script::all:
+      press(first, places);
+      slide(first, row());
+      break;
+    case Script::roll:
+      roll(first, row(), probe.radius);
+      break;
+    case Script::drop:
+      drop(first, places);
+      break;
+    case Script::flap:
+      flap(first, places.front());
+      break;
+    case Script::tilt:
+      press(first, {places.front()});
+      break;
+    case Script::grasp:
+    case Script::pinch:
+      break;
   }
   if (pair) {
     tracks.emplace_back(surface, probe).begin_above((*pair)[1]);
-    grasp(tracks[0], tracks[1], *pair);
+    (script == Script::pinch ? pinch : grasp)(tracks[0], tracks[1], *pair);
   }
   press_beside(tracks, surface, probe, probes);
   return finish(std::move(tracks), seconds);

@@ -9,9 +9,10 @@
 
 namespace greenloop {
 
-enum class Script { press, slide, grasp, all };
+enum class Script { press, slide, grasp, all, pinch, roll, drop, flap, tilt, lose_messages };
 
-inline constexpr std::string_view script_names[] = {"press", "slide", "grasp", "all"};
+inline constexpr std::string_view script_names[] = {"press", "slide", "grasp", "all",  "pinch",
+                                                    "roll",  "drop",  "flap",  "tilt", "lose-messages"};
 
 /// What the scripts move: spheres, and how deep the person tries to push them in.
 struct ProbeSize {
@@ -24,9 +25,11 @@ struct ProbeSize {
 
 /// Scripted motions of at most `probes` (at least 1) probes around and into the body; one round takes `seconds`.
 /// press: into up to three places, one after the other. slide: press, and to and fro along the surface.
-/// grasp: two probes from opposite sides. all: press, slide, grasp; without grasp where no two places exist, or probes.
-/// Each probe beyond the second presses a place of its own, as far from those of the others as there is one.
-/// Throws std::runtime_error if the body offers no place, or `grasp` alone is asked for and there are no two.
+/// grasp: two probes from opposite sides, which then pull the body to the side by friction. all: press, slide, grasp;
+/// without grasp where no two places exist, or probes. pinch: the same two squeeze, again and again. roll: as slide,
+/// but the probe rolls. drop: falls on the places. flap: comes and goes quickly. tilt and lose-messages: press. Each
+/// probe beyond the second presses a place of its own, as far from those of the others as there is one. Throws
+/// std::runtime_error if the body offers no place, or `grasp` or `pinch` is asked for and there are no two.
 [[nodiscard]] std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe,
                                                     double seconds, std::size_t probes = 2);
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "formats/output/json_text.hpp"
 #include "formats/output/output_paths.hpp"
@@ -57,7 +58,11 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
   app.add_option_function<std::string>(
          "--script", [&options](const std::string& name) { options.script = read_script(name); },
          "What the hands do (default: all)")
-      ->check(CLI::IsMember({"press", "slide", "grasp", "all"}));
+      ->check(CLI::IsMember(
+          std::vector<std::string>(std::begin(greenloop::script_names), std::end(greenloop::script_names))));
+  app.add_option("--friction", options.friction, "Coulomb's coefficient between tools and body")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0));
   app.add_option("--tools", options.tools, "Hands at most; each beyond the second presses a place of its own")
       ->capture_default_str()
       ->check(CLI::Range(1U, greenloop::max_tools));

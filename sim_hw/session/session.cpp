@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "runtime/elastostatic.hpp"
+#include "runtime/contact_body.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"
 #include "sim_hw/session/device_process.hpp"
-#include "sim_hw/session/hosted_loop_body.hpp"
+#include "sim_hw/session/hosted_contact_body.hpp"
 #include "sim_hw/session/interruption.hpp"
 #include "sim_hw/session/loaded_model.hpp"
 #include "sim_hw/transport/channel.hpp"
@@ -19,10 +19,16 @@
 namespace greenloop {
 namespace {
 
-Elastostatic::Limits limits_of(const Model& model) {
-  constexpr std::uint32_t most = LoopCommand::max_contacts;
-  Elastostatic::Limits limits = Elastostatic::intended(model).limits;
-  limits.max_contacts = std::min(limits.max_contacts, most);
+ContactBody::Limits limits_of(const Model& model) {
+  ContactBody::Limits limits;
+  limits.elastostatic = Elastostatic::intended(model).limits;
+  // what lies under a tool without being pushed is a contact, too
+  constexpr std::uint32_t least_contacts = 64;
+  limits.elastostatic.max_contacts =
+      std::clamp(limits.elastostatic.max_contacts, least_contacts, LoopCommand::max_contacts);
+  limits.elastostatic.iterations = 64;
+  limits.elastostatic.model_loads = true;
+  limits.max_tools = max_tools;
   return limits;
 }
 
@@ -47,18 +53,34 @@ double rate_of(const SessionOptions& options, const Elastostatic::Intent& intent
   return rate;
 }
 
+/// m/s^2: to where nothing can be touched, along the nearest axis, for there the body stands.
+Double3 gravity_of(const BodySurface& surface) {
+  constexpr double earth = 9.81;
+  Double3 held;
+  for (std::size_t i = 0; i < surface.position.size(); ++i) {
+    if (!surface.touchable[i]) held += surface.position[i] - surface.centre;
+  }
+  const double x = std::abs(held.x), y = std::abs(held.y), z = std::abs(held.z);
+  if (z >= x && z >= y) return {0, 0, held.z > 0 ? earth : -earth};
+  return y >= x ? Double3{0, held.y > 0 ? earth : -earth, 0} : Double3{held.x > 0 ? earth : -earth, 0, 0};
+}
+
 DeviceSetup device_setup(const SessionOptions& options, double rate, const BodySurface& surface,
                          const layout::Info& info) {
   constexpr double round_seconds = 10;
   const double rounds = std::max(1.0, std::floor(options.seconds / round_seconds + 0.5));
   const ProbeSize probe = probe_size(surface);
   DeviceSetup setup;
+  const Double3 down = gravity_of(surface);
+  setup.gravity = {down, options.script == Script::tilt ? norm(down) * perpendicular(unit(down)) : down,
+                   options.seconds / rounds};
   setup.motion = make_script(options.script, surface, probe, options.seconds / rounds, options.tools);
   setup.coupling = coupling(info, surface, probe, setup.hand);
   setup.origin = surface.centre;
   setup.period = 1 / rate;
   setup.cycles = std::llround(options.seconds * rate);
   setup.faults = options.faults;
+  if (options.script == Script::lose_messages && setup.faults.loss_every == 0) setup.faults.loss_every = 10;
   return setup;
 }
 
@@ -123,8 +145,13 @@ void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& re
 SessionResult run_session(const SessionOptions& options) {
   const LoadedModel loaded = load_model(options.model);
   const Model& model = loaded.model;
-  const Elastostatic::Limits limits = limits_of(model);
-  const Elastostatic::Requirement need = Elastostatic::required(model, limits);
+  const ContactBody::Limits limits = limits_of(model);
+  const Elastostatic::Requirement need = Elastostatic::required(model, limits.elastostatic);
+  const bool gravity = model.view().has_gravity();
+  if (options.script == Script::tilt && !gravity) {
+    throw std::runtime_error(options.model.string() + ": --script tilt: the model knows no gravity; build it from a " +
+                             "scene with gravity = true");
+  }
   SessionResult result;
   const Elastostatic::Intent intent = Elastostatic::intended(model);
   result.rate = rate_of(options, intent);
@@ -137,13 +164,13 @@ SessionResult run_session(const SessionOptions& options) {
   result.cycles_asked = std::llround(options.seconds * result.rate);
   result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count());
 
-  HostedLoopBody<Elastostatic> body(model, limits);
-  ControlLoop loop(body, surface,
-                   {.probe_radius = probe_size(surface).radius,
-                    .max_contacts = limits.max_contacts,
-                    .budget = result.budget,
-                    .field_every = options.field_every,
-                    .overrun_cycle = options.overrun_cycle});
+  HostedContactBody body(model, limits);
+  ControlLoop loop(body.body(), {.probe_radius = probe_size(surface).radius,
+                                 .friction = options.friction,
+                                 .gravity = gravity,
+                                 .budget = result.budget,
+                                 .field_every = options.field_every,
+                                 .overrun_cycle = options.overrun_cycle});
   choose_transport(options, result);
   // the child must be born before there are threads
   std::optional<DeviceProcess> child;

@@ -23,6 +23,7 @@ struct SessionOptions {
                                 ///< model's
   Script script = Script::all;
   std::uint32_t tools = 2;   ///< 1..max_tools, at most so many hands
+  double friction = 0.3;     ///< Coulomb's coefficient of the tools, 0 or more
   std::uint64_t budget = 0;  ///< units per cycle; 0: the model's own, or else the worst case of its finest level
   double starve = 1;         ///< (0, 1], of the budget
   Transport transport = Transport::automatic;

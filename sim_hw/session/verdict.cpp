@@ -21,6 +21,29 @@ StepTime step_time(const std::vector<CycleRecord>& records) {
   return {time.front(), quantile(0.5), quantile(0.99), time.back()};
 }
 
+double largest_force_step(const std::vector<CycleRecord>& records) {
+  double largest = 0;
+  for (std::size_t k = 1; k < records.size(); ++k) {
+    for (std::size_t p = 0; p < max_tools; ++p) {
+      largest = std::max(largest, norm(records[k].hand_force[p] - records[k - 1].hand_force[p]));
+    }
+  }
+  return largest;
+}
+
+nlohmann::ordered_json vector_json(const Double3& v) { return {v.x, v.y, v.z}; }
+
+// what the tools feel in the cycle of the largest force
+nlohmann::ordered_json tools_json(const CycleRecord& record, std::uint32_t tools) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (std::uint32_t p = 0; p < tools; ++p) {
+    json.push_back({{"force", vector_json(record.hand_force[p])},
+                    {"torque", vector_json(record.hand_torque[p])},
+                    {"contacts", record.touching[p]}});
+  }
+  return json;
+}
+
 // bins of a microsecond up to the period: beyond it every time is late
 TimeHistogram histogram(const SessionResult& result) {
   TimeHistogram times(static_cast<std::size_t>(1e6 / result.rate) + 1);
@@ -52,9 +75,15 @@ Verdict judge(const SessionResult& result, bool judge_time) {
     verdict.worst_work = std::max(verdict.worst_work, record.report.work);
     verdict.contact_cycles += record.contacts > 0;
     verdict.contacts_max = std::max(verdict.contacts_max, record.contacts);
+    if (record.total_force() >= verdict.force_max) verdict.strongest = record;
     verdict.force_max = std::max(verdict.force_max, record.total_force());
+    verdict.residual_max = std::max(verdict.residual_max, static_cast<double>(record.report.residual));
+    verdict.fall_throughs += record.fell_through;
+    verdict.worst_touching = std::max(verdict.worst_touching, record.report.touching_work);
     ++verdict.levels_used[record.report.constraint_level];
   }
+  verdict.force_step_max = largest_force_step(result.log.records());
+  if (verdict.cycles > 0) verdict.energy = result.log.records().back().energy;
   verdict.step_us = step_time(result.log.records());
   verdict.time = judge_times(histogram(result), result.rate, result.share, judge_time);
   verdict.complete = verdict.cycles == result.cycles_asked && result.device.cycles == result.cycles_asked &&
@@ -88,6 +117,17 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
       {"contact_cycles", verdict.contact_cycles},
       {"contacts_max", verdict.contacts_max},
       {"force_max", verdict.force_max},
+      {"friction", options.friction},
+      {"tools", tools_json(verdict.strongest, result.tools)},
+      {"energy",
+       {{"in", verdict.energy.in},
+        {"stored", verdict.energy.stored},
+        {"dissipated", verdict.energy.dissipated},
+        {"generated", verdict.energy.generated}}},
+      {"residual_max", verdict.residual_max},
+      {"force_step_max", verdict.force_step_max},
+      {"fall_throughs", verdict.fall_throughs},
+      {"touching_work", verdict.worst_touching},
       {"step_us",
        {{"min", verdict.step_us.min},
         {"median", verdict.step_us.median},
@@ -113,6 +153,11 @@ std::string to_text(const SessionOptions& options, const SessionResult& result, 
   text += fmt::format("  script     {}: {} cycles in contact, at most {} contacts, {:.3g} N\n",
                       script_names[static_cast<std::size_t>(options.script)], verdict.contact_cycles,
                       verdict.contacts_max, verdict.force_max);
+  text += fmt::format(
+      "  contact    friction {:.2g}, laws within {:.1e}, force steps of at most {:.3g} N, {} fall-throughs\n",
+      options.friction, verdict.residual_max, verdict.force_step_max, verdict.fall_throughs);
+  text += fmt::format("  energy     {:.3g} J in, {:.3g} J stored, {:.3g} J by friction, {:.2g} J generated\n",
+                      verdict.energy.in, verdict.energy.stored, verdict.energy.dissipated, verdict.energy.generated);
   text += fmt::format("  work       at most {} of {} units per cycle ({:.1f} %); the least budget is {}\n",
                       verdict.worst_work, result.budget.work,
                       100 * static_cast<double>(verdict.worst_work) / static_cast<double>(result.budget.work),

@@ -24,6 +24,12 @@ struct Verdict {
   std::int64_t contact_cycles = 0;
   std::uint32_t contacts_max = 0;
   double force_max = 0;                               ///< N
+  CycleRecord strongest;                              ///< the cycle in which it was
+  double force_step_max = 0;                          ///< N, of a probe's force from a cycle to the next
+  double residual_max = 0;                            ///< of the contact laws
+  std::int64_t fall_throughs = 0;                     ///< probes and cycles behind the surface without a force
+  std::uint64_t worst_touching = 0;                   ///< units, of finding what touches
+  ContactBody::Energy energy;                         ///< J, at the end
   std::map<std::uint32_t, std::int64_t> levels_used;  ///< constraint level to cycles, all cycles
   StepTime step_us;
   TimeVerdict time;       ///< of the cycles

@@ -15,11 +15,12 @@ messages::device_state to_packet(const DeviceState& state) {
   packet.cycle = state.cycle;
   packet.resolution = state.resolution;
   std::copy(std::begin(state.origin), std::end(state.origin), packet.origin);
+  std::copy(std::begin(state.gravity), std::end(state.gravity), packet.gravity);
   packet.num_tools = static_cast<std::int32_t>(state.num_tools);
   packet.tools.resize(state.num_tools);
   for (std::uint32_t t = 0; t < state.num_tools; ++t) {
     std::copy_n(state.tools[t].position, 3, packet.tools[t].position);
-    std::copy_n(state.tools[t].axis, 3, packet.tools[t].axis);
+    std::copy_n(state.tools[t].orientation, 4, packet.tools[t].orientation);
   }
   return packet;
 }
@@ -36,12 +37,15 @@ messages::loop_command to_packet(const LoopCommand& command) {
   packet.num_tools = static_cast<std::int32_t>(command.num_tools);
   packet.tools.resize(command.num_tools);
   for (std::uint32_t t = 0; t < command.num_tools; ++t) {
-    std::copy_n(command.tool_force[t], 3, packet.tools[t].force);
+    std::copy_n(command.tools[t].force, 3, packet.tools[t].force);
+    std::copy_n(command.tools[t].torque, 3, packet.tools[t].torque);
   }
   packet.num_contacts = static_cast<std::int32_t>(command.num_contacts);
   packet.contacts.resize(command.num_contacts);
   for (std::uint32_t i = 0; i < command.num_contacts; ++i) {
     packet.contacts[i].node = static_cast<std::int32_t>(command.contacts[i].node);
+    packet.contacts[i].tool = command.contacts[i].tool;
+    packet.contacts[i].state = command.contacts[i].state;
     std::copy_n(command.contacts[i].force, 3, packet.contacts[i].force);
   }
   return packet;
@@ -51,10 +55,11 @@ std::optional<DeviceState> from_packet(const messages::device_state& packet) {
   if (!fits(packet.num_tools, max_tools)) return std::nullopt;
   DeviceState state{.cycle = packet.cycle, .resolution = packet.resolution};
   std::copy(std::begin(packet.origin), std::end(packet.origin), state.origin);
+  std::copy(std::begin(packet.gravity), std::end(packet.gravity), state.gravity);
   state.num_tools = static_cast<std::uint32_t>(packet.num_tools);
   for (std::uint32_t t = 0; t < state.num_tools; ++t) {
     std::copy_n(packet.tools[t].position, 3, state.tools[t].position);
-    std::copy_n(packet.tools[t].axis, 3, state.tools[t].axis);
+    std::copy_n(packet.tools[t].orientation, 4, state.tools[t].orientation);
   }
   return state;
 }
@@ -69,10 +74,15 @@ std::optional<LoopCommand> from_packet(const messages::loop_command& packet) {
                       .status = packet.status,
                       .digest = packet.digest};
   command.num_tools = static_cast<std::uint32_t>(packet.num_tools);
-  for (std::uint32_t t = 0; t < command.num_tools; ++t) std::copy_n(packet.tools[t].force, 3, command.tool_force[t]);
+  for (std::uint32_t t = 0; t < command.num_tools; ++t) {
+    std::copy_n(packet.tools[t].force, 3, command.tools[t].force);
+    std::copy_n(packet.tools[t].torque, 3, command.tools[t].torque);
+  }
   command.num_contacts = static_cast<std::uint32_t>(packet.num_contacts);
   for (std::uint32_t i = 0; i < command.num_contacts; ++i) {
     command.contacts[i].node = static_cast<std::uint32_t>(packet.contacts[i].node);
+    command.contacts[i].tool = packet.contacts[i].tool;
+    command.contacts[i].state = packet.contacts[i].state;
     std::copy_n(packet.contacts[i].force, 3, command.contacts[i].force);
   }
   return command;

@@ -21,10 +21,10 @@ Packet sent(const Packet& packet) {
 }
 
 DeviceState state_of(std::uint32_t tools) {
-  DeviceState state{.cycle = 77, .resolution = 1e-5, .origin = {1, -2, 3}, .num_tools = tools};
+  DeviceState state{.cycle = 77, .resolution = 1e-5, .origin = {1, -2, 3}, .gravity = {0.5, 0, -9.81}, .num_tools = tools};
   for (std::uint32_t t = 0; t < tools; ++t) {
     const auto number = static_cast<std::int16_t>(t);
-    state.tools[t] = {{100 + number, -number, INT32_MAX}, {ToolState::axis_unit, number, INT16_MIN}};
+    state.tools[t] = {{100 + number, -number, INT32_MAX}, {ToolState::unit, number, INT16_MIN, 3}};
   }
   return state;
 }
@@ -37,10 +37,11 @@ TEST_CASE("a state of any number of tools arrives as it was sent") {
     CHECK(arrived->cycle == 77);
     CHECK(arrived->resolution == 1e-5);
     CHECK(std::equal(std::begin(state.origin), std::end(state.origin), arrived->origin));
+    CHECK(std::equal(std::begin(state.gravity), std::end(state.gravity), arrived->gravity));
     REQUIRE(arrived->num_tools == tools);
     for (std::uint32_t t = 0; t < tools; ++t) {
       CHECK(std::equal(state.tools[t].position, state.tools[t].position + 3, arrived->tools[t].position));
-      CHECK(std::equal(state.tools[t].axis, state.tools[t].axis + 3, arrived->tools[t].axis));
+      CHECK(std::equal(state.tools[t].orientation, state.tools[t].orientation + 4, arrived->tools[t].orientation));
     }
   }
 }
@@ -49,9 +50,10 @@ TEST_CASE("a command of any number of tools and contacts arrives as it was sent"
   for (const std::uint32_t contacts : {0U, 1U, LoopCommand::max_contacts}) {
     LoopCommand command{
         .cycle = 5, .work = 6, .budget = 7, .level = 3, .field_level = 2, .status = 1, .digest = -8, .num_tools = 3};
-    command.tool_force[2][1] = -0.25;
+    command.tools[2].force[1] = -0.25;
+    command.tools[1].torque[2] = 0.5;
     command.num_contacts = contacts;
-    for (std::uint32_t i = 0; i < contacts; ++i) command.contacts[i] = {1000 + i, {0.5F, static_cast<float>(i), -1}};
+    for (std::uint32_t i = 0; i < contacts; ++i) command.contacts[i] = {1000 + i, 2, 1, {0.5F, static_cast<float>(i), -1}};
     const auto arrived = from_packet(sent(to_packet(command)));
     REQUIRE(arrived);
     CHECK(arrived->cycle == 5);
@@ -62,7 +64,7 @@ TEST_CASE("a command of any number of tools and contacts arrives as it was sent"
     CHECK(arrived->status == 1);
     CHECK(arrived->digest == -8);
     CHECK(arrived->num_tools == 3);
-    CHECK(arrived->tool_force[2][1] == -0.25);
+    CHECK(arrived->tools[2].force[1] == -0.25);
     REQUIRE(arrived->num_contacts == contacts);
     for (std::uint32_t i = 0; i < contacts; ++i) {
       CHECK(arrived->contacts[i].node == 1000 + i);
