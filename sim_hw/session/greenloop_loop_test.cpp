@@ -83,6 +83,14 @@ TEST_CASE("in one process every cycle holds its budget, and every run has the sa
   CHECK(json["contacts_max"] >= 3);
   CHECK(json["force_max"] > 1.0);
   CHECK(json["contact_cycles"] > 200);
+  CHECK(json["tools"].size() == 2);
+  CHECK(json["tools"][0]["contacts"].get<int>() + json["tools"][1]["contacts"].get<int>() > 0);
+  CHECK(json["energy"]["in"] > 0);
+  CHECK(json["energy"]["dissipated"] >= 0);
+  CHECK(json["energy"]["generated"] <= 0.02 * json["energy"]["in"].get<double>());
+  CHECK(json["residual_max"] <= 1e-3);
+  CHECK(json["force_step_max"] <= 0.3 * json["force_max"].get<double>());
+  CHECK(json["fall_throughs"] == 0);
   CHECK(json["processes"] == 1);
   CHECK(json["transport"] == "memq");
   CHECK(json["reason"] == "asked for");
@@ -122,23 +130,31 @@ TEST_CASE("where namespaces are refused, auto says so and runs in one process, a
   CHECK(contains(refused.errors, "namespace"));
 }
 
+/// The budget that a refusal names as the least.
+std::uint64_t least_budget() {
+  const ProgramRun refused = run_text({"--budget", "100"});
+  CHECK(refused.exit_status == 1);
+  CHECK(refused.output.empty());
+  const std::string before = "the least budget of this model is ";
+  const std::size_t at = refused.errors.find(before);
+  REQUIRE(at != std::string::npos);
+  return std::stoull(refused.errors.substr(at + before.size()));
+}
+
 TEST_CASE("starved, it answers at coarser levels and misses nothing") {
   const auto fed = run_json({"--transport", "memq", "--budget", "4000000"});
-  const auto starved = run_json({"--transport", "memq", "--budget", "4000000", "--starve", "0.0535"});
+  const std::uint64_t least = least_budget();
+  const auto starved = run_json({"--transport", "memq", "--budget", std::to_string(2 * least), "--starve", "0.5"});
   CHECK(cycles_below(fed, 4) == 0);
   CHECK(cycles_below(starved, 4) > 50);
   CHECK(starved["misses"] == 0);
-  CHECK(starved["budget_work"] == 214000);
-  CHECK(starved["worst_work"] <= 214000);
+  CHECK(starved["budget_work"] == least);
+  CHECK(starved["worst_work"] <= least);
   CHECK(starved["digest"] != fed["digest"]);
 }
 
 TEST_CASE("a budget below the coarsest answer is refused with the least one, which then holds") {
-  const std::string least = std::to_string(run_json({"--transport", "memq"})["least_work"].get<std::uint64_t>());
-  const ProgramRun refused = run_text({"--budget", "100"});
-  CHECK(refused.exit_status == 1);
-  CHECK(refused.output.empty());
-  CHECK(contains(refused.errors, least));
+  const std::string least = std::to_string(least_budget());
   const auto json = run_json({"--transport", "memq", "--budget", least});
   CHECK(json["misses"] == 0);
   CHECK(json["worst_work"] <= json["least_work"]);
@@ -230,6 +246,33 @@ TEST_CASE("more tools push more, with columns of their own in the trace") {
   CHECK(largest > 0);
   CHECK(run_text({"--tools", "0"}).exit_status == 2);
   CHECK(run_text({"--tools", "9"}).exit_status == 2);
+}
+
+TEST_CASE("every script touches, holds and lets nothing through; those that lose messages say so") {
+  for (const char* script : {"pinch", "roll", "flap", "grasp", "slide", "lose-messages"}) {
+    CAPTURE(script);
+    const auto json = run_json({"--transport", "memq", "--script", script});
+    CHECK(json["script"] == script);
+    CHECK(json["misses"] == 0);
+    CHECK(json["contact_cycles"] > 10);
+    CHECK(json["fall_throughs"] == 0);
+    CHECK((json["late_injected"] > 0) == (std::string(script) == "lose-messages"));
+  }
+  const ProgramRun dropped =
+      run_program(GREENLOOP_LOOP, {workspace().model(), "--seconds", "5", "--script", "drop", "--json"});
+  CHECK(dropped.exit_status == 0);
+  CHECK(nlohmann::json::parse(dropped.output)["contact_cycles"] > 10);
+  CHECK(nlohmann::json::parse(dropped.output)["fall_throughs"] == 0);
+  const ProgramRun no_gravity = run_text({"--script", "tilt"});
+  CHECK(no_gravity.exit_status == 1);
+  CHECK(contains(no_gravity.errors, "gravity = true"));
+}
+
+TEST_CASE("friction holds what slides, and without it nothing is dissipated") {
+  const auto smooth = run_json({"--transport", "memq", "--script", "slide", "--friction", "0"});
+  const auto rough = run_json({"--transport", "memq", "--script", "slide", "--friction", "0.5"});
+  CHECK(smooth["energy"]["dissipated"] < 1e-6);
+  CHECK(rough["energy"]["dissipated"] > 1e-4);
 }
 
 TEST_CASE("a field now and then costs less and changes the digest") {

@@ -19,29 +19,50 @@
 namespace greenloop {
 namespace {
 
-ContactBody::Limits limits_of(const Model& model) {
+/// Units; 0: none is asked for.
+std::uint64_t budget_of(const SessionOptions& options, const Model& model) {
+  const Elastostatic::Intent intent = Elastostatic::intended(model);
+  const std::uint64_t whole = options.budget != 0 ? options.budget : intent.budget.work;
+  return static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve));
+}
+
+/// Room for the contacts of the scene, and, if there is budget for them, for more: what lies under a tool without being
+/// pushed takes some, too.
+ContactBody::Limits limits_of(const Model& model, std::uint32_t contacts) {
   ContactBody::Limits limits;
   limits.elastostatic = Elastostatic::intended(model).limits;
-  // what lies under a tool without being pushed is a contact, too
-  constexpr std::uint32_t least_contacts = 64;
-  limits.elastostatic.max_contacts =
-      std::clamp(limits.elastostatic.max_contacts, least_contacts, LoopCommand::max_contacts);
+  limits.elastostatic.max_contacts = contacts;
   limits.elastostatic.iterations = 64;
   limits.elastostatic.model_loads = true;
   limits.max_tools = max_tools;
   return limits;
 }
 
-Budget budget_of(const SessionOptions& options, const Model& model, const Elastostatic::Requirement& need) {
-  const std::uint64_t own = Elastostatic::intended(model).budget.work;
-  const std::uint64_t finest = need.worst_work[model.level_count() - 1];
-  const std::uint64_t whole = options.budget != 0 ? options.budget : own != 0 ? own : finest;
-  const Budget budget{static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve))};
-  if (budget.work < need.least_work) {
-    throw std::runtime_error("budget: " + std::to_string(budget.work) + " units per cycle cannot hold even the " +
-                             "coarsest answer; the least budget of this model is " + std::to_string(need.least_work));
+struct Agreement {
+  ContactBody::Limits limits;
+  Budget budget;
+  std::uint64_t least_work = 0;
+};
+
+Agreement agree(const SessionOptions& options, const Model& model) {
+  constexpr std::uint32_t usual = 64;
+  const std::uint32_t intended = std::min(Elastostatic::intended(model).limits.max_contacts, LoopCommand::max_contacts);
+  Agreement agreement;
+  for (std::uint32_t contacts = std::max(intended, usual);; contacts = std::max(contacts / 2, intended)) {
+    agreement.limits = limits_of(model, contacts);
+    const auto need = Elastostatic::required(model, agreement.limits.elastostatic);
+    agreement.least_work = need.least_work;
+    const std::uint64_t asked = budget_of(options, model);
+    agreement.budget.work =
+        asked != 0 ? asked
+                   : static_cast<std::uint64_t>(
+                         std::floor(static_cast<double>(need.worst_work[model.level_count() - 1]) * options.starve));
+    if (agreement.budget.work >= need.least_work) return agreement;
+    if (contacts == intended) break;
   }
-  return budget;
+  throw std::runtime_error("budget: " + std::to_string(agreement.budget.work) +
+                           " units per cycle cannot hold even the coarsest answer; the least budget of this model is " +
+                           std::to_string(agreement.least_work));
 }
 
 double rate_of(const SessionOptions& options, const Elastostatic::Intent& intent) {
@@ -145,8 +166,7 @@ void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& re
 SessionResult run_session(const SessionOptions& options) {
   const LoadedModel loaded = load_model(options.model);
   const Model& model = loaded.model;
-  const ContactBody::Limits limits = limits_of(model);
-  const Elastostatic::Requirement need = Elastostatic::required(model, limits.elastostatic);
+  const Agreement agreement = agree(options, model);
   const bool gravity = model.view().has_gravity();
   if (options.script == Script::tilt && !gravity) {
     throw std::runtime_error(options.model.string() + ": --script tilt: the model knows no gravity; build it from a " +
@@ -156,15 +176,15 @@ SessionResult run_session(const SessionOptions& options) {
   const Elastostatic::Intent intent = Elastostatic::intended(model);
   result.rate = rate_of(options, intent);
   result.share = options.share.value_or(intent.share);
-  result.least_work = need.least_work;
-  result.budget = budget_of(options, model, need);
+  result.least_work = agreement.least_work;
+  result.budget = agreement.budget;
   const BodySurface surface = body_surface(model);
   HapticDevice device(device_setup(options, result.rate, surface, *model.view().info));
   result.tools = device.state().num_tools;
   result.cycles_asked = std::llround(options.seconds * result.rate);
   result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count());
 
-  HostedContactBody body(model, limits);
+  HostedContactBody body(model, agreement.limits);
   ControlLoop loop(body.body(), {.probe_radius = probe_size(surface).radius,
                                  .friction = options.friction,
                                  .gravity = gravity,
