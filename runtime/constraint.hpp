@@ -10,12 +10,12 @@ struct Constraint {
     hold,     ///< all three components of its displacement
     normal,   ///< its displacement along the normal; it slides freely across it
     force,    ///< the force on it
-    pattern,  ///< a pattern of forces, by its number, as a whole
+    pattern,  ///< the force of a mask, by its number, as a whole; it is spread by the mask's weights
   };
 
-  std::uint32_t node = 0;  ///< file index of a touchable node; of a pattern its number
+  std::uint32_t node = 0;  ///< file index of a touchable node; of a pattern the number of its mask
   float value[3] = {};     ///< m where displacements are known, N where forces are
-  Kind kind = Kind::hold;  ///< Elastostatic knows `hold` and refuses the others
+  Kind kind = Kind::hold;  ///< Elastostatic refuses `normal`, and knows forces by Limits::max_forces
 };
 
 }  // namespace greenloop

@@ -1,6 +1,7 @@
 #include "runtime/elastostatic.hpp"
 
 #include <cassert>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -8,8 +9,10 @@
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/body.hpp"
+#include "runtime/elastostatic/loads.hpp"
 #include "runtime/elastostatic/planner.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
 
@@ -25,17 +28,22 @@ std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& r
   return layout::none;
 }
 
-Status check_request(const Body& body, std::size_t contacts, Budget budget, const Elastostatic::Response& response) {
+Status check_request(const Body& body, std::size_t constraints, const Elastostatic::Loads& loads, Budget budget,
+                     const Elastostatic::Response& response) {
   if (budget.work < body.least_work) {
     return Status::held_over_budget;
   }
-  if (contacts > body.counts.max_contacts) {
+  if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
     return Status::held_out_of_range;
+  }
+  const Status acting = check_loads(body, loads);
+  if (acting != Status::ok) {
+    return acting;
   }
   const bool field_fits = response.displacement.empty() ||
                           (finest_displaced(body, response) != layout::none &&
                            reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
-  return response.force.size() == contacts && field_fits ? Status::ok : Status::held_response_size;
+  return response.force.size() == constraints && field_fits ? Status::ok : Status::held_response_size;
 }
 
 // the factor of the planned set; null if its capacitance matrix is not positive definite
@@ -67,12 +75,16 @@ void to_set_order(const Factor& factor, std::uint32_t columns, const float* of_f
   }
 }
 
-// forces of the columns of a set by its factor, in `force`; false if they would overflow the answer
+// forces of the columns of a set by its factor, in `force`; displaced: what of them is there without these forces, or
+// null; false if they would overflow the answer
 bool solve_forces(const Body& body, std::span<const Constraint> contacts, const ContactSet& set, const Factor& factor,
-                  float* force) {
+                  const float* displaced, float* force) {
   const std::uint32_t order = 3 * set.columns;
   auto* solution = reinterpret_cast<float*>(body.solution);
   average_displacements(contacts, set, force);
+  for (std::uint32_t i = 0; i < order && displaced != nullptr; ++i) {
+    force[i] = without_tiny(force[i] - displaced[i]);
+  }
   for (std::uint32_t i = order; i < padded_order(order); ++i) {
     solution[i] = 0;
   }
@@ -83,14 +95,24 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   for (std::uint32_t i = 0; i < order; ++i) {
     sum += std::fabs(force[i]);
   }
-  return sum <= body.force_limit;
+  return sum <= body.force_limit && sum * body.stiffness <= FLT_MAX;
 }
 
-// displacements by the forces of the planned set; apart, so that what makes a factor does not stand on its stack
+// sums of the known forces; returns the model's loads
+[[gnu::noinline]] ActingLoads sum_known_forces(const Body& body, const FieldLevels& levels) {
+  const KnownForces& forces = body.loads->forces;
+  sum_forces<3>(body.field_model(), forces.on_columns(), forces.touched, domain_up_to(*body.view, levels.details),
+                body.field_scratch());
+  return body.loads->acting();
+}
+
+// displacements by the forces of the planned set, and what acts besides; apart, so that what makes a factor does not
+// stand on its stack
 [[gnu::noinline]] void reconstruct(const Body& body, std::span<const Constraint> contacts, const ColumnForces& forces,
                                    const FieldLevels& levels, std::span<Vec4> displacement) {
   auto* x = reinterpret_cast<Float4*>(displacement.data());
-  compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x);
+  const ActingLoads loads = body.is_loaded ? sum_known_forces(body, levels) : ActingLoads{};
+  compute_field<3>(body.field_model(), forces, body.touched, levels, body.field_scratch(), x, loads);
   // nodes that are held by themselves stand where they are held: only the others need the approximation
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const float* held = contacts[i].value;
@@ -102,32 +124,31 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 }
 
 // nothing is touched: the body is at rest
-Elastostatic::StepReport release(Body& body, const Elastostatic::Response& response, std::uint64_t work) {
+void release(Body& body, const Elastostatic::Response& response, std::uint64_t work, Elastostatic::StepReport& report) {
   body.last.release();
+  body.planned.columns = 0;
+  body.answered = true;
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
     work += priced(response.displacement.size(), body.counts.prices.node);
   }
-  Elastostatic::StepReport report;
   report.work = work;
   report.constraint_level = finest;
   report.field_level = response.displacement.empty() ? finest : finest_displaced(body, response);
-  return report;
 }
 
-Elastostatic::StepReport held(Status status, std::uint64_t work) {
-  Elastostatic::StepReport report;
+void hold(Status status, std::uint64_t work, Elastostatic::StepReport& report) {
   report.status = status;
   report.work = work;
   report.error = std::numeric_limits<float>::infinity();
-  return report;
 }
 
 // the forces that the level before would answer with, if its factor is cached and the budget holds them; else null
 const float* solve_older_level(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
                                std::uint64_t& work) {
-  if (!body.glide.follows() || work + older_forces_work(body.counts, contacts.size()) > budget) {
+  // where loads act it would take their displacements at that level, too: the last known difference does then
+  if (!body.glide.follows() || body.is_loaded || work + older_forces_work(body.counts, contacts.size()) > budget) {
     return nullptr;
   }
   ContactSet& set = body.other;
@@ -140,7 +161,7 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
   }
   body.cache.use(*factor);
   work += solve_work(body.counts.prices, contacts.size(), set.columns);
-  if (!solve_forces(body, contacts, set, *factor, body.other_column_force)) {
+  if (!solve_forces(body, contacts, set, *factor, nullptr, body.other_column_force)) {
     return nullptr;
   }
   share_forces(body.other_column_force, contacts.size(), set, body.older_force);
@@ -148,8 +169,8 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
 }
 
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
-void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, float* force,
-                  Elastostatic::StepReport& report) {
+[[gnu::noinline]] void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
+                                    float* force, Elastostatic::StepReport& report) {
   body.glide.advance(contacts, body.planned, body.last);
   const float* const older = solve_older_level(body, contacts, budget, report.work);
   const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
@@ -162,7 +183,7 @@ void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_
 // what the glide to a finer level begins with, if its factor has just been completed
 void foresee_finer_level(Body& body, std::span<const Constraint> contacts) {
   Factor* const factor = body.cache.find(body.other.all());
-  if (factor != nullptr && solve_forces(body, contacts, body.other, *factor, body.other_column_force)) {
+  if (factor != nullptr && solve_forces(body, contacts, body.other, *factor, nullptr, body.other_column_force)) {
     share_forces(body.other_column_force, contacts.size(), body.other, body.older_force);
     body.glide.foresee(body.other.level(), body.last, body.older_force);
   }
@@ -178,7 +199,7 @@ void prepare_factor(Body& body, std::span<const Constraint> contacts, const Plan
   }
   const SetCounts& whole = plan.wanted.counts;
   const std::uint64_t resolving = resolve_contacts_work(body.counts.prices, contacts.size());
-  const bool glides = !waits && body.counts.glide_cycles > 1;
+  const bool glides = !waits && !body.is_loaded && body.counts.glide_cycles > 1;
   const std::uint64_t foreseeing = glides ? force_work(body.counts.prices, whole) : 0;
   const std::uint64_t limit = budget < body.counts.refining_work ? budget : body.counts.refining_work;
   if (report.work + resolving + foreseeing > limit) {
@@ -221,70 +242,141 @@ float answer_error(const Body& body, const Plan& plan, bool with_field, const El
   return report.details.glide < 1 ? larger(error, body.last.error()) : error;
 }
 
-Elastostatic::StepReport answer(Body& body, std::span<const Constraint> contacts, const Plan& plan, std::uint64_t work,
-                                std::uint64_t budget, const Elastostatic::Response& response) {
-  const ContactSet& set = body.planned;
-  const std::uint64_t needed = work + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+// with the details of all nodes that were asked for, at the finest level
+bool is_finest(const Body& body, const Plan& plan) {
+  return plan.level + 1 == body.view->levels && plan.field_levels.details == plan.field_levels.nodes;
+}
+
+// no contacts, but known forces
+void answer_loads(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work,
+                  const Elastostatic::Response& response, Elastostatic::StepReport& report) {
+  report.work = report.details.needed_work = work + force_work(body.counts.prices, plan.counts) + plan.field;
+  report.constraint_level = plan.level;
+  report.field_level = plan.field_levels.details;
+  if (!response.displacement.empty()) {
+    reconstruct(body, {}, {}, plan.field_levels, response.displacement);
+  }
+  report.error = answer_error(body, plan, !response.displacement.empty(), report);
+  report.status = is_finest(body, plan) ? Status::ok : Status::coarser;
+  body.last.release();
+  body.answered = true;
+  hand_out_forces(body, contacts, response.force, report);
+}
+
+// the forces of the columns of the planned set, in Body::column_force, and of its contacts; `work` grows by what that
+// took
+Status hold_contacts(Body& body, const Contacts& contacts, const Plan& plan, Factor*& factor, std::uint64_t& work) {
   body.factoring.spent = 0;
-  Factor* const factor = find_factor(body, plan);
+  factor = find_factor(body, plan);
   work += plan.cached != nullptr ? 0 : plan.factor - plan.bounded + body.factoring.spent;
   if (factor == nullptr) {
-    return held(Status::held_singular, work);
+    return Status::held_singular;
+  }
+  const float* displaced = nullptr;
+  if (body.is_loaded) {
+    work += displace_by_loads_work(body.counts, plan.counts, body.loads->counts, displace_by_loads(body));
+    displaced = body.loads->column_displaced;
   }
   work += force_work(body.counts.prices, plan.counts);
-  if (!solve_forces(body, contacts, set, *factor, body.column_force)) {
-    return held(Status::held_overflow, work);
+  if (!solve_forces(body, contacts.held, body.planned, *factor, displaced, body.column_force)) {
+    return Status::held_overflow;
   }
-  float* const force = as_floats(response.force).data();
-  share_forces(body.column_force, contacts.size(), set, force);
+  share_forces(body.column_force, contacts.held.size(), body.planned, contacts.force);
+  return Status::ok;
+}
+
+void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work, std::uint64_t budget,
+            const Elastostatic::Response& response, Elastostatic::StepReport& report) {
+  const ContactSet& set = body.planned;
+  report.details.needed_work =
+      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+  Factor* factor = nullptr;
+  const Status held = hold_contacts(body, contacts, plan, factor, work);
+  if (held != Status::ok) {
+    report.details.needed_work = 0;
+    return hold(held, work, report);
+  }
   if (!response.displacement.empty()) {
     work += plan.field;
-    reconstruct(body, contacts, {set.columns, set.column, body.column_force}, plan.field_levels, response.displacement);
+    reconstruct(body, contacts.held, {set.columns, set.column, body.column_force}, plan.field_levels,
+                response.displacement);
   }
-  Elastostatic::StepReport report;
   report.work = work;
   report.constraint_level = set.level();
   report.field_level = plan.field_levels.details;
-  report.details.needed_work = needed;
-  report.details.held_contacts = static_cast<std::uint16_t>(contacts.size() - set.waiting);
+  report.details.held_contacts = static_cast<std::uint16_t>(contacts.held.size() - set.waiting);
   report.details.waiting_contacts = static_cast<std::uint16_t>(set.waiting);
-  const bool moving = !body.last.stays(contacts);
-  glide_forces(body, contacts, budget, force, report);
+  const bool moving = !body.last.stays(contacts.held);
+  glide_forces(body, contacts.held, budget, contacts.force, report);
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
   body.last.set_error(report.error);
   body.cache.use(*factor);
-  prepare_factor(body, contacts, plan, moving, budget, report);
+  prepare_factor(body, contacts.held, plan, moving, budget, report);
   report.details.cached_factor = plan.cached != nullptr;
   report.details.changed_nodes = plan.update ? body.changes.added + body.changes.removed : 0;
-  const bool finest = report.constraint_level + 1 == body.view->levels && set.waiting == 0 &&
-                      plan.field_levels.details == plan.field_levels.nodes;
-  report.status = finest && report.details.glide == 1 ? Status::ok : Status::coarser;
+  const bool finest = is_finest(body, plan) && set.waiting == 0 && report.details.glide == 1;
+  report.status = finest ? Status::ok : Status::coarser;
   body.answered = true;
-  return report;
+  hand_out_forces(body, contacts, response.force, report);
 }
 
-Elastostatic::StepReport take_step(Body& body, std::span<const Constraint> contacts, Budget budget,
-                                   const Elastostatic::Response& response) {
+// what comes of checking a step's inputs, the units that took, and the contacts among them
+struct Accepted {
+  Status status = Status::ok;
+  std::uint32_t refused = StepReport::no_constraint;
+  std::uint64_t work = 0;
+  Contacts contacts;
+};
+
+// apart, so that it does not stand on the stack of an answer
+[[gnu::noinline]] void accept_inputs(Body& body, std::span<const Constraint> constraints,
+                                     const Elastostatic::Loads& loads, Budget budget,
+                                     const Elastostatic::Response& response, Accepted& accepted) {
+  accepted.status = check_request(body, constraints.size(), loads, budget, response);
+  if (accepted.status != Status::ok) {
+    return;
+  }
+  const Prices& prices = body.counts.prices;
+  const std::uint32_t most = body.counts.max_forces;
+  const std::uint64_t forces = most > 0 ? count_forces(constraints, loads.masks) : 0;
+  accepted.work = check_contacts_work(prices, constraints.size() + (forces < most ? forces : most));
+  const CheckedContacts checked =
+      check_contacts(constraints, body.view->node_count, body.facts, {body.counts.max_contacts, most, loads.masks});
+  accepted.status = checked.status;
+  accepted.refused = checked.refused;
+  if (checked.status != Status::ok) {
+    return;
+  }
+  accepted.work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
+  if (!take_loads(body, constraints, loads, response.force, accepted.contacts)) {
+    accepted.status = Status::held_overflow;
+  }
+}
+
+void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads, Budget budget,
+               const Elastostatic::Response& response, Elastostatic::StepReport& report) {
   body.answered = false;
-  const Status request = check_request(body, contacts.size(), budget, response);
-  if (request != Status::ok) {
-    return held(request, 0);
+  Accepted accepted;
+  accept_inputs(body, constraints, loads, budget, response, accepted);
+  report.refused = accepted.refused;
+  if (accepted.status != Status::ok) {
+    return hold(accepted.status, accepted.work, report);
   }
-  const std::uint64_t checking = check_contacts_work(body.counts.prices, contacts.size());
-  const auto [checked, refused] = check_contacts(contacts, body.view->node_count, body.facts);
-  if (checked != Status::ok) {
-    Elastostatic::StepReport report = held(checked, checking);
-    report.refused = refused;
-    return report;
-  }
-  if (contacts.empty()) {
-    return release(body, response, checking);
+  const Contacts& contacts = accepted.contacts;
+  if (contacts.held.empty() && !body.is_loaded) {
+    return release(body, response, accepted.work, report);
   }
   const bool wants_field = !response.displacement.empty();
   const std::uint32_t displaced = wants_field ? finest_displaced(body, response) : body.counts.levels - 1;
-  const Plan plan = make_plan(body, contacts, budget.work - checking, wants_field, displaced);
-  return plan.fits ? answer(body, contacts, plan, checking + plan.work, budget.work, response)
-                   : held(Status::held_over_budget, checking + plan.work);
+  const Plan plan = make_plan(body, contacts.held, budget.work - accepted.work, wants_field, displaced);
+  const std::uint64_t work = accepted.work + plan.work;
+  if (!plan.fits) {
+    return hold(Status::held_over_budget, work, report);
+  }
+  if (contacts.held.empty()) {
+    return answer_loads(body, contacts, plan, work, response, report);
+  }
+  answer(body, contacts, plan, work, budget.work, response, report);
 }
 
 }  // namespace
@@ -350,30 +442,19 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
-  const StepReport report = take_step(*body_, contacts, budget, response);
+  StepReport report;
+  static constexpr Loads none{};
+  take_step(*body_, contacts, none, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
 
-bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept {
-  const Body& body = *body_;
-  const ContactSet& set = body.planned;
-  if (!body.answered || i >= body.last.contacts() || j >= body.last.contacts() || !set.holds(i) || !set.holds(j)) {
-    return false;
-  }
-  const Factor* const factor = body.cache.find(set.all());
-  if (factor == nullptr || factor->capacitance == nullptr) {
-    return false;
-  }
-  const std::size_t row = std::size_t{3} * factor->position[set.place[i]];
-  const std::size_t column = std::size_t{3} * factor->position[set.place[j]];
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      const std::size_t a = row + r, b = column + c;
-      block[3 * c + r] = factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b];
-    }
-  }
-  return true;
+Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
+                                            const Response& response) noexcept {
+  StepReport report;
+  take_step(*body_, constraints, loads, budget, response, report);
+  assert(Arena::intact(body_->last_red_zone));
+  return report;
 }
 
 }  // namespace greenloop

@@ -5,6 +5,7 @@
 
 #include "runtime/constraint.hpp"
 #include "runtime/loop.hpp"
+#include "runtime/mask.hpp"
 #include "runtime/model.hpp"
 #include "runtime/prices.hpp"
 #include "runtime/vec.hpp"
@@ -25,7 +26,12 @@ class Elastostatic {
     bool keep_capacitance = false;     ///< capacitance matrices beside their factors, for `compliance`
     std::uint32_t glide_cycles = 16;   ///< 1..256, steps in which the forces go over to another level; 1: at once
     std::uint64_t refining_work = ~std::uint64_t{0};  ///< units of a step up to which it prepares a finer level
-    Prices prices{};                                  ///< that make work units of what a step does
+    std::uint32_t max_forces = 0;  ///< 0..4096, nodes that known forces are on in a step, those of masks each time; 0:
+                                   ///< constraints of other kinds than hold are refused
+    bool model_loads = false;      ///< the model's loads may act, gravity and pressures
+    std::uint32_t max_points = 0;  ///< 0..4096, points whose displacement may be asked for at once; 0: none, nor what
+                                   ///< masks meet
+    Prices prices{};               ///< that make work units of what a step does
   };
 
   /// The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md).
@@ -38,14 +44,23 @@ class Elastostatic {
 
   /// What Limits cost. least_work: coarsest level, all constraints, coarsest field.
   struct Requirement : greenloop::Requirement {
+    std::uint64_t selected_work = 0;  ///< of displacements and of masked_compliance, a call; 0: they are not answered
     std::uint64_t worst_work[layout::max_levels] = {};  ///< of a step by its StepReport::constraint_level
+  };
+
+  /// What acts on a body in a step beside its constraints, and how stiff it is.
+  struct Loads {
+    std::span<const Mask> masks{};  ///< that constraints of kind pattern name
+    Vec3 gravity{};  ///< m/s^2, of the whole body, where the model has accelerations (ElastostaticView::has_gravity)
+    std::span<const float> pressure{};  ///< Pa, of the model's first pressures, in their order
+    float stiffness = 1;                ///< 2^-20..2^20, Young's modulus over the model's
   };
 
   /// The answer of a step; the caller owns the memory. The size of `displacement` says which nodes are displaced: all,
   /// or those of the coarser levels, which come first in the file (Model::node_count). Floats of the caller's are seen
   /// as vectors by as_vec3 and as_vec4.
   struct Response {
-    std::span<Vec3> force;         ///< [constraints] N, the force that holds each, in their order
+    std::span<Vec3> force;         ///< [constraints] N, the force that holds each, or that is known, in their order
     std::span<Vec4> displacement;  ///< [nodes of levels 0..q] m; empty: none is wanted
   };
 
@@ -92,13 +107,43 @@ class Elastostatic {
   /// clock; same model, limits, history, constraints and budget give the same bits. Work: at most budget.work.
   StepReport step(std::span<const Constraint> constraints, Budget budget, const Response& response) noexcept;
 
-  /// The compliance between two constraints, by their places among those of the last answer, at the levels that it was
+  /// The same with what else acts (James & Pai 2001, section 4.2): known forces, on nodes and by masks, reduce what the
+  /// contacts have to do to stand where they are held. They are resolved at the level of the contacts: below the finest
+  /// one, and in steps without contacts that the budget does not hold there, a force acts on the node that stands for
+  /// its own. Forces of contacts scale with the stiffness, displacements by known forces with its inverse.
+  StepReport step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
+                  const Response& response) noexcept;
+
+  /// The compliance between two contacts, by their places among those of the last answer, at the levels that it was
   /// answered at: the displacement of i per force at j, m/N, of nodes that share a column the column's. While a glide
   /// is under way (StepDetails::glide below 1) the answer's forces are not those that it gives. block: 3 c + r,
   /// displacement r per force c. False, and nothing is written, unless the capacitance is kept (Limits), the last step
   /// was answered and its factor is still in the cache, which one factor of a finer level may replace. For the loop;
   /// work: constant but for a look into the cache.
   bool compliance(std::uint32_t i, std::uint32_t j, std::span<float, 9> block) const noexcept;
+
+  // Selected answers (James & Pai 2001, section 4.3). Each returns the work units that it spent beside those of steps;
+  // 0, and nothing is written, where it is refused. What a step after it answers is the same as without it.
+
+  /// Displacements of points of the surface by all that acts in the last answer, m, as they are in its whole field but
+  /// for rounding. [as many] For the loop; at most Requirement::selected_work: what forces and points reach, however
+  /// many nodes the body has. Refused without an answer, and with more points than Limits::max_points, nodes that the
+  /// model does not have or weights that are not finite.
+  std::uint64_t displacements(std::span<const MeshPoint> points, std::span<Vec3> displacement) noexcept;
+
+  /// The displacement of a node of the domain per force on a mask at the finest level, of the model's own stiffness:
+  /// the sum over the mask of its parts of the compliance (equation 32). block: as of `compliance`, m/N. For the loop;
+  /// at most Requirement::selected_work. Refused without Limits::max_points, with a node outside of the domain, or a
+  /// mask that is empty, of more nodes than max_contacts and max_forces together, or of nodes that are not touchable.
+  std::uint64_t masked_compliance(std::uint32_t node, const Mask& mask, std::span<float, 9> block) noexcept;
+
+  /// The stiffness of a point-like contact anywhere on the surface, N/m, as of runtime/stiffness.hpp: the mean of its
+  /// corners' by the point's weights (equation 34), `rigid` along all axes where a corner is held in place. masks: of
+  /// the corners, make_mask(at_node(corner)); of one that is held in place or weighs nothing any. capped: none is
+  /// stiffer than `rigid` (section 6.4). For the loop; at most three times Requirement::selected_work. Refused as
+  /// masked_compliance is.
+  std::uint64_t stiffness(const MeshPoint& point, std::span<const Mask, 3> masks, float rigid, bool capped,
+                          std::span<float, 9> stiffness) noexcept;
 
  private:
   Body* body_ = nullptr;

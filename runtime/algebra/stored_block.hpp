@@ -80,4 +80,16 @@ struct StoredBlock<1, 16> {
   }
 };
 
+/// Calls visit(StoredBlock of a layer's bits a value).
+template <unsigned N, class Visit>
+void with_stored(std::uint32_t value_bits, Visit visit) {
+  if (value_bits == 4) {
+    visit(StoredBlock<N, 4>{});
+  } else if (value_bits == 8) {
+    visit(StoredBlock<N, 8>{});
+  } else {
+    visit(StoredBlock<N, 16>{});
+  }
+}
+
 }  // namespace greenloop

@@ -9,18 +9,6 @@
 namespace greenloop {
 namespace {
 
-// calls visit(the stored type) for the bits of a value
-template <unsigned N, class Visit>
-void with_stored(std::uint32_t value_bits, Visit visit) {
-  if (value_bits == 4) {
-    visit(StoredBlock<N, 4>{});
-  } else if (value_bits == 8) {
-    visit(StoredBlock<N, 8>{});
-  } else {
-    visit(StoredBlock<N, 16>{});
-  }
-}
-
 template <class Index>
 std::uint32_t choose(const Index* index, std::uint32_t begin, std::uint32_t end, const std::uint32_t* slot,
                      std::uint32_t slots, BlockPlace* chosen) {

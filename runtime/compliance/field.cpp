@@ -160,12 +160,22 @@ void sum_couplings(const FieldModel<N>& model, const Touched& touched, std::uint
 }
 
 template <unsigned N>
-void compute_field(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched,
-                   const FieldLevels& levels, const FieldScratch<N>& scratch, Vector<N>* x) noexcept {
-  const ModelView& view = *model.refinement.view;
+void sum_forces(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched, std::uint32_t end,
+                const FieldScratch<N>& scratch) noexcept {
   transform_forces<N>(model.refinement, forces, touched, scratch.force);
-  sum_couplings<N>(model, touched, domain_up_to(view, levels.details), scratch.force, scratch.sums);
+  sum_couplings<N>(model, touched, end, scratch.force, scratch.sums);
+}
+
+template <unsigned N>
+void compute_field(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched,
+                   const FieldLevels& levels, const FieldScratch<N>& scratch, Vector<N>* x,
+                   const ActingLoads& loads) noexcept {
+  const ModelView& view = *model.refinement.view;
+  sum_forces<N>(model, forces, touched, domain_up_to(view, levels.details), scratch);
   scale_sums(view, domain_up_to(view, levels.details), scratch.sums);
+  if constexpr (N == 3) {
+    add_loads(view, loads, levels.details, scratch.sums.of_blocks);
+  }
   inverse_transform<N>(view, model.offsets, levels, scratch.sums.of_blocks, x);
 }
 
@@ -179,9 +189,13 @@ template void sum_couplings<1>(const FieldModel<1>&, const Touched&, std::uint32
                                const CoefficientSums<1>&) noexcept;
 template void sum_couplings<3>(const FieldModel<3>&, const Touched&, std::uint32_t, Vector<3>*,
                                const CoefficientSums<3>&) noexcept;
+template void sum_forces<1>(const FieldModel<1>&, const ColumnForces&, const Touched&, std::uint32_t,
+                            const FieldScratch<1>&) noexcept;
+template void sum_forces<3>(const FieldModel<3>&, const ColumnForces&, const Touched&, std::uint32_t,
+                            const FieldScratch<3>&) noexcept;
 template void compute_field<1>(const FieldModel<1>&, const ColumnForces&, const Touched&, const FieldLevels&,
-                               const FieldScratch<1>&, Vector<1>*) noexcept;
+                               const FieldScratch<1>&, Vector<1>*, const ActingLoads&) noexcept;
 template void compute_field<3>(const FieldModel<3>&, const ColumnForces&, const Touched&, const FieldLevels&,
-                               const FieldScratch<3>&, Vector<3>*) noexcept;
+                               const FieldScratch<3>&, Vector<3>*, const ActingLoads&) noexcept;
 
 }  // namespace greenloop

@@ -6,6 +6,7 @@
 #include "runtime/compliance/base_columns.hpp"
 #include "runtime/compliance/column_blocks.hpp"
 #include "runtime/compliance/mirrored_couplings.hpp"
+#include "runtime/compliance/model_loads.hpp"
 #include "runtime/wavelet/force_transform.hpp"
 #include "runtime/wavelet/reach.hpp"
 #include "runtime/wavelet/refinement.hpp"
@@ -70,12 +71,20 @@ void sum_couplings(const FieldModel<N>& model, const Touched& touched, std::uint
 template <unsigned N>
 void scale_sums(const ModelView& view, std::uint32_t end, const CoefficientSums<N>& sums) noexcept;
 
+/// What forces on columns add to the sums of the coefficients before `end`. touched: by the same columns. For the loop;
+/// work: that of transform_forces and sum_couplings.
+template <unsigned N>
+void sum_forces(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched, std::uint32_t end,
+                const FieldScratch<N>& scratch) noexcept;
+
 /// Fast summation in two-sided form (James & Pai 2003, section 5.4; docs/theory.md): x = W^-1 (W U W^T) T^-T f, the
 /// displacement of the nodes of K(levels.nodes) by some forces, with details up to levels.details, interpolated beyond.
 /// It is that of the very compliance whose forces hold the contacts: all couplings, none left out. touched: by the same
-/// columns; x: [nodes of K(levels.nodes)], all of which are written. For the loop; work: field_work.
+/// columns; x: [nodes of K(levels.nodes)], all of which are written. What is in the sums already, and of three
+/// components what loads of the model displace, is added to it. For the loop; work: field_work, and that of add_loads.
 template <unsigned N>
 void compute_field(const FieldModel<N>& model, const ColumnForces& forces, const Touched& touched,
-                   const FieldLevels& levels, const FieldScratch<N>& scratch, Vector<N>* x) noexcept;
+                   const FieldLevels& levels, const FieldScratch<N>& scratch, Vector<N>* x,
+                   const ActingLoads& loads = {}) noexcept;
 
 }  // namespace greenloop

@@ -134,6 +134,27 @@ void carve_tables(Arena& arena, const ModelView& view, const BodySizes& sizes, T
   tables.read = arena.take<std::uint8_t>(view.domain_count);
 }
 
+LoadState* carve_loads(Arena& arena, const ModelView& view, const BodySizes& sizes) {
+  auto* const memory = arena.take<LoadState>(1);
+  LoadState counted;
+  LoadState& loads = memory == nullptr ? counted : *new (memory) LoadState;
+  loads.forces.carve(arena, view, sizes.counts.max_forces);
+  loads.load = arena.take<std::uint32_t>(sizes.counts.model_loads);
+  loads.amount = arena.take<float>(sizes.counts.model_loads);
+  loads.largest = arena.take<float>(sizes.counts.model_loads);
+  loads.held = arena.take<Constraint>(sizes.counts.max_contacts);
+  loads.held_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
+  loads.column_displaced = arena.take<float>(std::uint64_t{3} * sizes.set_columns);
+  loads.displaced = arena.take_zeroed<Float4>(view.domain_count);
+  if (sizes.counts.max_points > 0) {
+    const std::uint64_t forced = std::uint64_t{sizes.counts.max_contacts} + sizes.counts.max_forces;
+    loads.point_column = arena.take<std::uint32_t>(std::uint64_t{3} * sizes.counts.max_points);
+    loads.asked_column = arena.take<std::uint32_t>(forced);
+    loads.asked_force = arena.take<float>(3 * forced);
+  }
+  return memory;
+}
+
 void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& body, Tables& tables) {
   carve_tables(arena, view, sizes, tables);
   if (!sizes.counts.forces_only) {
@@ -157,6 +178,9 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.older_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
+  if (sizes.counts.takes_loads() || sizes.counts.max_points > 0) {
+    body.loads = carve_loads(arena, view, sizes);
+  }
   body.cache.carve<3>(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.job.carve<3>(arena, view, sizes.set_columns, sizes.counts.keeps_capacitance);
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
@@ -247,6 +271,10 @@ Body* place_body(Arena& arena, const ModelView& view, const BodySizes& sizes) no
     return nullptr;
   }
   body.force_limit = largest_force_sum(view, body.lifting);
+  const double growth = body.counts.model_loads > 0 ? transform_growth(view, prediction_of(view), body.lifting) : 0;
+  for (std::uint32_t k = 0; k < body.counts.model_loads; ++k) {
+    body.loads->largest[k] = static_cast<float>(growth * largest_coefficient(view, k));
+  }
   body.last_red_zone = arena.last_red_zone();
   return &body;
 }

@@ -10,6 +10,7 @@
 #include "runtime/compliance/mirrored_couplings.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
+#include "runtime/elastostatic/known_forces.hpp"
 #include "runtime/elastostatic/last_answer.hpp"
 #include "runtime/elastostatic/requirement.hpp"
 #include "runtime/factor/factor_cache.hpp"
@@ -21,12 +22,33 @@
 
 namespace greenloop {
 
+/// What a body keeps of what acts on it beside its contacts.
+struct LoadState {
+  KnownForces forces;                 ///< of a step
+  std::uint32_t amounts = 0;          ///< loads of the model that act in it
+  std::uint32_t* load = nullptr;      ///< [loads of the model] those
+  float* amount = nullptr;            ///< [loads of the model] of each, over the stiffness scale
+  float* largest = nullptr;           ///< [loads of the model] m a unit, no displacement is larger
+  LoadCounts counts;                  ///< of the plan
+  Constraint* held = nullptr;         ///< [contacts] among constraints of other kinds
+  float* held_force = nullptr;        ///< [3 * contacts]
+  float* column_displaced = nullptr;  ///< [3 * columns] by the loads alone
+  Float4* displaced = nullptr;        ///< [domain], zero between steps
+  // of selected answers
+  std::uint32_t* point_column = nullptr;  ///< [3 * points]
+  std::uint32_t* asked_column = nullptr;  ///< [contacts + forces]
+  float* asked_force = nullptr;           ///< [3 * (contacts + forces)]
+
+  [[nodiscard]] ActingLoads acting() const noexcept { return {amounts, load, amount}; }
+};
+
 /// Everything that a body keeps in its arena.
 struct Body {
   const ModelView* view = nullptr;  ///< its own
   ModelCounts counts;
   std::uint64_t least_work = 0;
   float force_limit = 0;  ///< N: forces whose magnitudes sum to no more cannot overflow the field
+  float stiffness = 1;    ///< of a step, over the model's; all that is kept is of the model's
   Lifting lifting;
   Refinement refinement;
   MirroredCouplings mirrored;
@@ -52,10 +74,12 @@ struct Body {
   float* other_column_force = nullptr;
   float* older_force = nullptr;  ///< [3 * contacts] by the level before
   Float4* force = nullptr;       ///< [domain], zero between steps
+  LoadState* loads = nullptr;    ///< null where the limits ask for none
   FactorCache cache;
   FactorJob job;  ///< the factor of a finer level
   LastAnswer last;
-  bool answered = false;  ///< `planned` is the set of the last answer
+  bool answered = false;   ///< `planned` is the set of the last answer
+  bool is_loaded = false;  ///< something but contacts acts in the step
   Glide glide;
   const std::byte* last_red_zone = nullptr;
 

@@ -12,20 +12,74 @@ bool finite(const Constraint& contact) {
   return std::isfinite(contact.value[0]) && std::isfinite(contact.value[1]) && std::isfinite(contact.value[2]);
 }
 
-Status check_contact(const Constraint& contact, std::uint32_t node_count, const NodeFacts* facts) {
-  if (contact.kind != Constraint::Kind::hold) {
-    return Status::held_unsupported;  // what `node` and `value` are follows from the kind
-  }
-  if (contact.node >= node_count) {
+bool names_node(const Constraint& constraint) { return constraint.kind != Constraint::Kind::pattern; }
+
+Status check_node(std::uint32_t node, std::uint32_t node_count, const NodeFacts* facts) {
+  if (node >= node_count) {
     return Status::held_out_of_range;
   }
-  if (!facts[contact.node].touchable) {
-    return Status::held_not_touchable;
+  return facts[node].touchable ? Status::ok : Status::held_not_touchable;
+}
+
+Status check_mask(const Mask& mask, std::uint32_t node_count, const NodeFacts* facts) {
+  for (std::size_t k = 0; k < mask.node.size(); ++k) {
+    const Status node = check_node(mask.node[k], node_count, facts);
+    if (node != Status::ok || !std::isfinite(mask.weight[k])) {
+      return node != Status::ok ? node : Status::held_not_finite;
+    }
+  }
+  return Status::ok;
+}
+
+// takes `count` of what is left; false if that is less
+bool take(std::size_t count, std::uint32_t& left) {
+  const bool enough = count <= left;
+  left -= enough ? static_cast<std::uint32_t>(count) : 0;
+  return enough;
+}
+
+// left: of the bounds
+Status check_pattern(const Constraint& constraint, std::uint32_t node_count, const NodeFacts* facts,
+                     ConstraintBounds& left) {
+  if (constraint.node >= left.masks.size()) {
+    return Status::held_out_of_range;
+  }
+  const Mask& mask = left.masks[constraint.node];
+  if (mask.node.empty() || mask.weight.size() != mask.node.size() || !take(mask.node.size(), left.forces)) {
+    return Status::held_out_of_range;
+  }
+  return finite(constraint) ? check_mask(mask, node_count, facts) : Status::held_not_finite;
+}
+
+Status check_contact(const Constraint& contact, std::uint32_t node_count, const NodeFacts* facts,
+                     ConstraintBounds& left) {
+  const Status node = check_node(contact.node, node_count, facts);
+  if (node != Status::ok) {
+    return node;
   }
   if (!finite(contact)) {
     return Status::held_not_finite;
   }
-  return facts[contact.node].marked ? Status::held_duplicate : Status::ok;
+  if (facts[contact.node].marked) {
+    return Status::held_duplicate;
+  }
+  const bool room = take(1, contact.kind == Constraint::Kind::hold ? left.contacts : left.forces);
+  return room ? Status::ok : Status::held_out_of_range;
+}
+
+// what `node` and `value` are follows from the kind
+Status check_constraint(const Constraint& constraint, std::uint32_t node_count, const NodeFacts* facts, bool forces,
+                        ConstraintBounds& left) {
+  switch (constraint.kind) {
+    case Constraint::Kind::hold:
+      return check_contact(constraint, node_count, facts, left);
+    case Constraint::Kind::force:
+      return forces ? check_contact(constraint, node_count, facts, left) : Status::held_unsupported;
+    case Constraint::Kind::pattern:
+      return forces ? check_pattern(constraint, node_count, facts, left) : Status::held_unsupported;
+    default:
+      return Status::held_unsupported;
+  }
 }
 
 }  // namespace
@@ -40,20 +94,25 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
   }
 }
 
-CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count,
-                               NodeFacts* facts) noexcept {
+CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
+                               ConstraintBounds bounds) noexcept {
   CheckedContacts result;
+  const bool forces = bounds.forces > 0;
   std::size_t checked = 0;
   for (; checked < contacts.size(); ++checked) {
-    result.status = check_contact(contacts[checked], node_count, facts);
+    result.status = check_constraint(contacts[checked], node_count, facts, forces, bounds);
     if (result.status != Status::ok) {
       result.refused = static_cast<std::uint32_t>(checked);
       break;
     }
-    facts[contacts[checked].node].marked = true;
+    if (names_node(contacts[checked])) {
+      facts[contacts[checked].node].marked = true;
+    }
   }
   for (std::size_t i = 0; i < checked; ++i) {
-    facts[contacts[i].node].marked = false;
+    if (names_node(contacts[i])) {
+      facts[contacts[i].node].marked = false;
+    }
   }
   return result;
 }

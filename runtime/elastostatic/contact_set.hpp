@@ -8,6 +8,7 @@
 #include "runtime/algebra/merge_sort.hpp"
 #include "runtime/constraint.hpp"
 #include "runtime/loop.hpp"
+#include "runtime/mask.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/prices.hpp"
 #include "runtime/wavelet/column.hpp"
@@ -35,10 +36,17 @@ constexpr std::uint64_t check_contacts_work(const Prices& prices, std::uint64_t 
   return priced(1, prices.step) + priced(contacts, prices.checked_contact);
 }
 
-/// Refuses contacts of another kind than hold, out of range, not touchable, not finite or named twice; the first at
-/// fault decides.
-CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count,
-                               NodeFacts* facts) noexcept;
+/// What a body takes in a step.
+struct ConstraintBounds {
+  std::uint32_t contacts = 0;
+  std::uint32_t forces = 0;     ///< nodes with known ones, those of masks each time; 0: the kinds are refused
+  std::span<const Mask> masks;  ///< that there are
+};
+
+/// Refuses constraints of kinds that are not known, out of range, not touchable, not finite, nodes named twice, and
+/// more than `bounds` has; the first at fault decides.
+CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
+                               ConstraintBounds bounds) noexcept;
 
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;

@@ -47,7 +47,8 @@ TEST_CASE("contacts become sorted columns; those that share one are merged and s
       contacts.push_back({nodes[i], {static_cast<float>(i), 1.0F, -2.0F}});
     }
     Memory memory(view, contacts.size());
-    REQUIRE(check_contacts(contacts, view.node_count, memory.facts.data()).status == Status::ok);
+    REQUIRE(check_contacts(contacts, view.node_count, memory.facts.data(), {view.node_count, 0, {}}).status ==
+            Status::ok);
     for (std::uint32_t c = 0; c < 4; ++c) {
       resolve_contacts(contacts, view, memory.facts.data(), {c}, memory.scratch, memory.set);
       const ContactSet& set = memory.set;
@@ -90,7 +91,8 @@ TEST_CASE("each fault of a contact has its name, and the check leaves no trace")
   const ModelView& view = model.view();
   Memory memory(view, 4);
   const auto check = [&](std::vector<Constraint> contacts) {
-    const CheckedContacts checked = check_contacts(contacts, view.node_count, memory.facts.data());
+    const CheckedContacts checked =
+        check_contacts(contacts, view.node_count, memory.facts.data(), {view.node_count, 0, {}});
     CHECK(std::all_of(memory.facts.begin(), memory.facts.end(), [](const NodeFacts& f) { return !f.marked; }));
     CHECK((checked.refused == StepReport::no_constraint) == (checked.status == Status::ok));
     return checked.status;

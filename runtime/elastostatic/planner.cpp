@@ -14,8 +14,15 @@ struct Task {
 
 // as much of the field as a plan asks for
 std::uint64_t planned_field_work(const Body& body, const Plan& plan) {
-  return field_work(body.counts, plan.counts, plan.field_levels,
-                    count_field_blocks(body.field_blocks, body.touched, plan.field_levels.details));
+  const std::uint32_t details = plan.field_levels.details;
+  const std::uint64_t of_contacts = field_work(body.counts, plan.counts, plan.field_levels,
+                                               count_field_blocks(body.field_blocks, body.touched, details));
+  if (!body.is_loaded) {
+    return of_contacts;
+  }
+  const LoadState& loads = *body.loads;
+  return of_contacts + load_field_work(body.counts, loads.counts, details,
+                                       count_field_blocks(body.field_blocks, loads.forces.touched, details));
 }
 
 // touches the coefficients of the set
@@ -27,6 +34,32 @@ void touch_set(Body& body, Plan& plan) {
   plan.work += touch_work(body.counts.prices, plan.counts);
 }
 
+// bounds what the loads take, whose coefficients are touched as those of the set are
+void count_displaced(const Body& body, Plan& plan) {
+  LoadCounts& loads = body.loads->counts;
+  loads.set_stored = count_stored(body.stored, body.touched);
+  plan.work += count_field_work(body.counts.prices, plan.counts);
+  plan.displaced = plan.counts.columns == 0 ? 0
+                                            : displace_by_loads_work(body.counts, plan.counts, loads,
+                                                                     most_coupling_blocks(plan.counts, loads));
+}
+
+// resolves the known forces and touches their coefficients
+void plan_loads(const Body& body, std::uint32_t level, Plan& plan) {
+  KnownForces& forces = body.loads->forces;
+  resolve_forces(*body.view, body.facts, level, forces);
+  clear(forces.touched);
+  touch(body.refinement, forces.column, forces.count, forces.touched);
+  SetCounts& counts = body.loads->counts.forces;
+  body.loads->counts.amounts = body.loads->amounts;
+  counts.columns = forces.count;
+  counts.coefficients = forces.touched.coefficients();
+  counts.visits = forces.touched.visits;
+  counts.stored = count_stored(body.stored, forces.touched);
+  plan.work += plan_loads_work(body.counts, {}, body.loads->counts);
+  count_displaced(body, plan);
+}
+
 // resolves the contacts, looks for the factor, and touches the coefficients unless only forces by a cached one are
 // wanted
 void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
@@ -35,12 +68,15 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
   plan.counts = {};
   plan.counts.contacts = task.contacts.size();
   plan.counts.columns = body.planned.columns;
-  plan.cached = body.cache.find(body.planned.all());
+  plan.cached = body.planned.columns > 0 ? body.cache.find(body.planned.all()) : nullptr;
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;
   plan.update = false;
-  if (task.wants_field || plan.cached == nullptr) {
+  if (task.wants_field || plan.cached == nullptr || body.is_loaded) {
     touch_set(body, plan);
+  }
+  if (body.is_loaded) {
+    plan_loads(body, level, plan);
   }
   plan.field = task.wants_field ? planned_field_work(body, plan) : 0;
   plan.fits = false;
@@ -48,7 +84,7 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
 
 // whether the answer fits, given the factor
 bool holds_answer(const Body& body, const Task& task, const Plan& plan) {
-  return plan.work + force_work(body.counts.prices, plan.counts) + plan.field <= task.budget;
+  return plan.work + plan.displaced + force_work(body.counts.prices, plan.counts) + plan.field <= task.budget;
 }
 
 // chooses how to make the factor of the set
@@ -72,13 +108,13 @@ void choose_factor(Body& body, Plan& plan) {
 
 // work of the answer that is planned, deciding included
 std::uint64_t planned_work(const Body& body, const Plan& plan) {
-  return plan.work + force_work(body.counts.prices, plan.counts) + plan.factor + plan.field;
+  return plan.work + plan.displaced + force_work(body.counts.prices, plan.counts) + plan.factor + plan.field;
 }
 
 // decides where the factor comes from; whether all fits, or else whether the level is wanted
 void plan_factor(Body& body, const Task& task, Plan& plan) {
   const bool holds = holds_answer(body, task, plan);
-  if (plan.cached == nullptr) {
+  if (plan.cached == nullptr && plan.counts.columns > 0) {
     choose_factor(body, plan);
   }
   plan.fits = planned_work(body, plan) <= task.budget;
@@ -126,10 +162,13 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   const ChangeCounts leaving{0, changes.removed, {}};
   plan.factor = plan.update ? update_factor_work(body.counts, plan.counts, leaving) : 0;
   plan.bounded = plan.update ? update_bounded_work(body.counts, plan.counts, leaving) : 0;
-  if (task.wants_field) {
+  if (task.wants_field || body.is_loaded) {
     touch_set(body, plan);
-    plan.field = planned_field_work(body, plan);
   }
+  if (body.is_loaded) {
+    count_displaced(body, plan);
+  }
+  plan.field = task.wants_field ? planned_field_work(body, plan) : 0;
   const std::uint64_t preparing = resolve_contacts_work(body.counts.prices, plan.counts.contacts) +
                                   compare_factors_work(body.counts, plan.counts.columns);
   const std::uint64_t limit = task.budget < body.counts.refining_work ? task.budget : body.counts.refining_work;
@@ -144,7 +183,9 @@ std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noex
 }
 
 std::uint64_t plan_part_work(const ModelCounts& model, const SetCounts& set) noexcept {
-  return resolve_contacts_work(model.prices, set.contacts) + (model.forces_only ? 0 : touch_work(model.prices, set));
+  const std::uint64_t loaded = model.takes_loads() ? count_field_work(model.prices, set) : 0;
+  return resolve_contacts_work(model.prices, set.contacts) + loaded +
+         (model.forces_only && !model.takes_loads() ? 0 : touch_work(model.prices, set));
 }
 
 Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t budget, bool wants_field,
@@ -165,7 +206,8 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, std::uint64_t b
   }
   while (!plan.fits && wants_field && plan.field_levels.details > 0) {
     --plan.field_levels.details;
-    plan.work += count_field_work(body.counts.prices, plan.counts);
+    plan.work += count_field_work(body.counts.prices, plan.counts) +
+                 (body.is_loaded ? count_field_work(body.counts.prices, body.loads->counts.forces) : 0);
     plan.field = planned_field_work(body, plan);
     plan.fits = planned_work(body, plan) <= budget;
   }

@@ -2,6 +2,7 @@
 
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/couplings.hpp"
+#include "runtime/compliance/selected_columns.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/factor/factor_cache.hpp"
@@ -64,6 +65,40 @@ std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept {
   return solve_work(prices, set.contacts, set.columns) + Glide::blend_work(prices, set.contacts);
 }
 
+std::uint64_t plan_loads_work(const ModelCounts& model, const SetCounts& set, const LoadCounts& loads) noexcept {
+  return priced(loads.forces.columns, model.prices.resolved_contact) + touch_work(model.prices, loads.forces) +
+         count_field_work(model.prices, set) + count_field_work(model.prices, loads.forces);
+}
+
+std::uint64_t most_coupling_blocks(const SetCounts& set, const LoadCounts& loads) noexcept {
+  return smaller(loads.set_stored + loads.forces.stored, set.coefficients * loads.forces.coefficients);
+}
+
+std::uint64_t displace_by_loads_work(const ModelCounts& model, const SetCounts& set, const LoadCounts& loads,
+                                     std::uint64_t between) noexcept {
+  const Prices& prices = model.prices;
+  const SetCounts& forces = loads.forces;
+  const bool coupled = forces.columns > 0;
+  const CoupledCounts both{set.coefficients + forces.coefficients, loads.set_stored + forces.stored};
+  return priced(set.columns + forces.columns, prices.force_column) +
+         priced(set.visits + forces.visits, force_visit_price(prices, model.prediction)) +
+         priced(loads.amounts * set.coefficients, prices.scaled_sum) +
+         (coupled ? couple_work(prices, both, between) : 0);
+}
+
+std::uint64_t ask_work(const ModelCounts& model, const SetCounts& points, const LoadCounts& loads) noexcept {
+  return touch_work(model.prices, points) + touch_work(model.prices, loads.forces);
+}
+
+std::uint64_t load_field_work(const ModelCounts& model, const LoadCounts& loads, std::uint32_t details,
+                              std::uint64_t blocks) noexcept {
+  const Prices& prices = model.prices;
+  return priced(loads.forces.columns, prices.force_column) +
+         priced(loads.forces.visits, force_visit_price(prices, model.prediction)) +
+         priced(loads.forces.coefficients, prices.coefficient) + priced(blocks, prices.summed_block) +
+         priced(loads.amounts * model.rows[details], prices.scaled_sum);
+}
+
 std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                          std::uint64_t blocks) noexcept {
   const Prices& prices = model.prices;
@@ -87,6 +122,32 @@ std::uint64_t count_field_blocks(const FieldBlocks& blocks, const Touched& touch
   return sum;
 }
 
+std::uint64_t count_stored(const std::uint32_t* stored, const Touched& touched) noexcept {
+  std::uint64_t sum = 0;
+  for (std::uint32_t q = 0; q <= touched.finest; ++q) {
+    for (std::uint32_t k = 0; k < touched.count[q]; ++k) {
+      sum += stored[touched.list[q][k]];
+    }
+  }
+  return sum;
+}
+
+SetCounts most_point_counts(const ModelView& view, std::uint64_t columns, const ReachBound& reach,
+                            const LiftingCounts* lifting) noexcept {
+  SetCounts most;
+  most.columns = most.visits = columns;
+  for (std::uint32_t q = 0; q < view.levels; ++q) {
+    const std::uint64_t touched = smaller(view.level[q].counts->domain_count, columns * reach.coefficients[q]);
+    ValueCounts<> stored;
+    count_stored(view, q, stored);
+    most.coefficients += touched;
+    most.stored += stored.largest(touched);
+    most.visits +=
+        (q > 0 ? prediction_of(view).length * touched : 0) + std::uint64_t{OddNeighbours::most} * lifting[q].records;
+  }
+  return most;
+}
+
 MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max_contacts, const ColumnBounds& bounds,
                        const LiftingCounts* lifting) noexcept {
   const std::uint64_t length = prediction_of(view).length;
@@ -106,6 +167,14 @@ MostCounts most_counts(const ModelView& view, std::uint32_t c, std::uint32_t max
     counts.visits += length * forced + smaller(listed, neighbour_visits(lifting[q], counts.columns * bounds.even[q]));
   }
   counts.slots = counts.coefficients;
+  return most;
+}
+
+MostCounts most_force_counts(const ModelView& view, std::uint32_t c, const ModelCounts& model,
+                             const ColumnBounds& bounds, const LiftingCounts* lifting) noexcept {
+  MostCounts most = most_counts(view, c, model.max_forces, bounds, lifting);
+  most.set.visits += model.max_forces - most.set.columns;
+  most.set.columns = model.max_forces;
   return most;
 }
 

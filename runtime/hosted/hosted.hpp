@@ -34,7 +34,7 @@ class Hosted {
         requirement_(Solver::required(model, limits)),
         arena_(requirement_.bytes),
         field_(std::size_t{16} * model.node_count()),
-        force_(3 * (limits.max_contacts + std::size_t{more_than_allowed})) {
+        force_(3 * (most_constraints(limits) + std::size_t{more_than_allowed})) {
     renew();
   }
 
@@ -54,10 +54,13 @@ class Hosted {
   /// One step within `work` units, with the field of all nodes if it is wanted. Uses the heap only for more than 16
   /// constraints beyond the limits.
   StepReport step(std::span<const Constraint> constraints, std::uint64_t work = any_budget, bool with_field = true) {
-    forces_ = 3 * constraints.size();
-    if (forces_ > force_.size()) force_.resize(forces_);
-    return body_.step(constraints, {work},
-                      {as_vec3(std::span(force_).first(forces_)), as_vec4(with_field ? field() : std::span<float>())});
+    return body_.step(constraints, {work}, response(constraints.size(), with_field));
+  }
+
+  /// The same under loads of the solver's.
+  template <class Loads = typename Solver::Loads>
+  StepReport step(std::span<const Constraint> constraints, const Loads& loads, std::uint64_t work, bool with_field) {
+    return body_.step(constraints, loads, {work}, response(constraints.size(), with_field));
   }
 
   [[nodiscard]] const Limits& limits() const { return limits_; }
@@ -76,6 +79,20 @@ class Hosted {
 
  private:
   static constexpr std::size_t more_than_allowed = 16;
+
+  static std::size_t most_constraints(const Limits& limits) {
+    if constexpr (requires { limits.max_forces; }) {
+      return std::size_t{limits.max_contacts} + limits.max_forces;
+    } else {
+      return limits.max_contacts;
+    }
+  }
+
+  typename Solver::Response response(std::size_t constraints, bool with_field) {
+    forces_ = 3 * constraints;
+    if (forces_ > force_.size()) force_.resize(forces_);
+    return {as_vec3(std::span(force_).first(forces_)), as_vec4(with_field ? field() : std::span<float>())};
+  }
 
   const Model* model_;
   Limits limits_;

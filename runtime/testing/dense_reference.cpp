@@ -106,7 +106,32 @@ MatrixXd DenseReference::averages(std::uint32_t q, MatrixXd x) const {
   return x;
 }
 
+MatrixXd DenseReference::load_field(const ModelView& view, std::uint32_t q) const {
+  MatrixXd x = MatrixXd::Zero(Index{3} * view.domain_count, static_cast<Index>(view.loads.size()));
+  for (std::uint32_t l = 0; l <= q; ++l) {
+    const LevelView& level = view.level[l];
+    for (std::uint32_t load = 0; load < view.loads.size(); ++load) {
+      for (Index i = 0; i < 3 * level.counts->domain_count; ++i) {
+        x(Index{3} * level.domain_begin + i, load) = double{level.load_column(load)[i]};
+      }
+    }
+  }
+  for (std::uint32_t l = 1; l < view.levels; ++l)
+    x.topRows(wavelet_.rows(l)) = inverse_step(view, l) * x.topRows(wavelet_.rows(l));
+  return x;
+}
+
 namespace {
+
+Eigen::VectorXd load_amounts(const ModelView& view, const Elastostatic::Loads& loads) {
+  Eigen::VectorXd amounts = Eigen::VectorXd::Zero(static_cast<Index>(view.loads.size()));
+  const Index accelerations = view.has_gravity() ? layout::accelerations : 0;
+  if (accelerations > 0) amounts.head<3>() << loads.gravity.x, loads.gravity.y, loads.gravity.z;
+  for (std::size_t k = 0; k < loads.pressure.size(); ++k) {
+    amounts(accelerations + static_cast<Index>(k)) = double{loads.pressure[k]};
+  }
+  return amounts;
+}
 
 // who stands for a contact
 std::uint32_t dense_column(const ModelView& view, std::uint32_t node, std::uint32_t c) {
@@ -130,51 +155,73 @@ Eigen::Matrix3d dense_block(const DenseReference& reference, std::uint32_t i, st
 }  // namespace
 
 DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t level,
-                        std::span<const Constraint> contacts) {
+                        std::span<const Constraint> constraints, const Elastostatic::Loads& loads) {
   std::map<std::uint32_t, std::vector<std::size_t>> members;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    members[dense_column(view, contacts[i].node, level)].push_back(i);
+  Eigen::VectorXd known = Eigen::VectorXd::Zero(reference.compliance(level).rows());
+  DenseAnswer answer{Eigen::VectorXd(3 * constraints.size()), Eigen::VectorXd::Zero(Index{3} * view.node_count), 1};
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const Constraint& constraint = constraints[i];
+    const Eigen::Vector3d value(constraint.value[0], constraint.value[1], constraint.value[2]);
+    const auto add_force = [&](std::uint32_t node, double part) {
+      known.segment<3>(Index{3} * column_place(dense_column(view, node, level))) += part * value;
+    };
+    if (constraint.kind == Constraint::Kind::hold) {
+      members[dense_column(view, constraint.node, level)].push_back(i);
+      continue;
+    }
+    answer.force.segment<3>(3 * static_cast<Index>(i)) = value;
+    if (constraint.kind == Constraint::Kind::force) {
+      add_force(constraint.node, 1);
+      continue;
+    }
+    const Mask& mask = loads.masks[constraint.node];
+    for (std::size_t k = 0; k < mask.node.size(); ++k) add_force(mask.node[k], double{mask.weight[k]});
   }
+  const double softness = 1 / double{loads.stiffness};
   const auto n = static_cast<Index>(members.size());
+  const Eigen::VectorXd by_loads = softness * (reference.load_field(view, view.levels - 1) * load_amounts(view, loads));
+  const Eigen::VectorXd by_known =
+      softness * (reference.compliance(level) * known) + reference.averages(level, by_loads);
   MatrixXd capacitance(3 * n, 3 * n);
-  MatrixXd used(Index{3} * view.domain_count, 3 * n);
   Eigen::VectorXd prescribed = Eigen::VectorXd::Zero(3 * n);
   Index j = 0;
   for (const auto& [column, of_column] : members) {
-    used.middleCols<3>(3 * j) = reference.field(column_level(column)).middleCols<3>(Index{3} * column_place(column));
     for (const std::size_t i : of_column) {
       for (Index r = 0; r < 3; ++r) {
-        prescribed(3 * j + r) += double{contacts[i].value[r]} / static_cast<double>(of_column.size());
+        prescribed(3 * j + r) += double{constraints[i].value[r]} / static_cast<double>(of_column.size());
       }
     }
+    prescribed.segment<3>(3 * j) -= by_known.segment<3>(Index{3} * column_place(column));
     Index i = 0;
     for (const auto& [row, of_row] : members) {
-      capacitance.block<3, 3>(3 * i++, 3 * j) = dense_block(reference, row, column);
+      capacitance.block<3, 3>(3 * i++, 3 * j) = softness * dense_block(reference, row, column);
     }
     ++j;
   }
-  const Eigen::JacobiSVD<MatrixXd> svd(capacitance);
-  const Eigen::VectorXd force = capacitance.fullPivLu().solve(prescribed);
-  const Eigen::VectorXd displacement = used * force;
-  DenseAnswer answer{Eigen::VectorXd(3 * contacts.size()), Eigen::VectorXd::Zero(Index{3} * view.node_count),
-                     svd.singularValues().maxCoeff() / svd.singularValues().minCoeff()};
+  const Eigen::VectorXd force = n > 0 ? capacitance.fullPivLu().solve(prescribed) : prescribed;
+  if (n > 0) {
+    const Eigen::JacobiSVD<MatrixXd> svd(capacitance);
+    answer.condition = svd.singularValues().maxCoeff() / svd.singularValues().minCoeff();
+  }
+  j = 0;
+  for (const auto& [column, of_column] : members) {
+    known.segment<3>(Index{3} * column_place(column)) += force.segment<3>(3 * j);
+    for (const std::size_t k : of_column) {
+      answer.force.segment<3>(3 * static_cast<Index>(k)) =
+          force.segment<3>(3 * j) / static_cast<double>(of_column.size());
+    }
+    ++j;
+  }
+  const Eigen::VectorXd displacement = softness * (reference.field(level) * known) + by_loads;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     const Index count = 3 * view.level[q].counts->domain_count;
     answer.displacement.segment(Index{3} * view.level[q].node_begin, count) =
         displacement.segment(Index{3} * view.level[q].domain_begin, count);
   }
-  j = 0;
-  for (const auto& [column, of_column] : members) {
-    for (const std::size_t k : of_column) {
-      answer.force.segment<3>(3 * static_cast<Index>(k)) =
-          force.segment<3>(3 * j) / static_cast<double>(of_column.size());
-      if (column_level(column) + 1 == view.levels) {
-        for (Index r = 0; r < 3; ++r) {
-          answer.displacement(Index{3} * contacts[k].node + r) = contacts[k].value[r];
-        }
-      }
+  for (const Constraint& constraint : constraints) {
+    for (Index r = 0; r < 3 && level + 1 == view.levels && constraint.kind == Constraint::Kind::hold; ++r) {
+      answer.displacement(Index{3} * constraint.node + r) = constraint.value[r];
     }
-    ++j;
   }
   return answer;
 }

@@ -29,6 +29,8 @@ class DenseReference {
   [[nodiscard]] const Eigen::MatrixXd& finest_compliance(std::uint32_t c) const { return finest_compliance_[c]; }
   /// Displacement of the domain per force of level c: N domain by N |K(c)|.
   [[nodiscard]] const Eigen::MatrixXd& field(std::uint32_t c) const { return field_[c]; }
+  /// Displacement of the domain per unit of each load, with details up to level q: 3 domain by loads.
+  [[nodiscard]] Eigen::MatrixXd load_field(const ModelView& view, std::uint32_t q) const;
   /// The averages of level q of displacements of the domain.
   [[nodiscard]] Eigen::MatrixXd averages(std::uint32_t q, Eigen::MatrixXd x) const;
 
@@ -46,8 +48,8 @@ struct DenseAnswer {
 };
 
 /// The capacitance matrix algorithm of an elastostatic model on dense matrices in double precision with a complete
-/// factorisation.
+/// factorisation; constraints of all kinds that Elastostatic knows, and loads of the model.
 [[nodiscard]] DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, std::uint32_t level,
-                                      std::span<const Constraint> contacts);
+                                      std::span<const Constraint> constraints, const Elastostatic::Loads& loads = {});
 
 }  // namespace greenloop

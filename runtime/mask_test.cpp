@@ -1,0 +1,111 @@
+#include "runtime/mask.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "runtime/surface.hpp"
+#include "runtime/testing/test_body.hpp"
+#include "runtime/wavelet/domain.hpp"
+
+namespace greenloop {
+namespace {
+
+// a model, the areas of its nodes and room for a mask
+struct Bench {
+  explicit Bench(const SyntheticOptions& options) : model(options), area(model.view().node_count) {
+    const std::uint32_t finest = model.view().levels - 1;
+    AlignedBytes memory(Surface::required(model.model(), finest).bytes);
+    const auto created = Surface::create(model.model(), finest, {memory.data(), memory.size()});
+    REQUIRE(created);
+    REQUIRE(created.surface.areas(finest, {}, area));
+    node.resize(area.size());
+    weight.resize(area.size());
+  }
+  Mask make(const MeshPoint& point, float radius) {
+    return make_mask(model.model(), area, point, radius, node, weight);
+  }
+  [[nodiscard]] double distance(std::uint32_t a, std::uint32_t b) const {
+    const Vec3 x = model.model().position(a), y = model.model().position(b);
+    return std::hypot(double{x.x} - y.x, double{x.y} - y.y, double{x.z} - y.z);
+  }
+  TestModel model;
+  std::vector<float> area;
+  std::vector<std::uint32_t> node;
+  std::vector<float> weight;
+};
+
+double sum(std::span<const float> weight) { return std::accumulate(weight.begin(), weight.end(), 0.0); }
+
+// by its definition, [nodes]
+std::vector<double> vertex_mask(const Bench& bench, std::uint32_t centre, double radius) {
+  std::vector<double> part(bench.area.size());
+  for (const std::uint32_t node : bench.model.touchable()) {
+    part[node] = std::max(0.0, 1 - bench.distance(node, centre) / radius) * bench.area[node];
+  }
+  const double all = std::accumulate(part.begin(), part.end(), 0.0);
+  for (double& of_node : part) of_node /= all;
+  return part;
+}
+
+TEST_CASE("a mask is the linear profile times areas, normalised, on touchable nodes alone") {
+  Bench bench({.levels = 5});
+  const std::uint32_t centre = bench.model.touchable()[40];
+  const double radius = 0.4 * bench.distance(centre, bench.model.touchable()[0]);
+  const Mask mask = bench.make(at_node(centre), static_cast<float>(radius));
+  REQUIRE(mask.node.size() > 6);
+  const std::vector<double> exact = vertex_mask(bench, centre, radius);
+  for (std::size_t k = 0; k < mask.node.size(); ++k) {
+    CHECK(mask.weight[k] == doctest::Approx(exact[mask.node[k]]).epsilon(1e-5));
+  }
+  CHECK(sum(mask.weight) == doctest::Approx(1).epsilon(1e-6));
+}
+
+TEST_CASE("the mask of a point is the mean of its corners' by their weights") {
+  Bench bench({.levels = 4});
+  const std::vector<std::uint32_t> nodes = bench.model.touchable();
+  const MeshPoint point{{nodes[3], nodes[17], nodes[29]}, {0.5F, 0.3F, 0.2F}};
+  const double radius = 1.1 * bench.distance(nodes[3], nodes[17]);
+  const Mask mask = bench.make(point, static_cast<float>(radius));
+  std::vector<double> exact(bench.area.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::vector<double> corner = vertex_mask(bench, point.node[k], radius);
+    for (std::size_t i = 0; i < exact.size(); ++i) exact[i] += double{point.weight[k]} * corner[i];
+  }
+  for (std::size_t k = 0; k < mask.node.size(); ++k) {
+    CHECK(mask.weight[k] == doctest::Approx(exact[mask.node[k]]).epsilon(1e-5));
+    exact[mask.node[k]] = 0;
+  }
+  CHECK(std::accumulate(exact.begin(), exact.end(), 0.0) == 0);
+}
+
+TEST_CASE("below the node spacing a mask is its node; corners that are not touchable take their share away") {
+  Bench bench({.levels = 4});
+  const std::uint32_t node = bench.model.touchable()[5];
+  const Mask single = bench.make(at_node(node), 1e-6F);
+  REQUIRE(single.node.size() == 1);
+  CHECK(single.node[0] == node);
+  CHECK(single.weight[0] == 1);
+  std::uint32_t fixed = 0;
+  while (bench.model.model().is_touchable(fixed)) ++fixed;
+  CHECK(sum(bench.make({{node, fixed, node}, {0.5F, 0.25F, 0.25F}}, 0.01F).weight) == doctest::Approx(0.75));
+  CHECK(bench.make(at_node(fixed), 0.01F).node.empty());
+}
+
+TEST_CASE("what is no mask is an empty one") {
+  Bench bench({.levels = 3});
+  const std::uint32_t node = bench.model.touchable()[0];
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  for (const float radius : {0.0F, -1.0F, nan, infinity}) CHECK(bench.make(at_node(node), radius).node.empty());
+  CHECK(bench.make(at_node(bench.model.view().node_count), 1).node.empty());
+  CHECK(bench.make({{node, node, node}, {nan, 0, 0}}, 1).node.empty());
+  CHECK(make_mask(bench.model.model(), bench.area, at_node(node), 1, std::span(bench.node).first(3), bench.weight)
+            .node.empty());
+  CHECK_FALSE(bench.make(at_node(node), 1).node.empty());
+}
+
+}  // namespace
+}  // namespace greenloop
