@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -16,6 +18,8 @@
 #include "offline/compress/wavelet/surface_wavelet.hpp"
 #include "offline/pipeline/build_model_file.hpp"
 #include "offline/volume/testing/shapes.hpp"
+#include "runtime/elastostatic.hpp"
+#include "runtime/hosted/hosted.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -65,7 +69,7 @@ std::vector<Moved> moved_nodes(const ModelView& view, std::uint32_t load) {
     const LevelView& level = view.level[q];
     x.insert(x.end(), level.load_column(load), level.load_column(load) + std::size_t{3} * level.counts->domain_count);
     for (std::uint32_t i = 0; i < level.counts->domain_count; ++i) {
-      nodes.push_back({Eigen::Map<const Eigen::Vector3f>(level.nodes[i].position).cast<double>(), {}});
+      nodes.push_back({Eigen::Map<const Eigen::Vector3f>(level.nodes[i].position).cast<double>(), Vector3d::Zero()});
     }
   }
   for (std::size_t level = 1; level <= wavelet.finest(); ++level) wavelet.merge(level, 3, x.data());
@@ -109,6 +113,55 @@ TEST_CASE("a block under its own weight, and under a pressure on its top, shorte
   }
   MESSAGE("deviation from the pressed column: " << 100 * worst_pressed / (pascals * height / young) << " %");
   CHECK(worst_pressed < 0.02 * pascals * height / young);
+}
+
+// what finite elements say of gravity, m, three numbers a domain node
+Eigen::VectorXd solved_gravity(const GreenStore& store, const Vector3d& gravity) {
+  return density * store.read_body_force() * gravity;
+}
+
+TEST_CASE("a body that is tilted in the loop bends as finite elements say, and weighs on what holds it") {
+  Block block;
+  const ModelFile file = open_model_file(block.build("block.gloop", "[[loads]]\ngravity = true\n"));
+  const Model model = Model::open(file.bytes.span()).model;
+  const GreenStore store = GreenStore::open(block.store(), GreenStore::Access::kReadOnly);
+  const std::vector<int>& nodes = store.contents().row_node;
+  const auto limits = Elastostatic::intended(model).limits;
+  REQUIRE(limits.model_loads);
+  Hosted<Elastostatic> body(model, limits);
+  double largest = 0;
+  for (int step = 0; step <= 24; ++step) {  // through half a turn about an oblique axis
+    const Vector3d gravity =
+        Eigen::AngleAxisd(M_PI * step / 24, Vector3d(1, 2, 0).normalized()) * Vector3d(0, 0, -9.81);
+    const Elastostatic::Loads loads{
+        .gravity = {static_cast<float>(gravity.x()), static_cast<float>(gravity.y()), static_cast<float>(gravity.z())}};
+    REQUIRE(body.step({}, loads, any_budget, true).status == Status::ok);
+    const Eigen::VectorXd expected = solved_gravity(store, gravity);
+    for (std::size_t r = 0; r < nodes.size(); ++r) {
+      const Eigen::Vector3f found = Eigen::Map<const Eigen::Vector3f>(body.field().data() + std::size_t{4} * nodes[r]);
+      const Vector3d error = found.cast<double>() - expected.segment<3>(3 * static_cast<Eigen::Index>(r));
+      largest = std::max(largest, error.norm() / expected.cwiseAbs().maxCoeff());
+    }
+  }
+  MESSAGE("largest deviation of a field from finite elements, of its largest component: " << largest);
+  CHECK(largest < 2e-6);
+
+  // a finger that stays where the top was while the block lies on its side
+  const Vector3d sideways(9.81, 0, 0);
+  const auto top = std::max_element(nodes.begin(), nodes.end(), [&](int a, int b) {
+    return store.contents().surface.positions[a].z() < store.contents().surface.positions[b].z();
+  });
+  const auto row = static_cast<int>(top - nodes.begin());
+  const std::vector<Constraint> finger = {{static_cast<std::uint32_t>(*top), {}}};
+  const Elastostatic::Loads loads{.gravity = {9.81F, 0, 0}};
+  REQUIRE(body.step(finger, loads, any_budget, true).status == Status::ok);
+  const Eigen::Matrix3d compliance = store.read_block(row, 1, row, 1);
+  const Vector3d expected = -compliance.inverse() * solved_gravity(store, sideways).segment<3>(Eigen::Index{3} * row);
+  const Vector3d force(body.force()[0], body.force()[1], body.force()[2]);
+  MESSAGE("force of the finger, against finite elements: " << 100 * (force - expected).norm() / expected.norm()
+                                                           << " %");
+  CHECK((force - expected).norm() < 0.05 * expected.norm());
+  CHECK(force.x() < 0);
 }
 
 TEST_CASE("loads that are asked for later solve no column again, and leave the couplings as they are") {
