@@ -395,7 +395,7 @@ Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
     return {};
   }
   const layout::Info& info = *model.view().info;
-  return {.limits = {.max_contacts = info.max_contacts},
+  return {.limits = {.max_contacts = info.max_contacts, .model_loads = info.loads > 0},
           .budget = {info.step_work},
           .rate = info.rate,
           .share = info.share > 0 ? info.share : 1};
