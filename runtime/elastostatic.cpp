@@ -28,17 +28,12 @@ std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& r
   return layout::none;
 }
 
-Status check_request(const Body& body, std::size_t constraints, const Elastostatic::Loads& loads, Budget budget,
-                     const Elastostatic::Response& response) {
+Status check_request(const Body& body, std::size_t constraints, Budget budget, const Elastostatic::Response& response) {
   if (budget.work < body.least_work) {
     return Status::held_over_budget;
   }
   if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
     return Status::held_out_of_range;
-  }
-  const Status acting = check_loads(body, loads);
-  if (acting != Status::ok) {
-    return acting;
   }
   const bool field_fits = response.displacement.empty() ||
                           (finest_displaced(body, response) != layout::none &&
@@ -371,73 +366,71 @@ void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_
   }
 }
 
-// what comes of checking a step's inputs, the units that took, and the contacts among them
+// what comes of checking a step's constraints and loads, the units that took, and the contacts among them
 struct Accepted {
-  Status status = Status::ok;
-  std::uint32_t refused = StepReport::no_constraint;
+  CheckedContacts checked;
   std::uint64_t work = 0;
   Contacts contacts;
 };
 
-// apart, so that it does not stand on the stack of an answer
-[[gnu::noinline]] void accept_inputs(Body& body, std::span<const Constraint> constraints,
-                                     const Elastostatic::Loads& loads, Budget budget,
-                                     const Elastostatic::Response& response, Accepted& accepted) {
-  accepted.status = check_request(body, constraints.size(), loads, budget, response);
-  if (accepted.status != Status::ok) {
+// contacts alone; apart, so that it does not stand on the stack of an answer
+[[gnu::noinline]] void accept_contacts(Body& body, std::span<const Constraint> contacts, std::span<Vec3> force,
+                                       Accepted& accepted) {
+  body.stiffness = 1;
+  body.is_loaded = false;
+  accepted.work = check_contacts_work(body.counts.prices, contacts.size());
+  accepted.checked = check_contacts(contacts, body.view->node_count, body.facts, {body.counts.max_contacts, 0, {}});
+  accepted.contacts = {contacts, contacts, as_floats(force).data()};
+}
+
+// and whatever else acts
+[[gnu::noinline]] void accept_loaded(Body& body, std::span<const Constraint> constraints,
+                                     const Elastostatic::Loads& loads, std::span<Vec3> force, Accepted& accepted) {
+  const Status acting = check_loads(body, loads);
+  if (acting != Status::ok) {
+    accepted.checked.status = acting;
     return;
   }
-  const Prices& prices = body.counts.prices;
   const std::uint32_t most = body.counts.max_forces;
   const std::uint64_t forces = most > 0 ? count_forces(constraints, loads.masks) : 0;
-  accepted.work = check_contacts_work(prices, constraints.size() + (forces < most ? forces : most));
-  const CheckedContacts checked =
+  accepted.work = check_loaded_work(body.counts.prices, constraints.size(), forces < most ? forces : most);
+  accepted.checked =
       check_contacts(constraints, body.view->node_count, body.facts, {body.counts.max_contacts, most, loads.masks});
-  accepted.status = checked.status;
-  accepted.refused = checked.refused;
-  if (checked.status != Status::ok) {
-    return;
-  }
-  accepted.work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
-  if (!take_loads(body, constraints, loads, response.force, accepted.contacts)) {
-    accepted.status = Status::held_overflow;
+  if (accepted.checked.status == Status::ok && !take_loads(body, constraints, loads, force, accepted.contacts)) {
+    accepted.checked.status = Status::held_overflow;
   }
 }
 
-// the same of unilateral contacts, whose nodes are the contacts
-[[gnu::noinline]] void accept_inputs(Body& body, std::span<const UnilateralContact> surfaces,
-                                     const Elastostatic::Loads& loads, Budget budget,
-                                     const Elastostatic::UnilateralResponse& response, ContactAnswer& found,
-                                     Accepted& accepted) {
-  accepted.status = check_request(body, surfaces.size(), loads, budget, response);
+// unilateral contacts, whose nodes are the contacts, and whatever else acts
+[[gnu::noinline]] void accept_surfaces(Body& body, std::span<const UnilateralContact> surfaces,
+                                       const Elastostatic::Loads& loads,
+                                       const Elastostatic::UnilateralResponse& response, ContactAnswer& found,
+                                       Accepted& accepted) {
   const std::uint32_t most = body.counts.max_contacts;
   const auto fits = [&](std::size_t size) { return size == 0 || size == surfaces.size(); };
-  if (accepted.status == Status::ok) {
-    accepted.status = !fits(response.state.size()) || !fits(response.gap.size()) ? Status::held_response_size
-                      : surfaces.size() > most                                   ? Status::held_out_of_range
-                      : body.counts.iterations == 0 && !surfaces.empty()         ? Status::held_unsupported
-                                                                                 : Status::ok;
-  }
-  if (accepted.status != Status::ok) {
+  CheckedContacts& checked = accepted.checked;
+  checked.status = !fits(response.state.size()) || !fits(response.gap.size()) ? Status::held_response_size
+                   : surfaces.size() > most                                   ? Status::held_out_of_range
+                   : body.counts.iterations == 0 && !surfaces.empty()         ? Status::held_unsupported
+                                                                              : check_loads(body, loads);
+  if (checked.status != Status::ok) {
     return;
   }
   const Prices& prices = body.counts.prices;
   UnilateralScratch& scratch = body.unilateral;
   std::uint32_t nodes = 0;
-  CheckedContacts checked = list_unilateral(surfaces, body.view->node_count, most, scratch, nodes);
+  checked = list_unilateral(surfaces, body.view->node_count, most, scratch, nodes);
   const std::span<const Constraint> holds{scratch.hold, nodes};
   if (checked.status == Status::ok) {
     checked = check_contacts(holds, body.view->node_count, body.facts, {most, 0, {}});
     checked.refused = checked.status == Status::ok ? checked.refused : contact_of(scratch, checked.refused);
   }
-  accepted.work = list_unilateral_work(prices, surfaces.size(), most) + check_contacts_work(prices, most);
-  accepted.status = checked.status;
-  accepted.refused = checked.refused;
+  accepted.work = list_unilateral_work(prices, surfaces.size(), most) + check_loaded_work(prices, most, 0);
   if (checked.status != Status::ok) {
     return;
   }
   if (!take_loads(body, holds, loads, {}, accepted.contacts)) {
-    accepted.status = Status::held_overflow;
+    checked.status = Status::held_overflow;
     return;
   }
   Contacts& contacts = accepted.contacts;
@@ -449,12 +442,12 @@ struct Accepted {
   contacts.corner_count = surfaces.empty() ? 0 : scratch.begin[surfaces.size()];
 }
 
-// a step whose inputs are accepted
+// a step whose inputs are accepted, or not
 void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elastostatic::Response& response,
                Elastostatic::StepReport& report) {
-  report.refused = accepted.refused;
-  if (accepted.status != Status::ok) {
-    return hold(accepted.status, accepted.work, report);
+  report.refused = accepted.checked.refused;
+  if (accepted.checked.status != Status::ok) {
+    return hold(accepted.checked.status, accepted.work, report);
   }
   const Contacts& contacts = accepted.contacts;
   std::uint64_t work = accepted.work;
@@ -485,11 +478,23 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   answer(body, contacts, plan, work, budget.work, response, report);
 }
 
-void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads, Budget budget,
+// loads: null where nothing but contacts acts
+void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads* loads, Budget budget,
                const Elastostatic::Response& response, Elastostatic::StepReport& report) {
   body.answered = false;
+  const Status request = check_request(body, constraints.size(), budget, response);
+  if (request != Status::ok) {
+    return hold(request, 0, report);
+  }
+  if (constraints.empty() && loads == nullptr) {
+    return release(body, response, check_contacts_work(body.counts.prices, 0), report);
+  }
   Accepted accepted;
-  accept_inputs(body, constraints, loads, budget, response, accepted);
+  if (loads == nullptr) {
+    accept_contacts(body, constraints, response.force, accepted);
+  } else {
+    accept_loaded(body, constraints, *loads, response.force, accepted);
+  }
   carry_out(body, accepted, budget, response, report);
 }
 
@@ -500,7 +505,7 @@ Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
     return {};
   }
   const layout::Info& info = *model.view().info;
-  return {.limits = {.max_contacts = info.max_contacts},
+  return {.limits = {.max_contacts = info.max_contacts, .model_loads = info.loads > 0},
           .budget = {info.step_work},
           .rate = info.rate,
           .share = info.share > 0 ? info.share : 1};
@@ -556,9 +561,9 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
-  StepReport report;
   static constexpr Loads none{};
-  take_step(*body_, contacts, none, budget, response, report);
+  StepReport report;
+  take_step(*body_, contacts, body_->loads == nullptr ? nullptr : &none, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
@@ -566,7 +571,7 @@ Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
                                             const Response& response) noexcept {
   StepReport report;
-  take_step(*body_, constraints, loads, budget, response, report);
+  take_step(*body_, constraints, &loads, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
@@ -575,10 +580,13 @@ Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralCont
                                                   Budget budget, const UnilateralResponse& response) noexcept {
   Body& body = *body_;
   body.answered = false;
+  UnilateralReport report;
   ContactAnswer found;
   Accepted accepted;
-  accept_inputs(body, contacts, loads, budget, response, found, accepted);
-  UnilateralReport report;
+  accepted.checked.status = check_request(body, contacts.size(), budget, response);
+  if (accepted.checked.status == Status::ok) {
+    accept_surfaces(body, contacts, loads, response, found, accepted);
+  }
   carry_out(body, accepted, budget, response, report);
   report.residual = found.residual;
   report.iterations = found.iterations;
