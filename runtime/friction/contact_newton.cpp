@@ -127,18 +127,6 @@ void ContactNewton::carve(Arena& arena, std::uint32_t candidates) noexcept {
   }
 }
 
-// the first vector; returns the residual's norm
-float ContactNewton::freeze(const ContactPoints& points, float weight, Float4* force, Float4* displacement) noexcept {
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    frozen_[i] = frozen(points.contact[i], weight * points.contact[i].scale, displacement[i], force[i]);
-  }
-  displace(points, force, displacement);
-  for (std::uint32_t i = 0; i < points.count; ++i) {
-    vector_[0][i] = -law(points.contact[i], frozen_[i], displacement[i], force[i]);
-  }
-  return std::sqrt(dot(vector_[0], vector_[0], points.count));
-}
-
 // vector k + 1 of the subspace, before it has unit length: returns that
 float ContactNewton::expand(const ContactPoints& points, std::uint32_t k, float* products) noexcept {
   Float4* const next = vector_[k + 1];
@@ -158,15 +146,31 @@ float ContactNewton::expand(const ContactPoints& points, std::uint32_t k, float*
   return products[k + 1] = std::sqrt(dot(next, next, points.count));
 }
 
-void ContactNewton::add_solution(const ContactPoints& points, std::uint32_t vectors, const float* weight,
-                                 Float4* force) noexcept {
+// of the frozen system whose right side is the first vector
+std::uint32_t ContactNewton::add_solution(const ContactPoints& points, const Terms& terms, Float4* force) noexcept {
+  Triangle triangle;
+  const float begun = std::sqrt(dot(vector_[0], vector_[0], points.count));
+  triangle.right[0] = begun;
+  std::uint32_t used = 0;
+  for (float length = begun; used < terms.vectors && length > 0;) {
+    const float inverse = 1 / length;
+    for (std::uint32_t i = 0; i < points.count; ++i) {
+      vector_[used][i] *= splat(inverse);
+    }
+    length = expand(points, used, triangle.column[used]);
+    if (!triangle.rotate(used)) break;
+    ++used;
+    if (std::fabs(triangle.right[used]) <= terms.reduction * begun) break;
+  }
+  triangle.solve(used);
   for (std::uint32_t i = 0; i < points.count; ++i) {
     Float4 value{};
-    for (std::uint32_t k = 0; k < vectors; ++k) {
-      value += splat(weight[k]) * vector_[k][i];
+    for (std::uint32_t k = 0; k < used; ++k) {
+      value += splat(triangle.right[k]) * vector_[k][i];
     }
     force[i] += local_solution(points.contact[i], frozen_[i], points.compliance.at(i, i), value);
   }
+  return used;
 }
 
 // square of the natural map at a part of the way from the start
@@ -204,26 +208,36 @@ std::uint32_t ContactNewton::step(const ContactPoints& points, const Terms& term
   for (std::uint32_t i = 0; i < points.count; ++i) {
     start_force_[i] = force[i];
     start_displacement_[i] = displacement[i];
+    frozen_[i] = frozen(points.contact[i], terms.weight * points.contact[i].scale, displacement[i], force[i]);
   }
-  Triangle triangle;
-  const float begun = freeze(points, terms.weight, force, displacement);
-  triangle.right[0] = begun;
-  std::uint32_t used = 0;
-  for (float length = begun; used < terms.vectors && length > 0;) {
-    const float inverse = 1 / length;
-    for (std::uint32_t i = 0; i < points.count; ++i) {
-      vector_[used][i] *= splat(inverse);
-    }
-    length = expand(points, used, triangle.column[used]);
-    if (!triangle.rotate(used)) break;
-    ++used;
-    if (std::fabs(triangle.right[used]) <= terms.reduction * begun) break;
+  displace(points, force, displacement);
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    vector_[0][i] = -law(points.contact[i], frozen_[i], displacement[i], force[i]);
   }
-  triangle.solve(used);
-  add_solution(points, used, triangle.right, force);
+  const std::uint32_t used = add_solution(points, terms, force);
   displace(points, force, displacement);
   search(points, force, displacement);
   return used;
+}
+
+void ContactNewton::linearise(const ContactPoints& points, const Float4* force, const Float4* displacement) noexcept {
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    Float4 as_frozen = force[i];
+    frozen_[i] = frozen(points.contact[i], points.contact[i].scale, displacement[i], as_frozen);
+  }
+}
+
+void ContactNewton::respond(const ContactPoints& points, const Terms& terms, Float4* displacement,
+                            Float4* force) noexcept {
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    force[i] = Float4{};
+    vector_[0][i] = -law(points.contact[i], frozen_[i], displacement[i], force[i]);
+  }
+  static_cast<void>(add_solution(points, terms, force));
+  multiply(points.compliance, points.count, force, direction_);
+  for (std::uint32_t i = 0; i < points.count; ++i) {
+    displacement[i] += direction_[i];
+  }
 }
 
 }  // namespace greenloop

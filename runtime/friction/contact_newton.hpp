@@ -51,10 +51,16 @@ class ContactNewton {
   /// three numbers a candidate.
   std::uint32_t step(const ContactPoints& points, const Terms& terms, Float4* force, Float4* displacement) noexcept;
 
+  /// Freezes the contacts as they are at a solution. For the loop, linear in the contacts.
+  void linearise(const ContactPoints& points, const Float4* force, const Float4* displacement) noexcept;
+
+  /// After `linearise`: what forces and displacements change by when gaps do, [count] each, while no contact changes
+  /// its state; displacement: the gaps' change, becomes that of the displacements. For the loop; work: as of `step`.
+  void respond(const ContactPoints& points, const Terms& terms, Float4* displacement, Float4* force) noexcept;
+
  private:
-  [[nodiscard]] float freeze(const ContactPoints& points, float weight, Float4* force, Float4* displacement) noexcept;
+  [[nodiscard]] std::uint32_t add_solution(const ContactPoints& points, const Terms& terms, Float4* force) noexcept;
   [[nodiscard]] float expand(const ContactPoints& points, std::uint32_t k, float* products) noexcept;
-  void add_solution(const ContactPoints& points, std::uint32_t vectors, const float* weight, Float4* force) noexcept;
   [[nodiscard]] float squared_residual(const ContactPoints& points, float part, const Float4* force,
                                        const Float4* displacement) const noexcept;
   void search(const ContactPoints& points, Float4* force, Float4* displacement) noexcept;

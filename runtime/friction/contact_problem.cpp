@@ -134,6 +134,11 @@ void ContactProblem::iterate(const ContactAccuracy& accuracy, std::uint64_t work
            answer.work + sweep_work(points_.count) <= work);
 }
 
+void ContactProblem::respond(Float4* displacement, Float4* force) noexcept {
+  const ContactNewton::Terms terms{.weight = 1, .reduction = 1e-3F, .vectors = ContactNewton::most_vectors};
+  newton_.respond(points_, terms, displacement, force);
+}
+
 ContactAnswer ContactProblem::solve(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
                                     const ContactAccuracy& accuracy, std::uint64_t work, std::span<Vec4> force,
                                     std::span<ContactState> states, std::span<Vec4> displacements) noexcept {

@@ -72,6 +72,30 @@ class ContactProblem {
                       const ContactAccuracy& accuracy, std::uint64_t work, std::span<Vec4> force,
                       std::span<ContactState> states, std::span<Vec4> displacements) noexcept;
 
+  /// A candidate of the problem that was solved last.
+  struct Contact {
+    const FrictionContact* law;
+    ContactState state;
+    Float4 force;         ///< N
+    Float4 displacement;  ///< u, m
+  };
+  [[nodiscard]] Contact contact(std::size_t i) const noexcept {
+    return {contact_ + i, contact_state(contact_[i], best_force_[i]), best_force_[i], best_displacement_[i]};
+  }
+
+  /// Work units of `respond`, at most.
+  static constexpr std::uint64_t response_work(std::uint64_t candidates) {
+    return newton_work(candidates, ContactNewton::most_vectors);
+  }
+
+  /// After `solve` with a valid answer: freezes its contacts in their states for `respond`, until the next `solve`. For
+  /// the loop, linear in the candidates.
+  void linearise() noexcept { newton_.linearise(points_, best_force_, best_displacement_); }
+
+  /// What forces change by when gaps do, to a thousandth. displacement: [candidates] m, the gaps' change, becomes that
+  /// of the displacements. force: [candidates] N. For the loop.
+  void respond(Float4* displacement, Float4* force) noexcept;
+
  private:
   static constexpr std::uint32_t most_steps = 8;  ///< of Newton between sweeps
 

@@ -111,7 +111,7 @@ TEST_CASE("a square punch has King's stiffness, to first order in the cells") {
 // a sphere pressed, then dragged along x; poisson 0.5: normal and tangential problems do not meet
 TEST_CASE("a sphere that is pressed and dragged sticks and slips as Cattaneo and Mindlin found") {
   const HalfSpacePatch patch = patch_of(16);
-  constexpr double mu = 0.4;
+  constexpr float mu = 0.4F;
   ContactBench bench(patch);
   for (ContactCandidate& candidate : bench.candidates) candidate.friction = mu;
   MovingTool tool(bench);
@@ -261,7 +261,8 @@ TEST_CASE("of points that move alike the forces add up to that of one") {
   const MatrixXd a = single.bench.compliance();
   RandomProblem twice(5, 20, 0, 0.3);
   for (std::uint32_t j = 0; j < 20; ++j) {
-    for (std::uint32_t i = 0; i <= j; ++i) twice.bench.set_block(i, j, a.block<3, 3>(i / 2 * 3, j / 2 * 3));
+    for (std::uint32_t i = 0; i <= j; ++i)
+      twice.bench.set_block(i, j, a.block<3, 3>(Index{3} * (i / 2), Index{3} * (j / 2)));
     twice.bench.candidates[j] = single.bench.candidates[j / 2];
   }
   REQUIRE(single.bench.solve({.residual = 1e-5F}).residual <= 1e-5F);
@@ -370,6 +371,7 @@ TEST_CASE("a sphere that slides over scattered points at one depth is pressed ev
     const double step = patch.cell / 40;
     const Vector2d at((k - 60) * step, 0);
     std::vector<double> gap;
+    gap.reserve(place.size());
     for (const Vector2d& p : place) gap.push_back((p - at).squaredNorm() / (2 * sphere_radius) - 2e-5);
     CHECK(tool.step(gap, Vector3d(k == 0 ? 0 : step, 0, 0)).residual <= 1e-3F);
     const double force = bench.total().norm();

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/memory/arena.hpp"
-
 namespace greenloop {
 namespace {
 
@@ -60,15 +58,8 @@ ContactBench::ContactBench(std::uint32_t candidate_count)
       force(candidate_count),
       displacement(candidate_count),
       state(candidate_count),
-      block_(ContactCompliance::size(candidate_count)) {
-  Arena counting;
-  problem_.carve(counting, candidate_count);
-  memory_.resize(counting.bytes() / sizeof(Float4) + 4);
-  const auto begin = reinterpret_cast<std::uintptr_t>(memory_.data());
-  const std::uintptr_t aligned = (begin + Arena::alignment - 1) / Arena::alignment * Arena::alignment;
-  Arena arena(reinterpret_cast<std::byte*>(memory_.data()) + (aligned - begin));
-  problem_.carve(arena, candidate_count);
-}
+      block_(ContactCompliance::size(candidate_count)),
+      problem_(candidate_count) {}
 
 ContactBench::ContactBench(const HalfSpacePatch& patch) : ContactBench(patch.count()) {
   for (std::uint32_t j = 0; j < patch.count(); ++j) {
@@ -102,7 +93,7 @@ Eigen::MatrixXd ContactBench::compliance() const {
 }
 
 ContactAnswer ContactBench::solve(const ContactAccuracy& accuracy, std::uint64_t work) {
-  return problem_.solve(candidates, {block_.data()}, accuracy, work, force, state, displacement);
+  return problem_->solve(candidates, {block_.data()}, accuracy, work, force, state, displacement);
 }
 
 Eigen::Vector3d ContactBench::total() const {

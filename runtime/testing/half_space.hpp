@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/friction/contact_problem.hpp"
+#include "runtime/testing/carved.hpp"
 
 namespace greenloop {
 
@@ -37,6 +38,7 @@ class ContactBench {
 
   ContactAnswer solve(const ContactAccuracy& accuracy = {}, std::uint64_t work = ~std::uint64_t{0});
   [[nodiscard]] Eigen::Vector3d total() const;
+  [[nodiscard]] ContactProblem& problem() { return *problem_; }
 
   std::vector<ContactCandidate> candidates;
   std::vector<Vec4> force;
@@ -45,8 +47,7 @@ class ContactBench {
 
  private:
   std::vector<Block<3>> block_;
-  std::vector<Float4> memory_;
-  ContactProblem problem_;
+  Carved<ContactProblem> problem_;
 };
 
 /// A tool that is moved without turning, in steps: slips are those of a step.
