@@ -11,6 +11,7 @@
 #include "offline/report/body_figures.hpp"
 #include "offline/report/build_record.hpp"
 #include "offline/report/level_frontiers.hpp"
+#include "offline/report/load_figures.hpp"
 #include "offline/report/loop_figures.hpp"
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
@@ -126,6 +127,13 @@ std::vector<Figure> body_pictures(const Material& material) {
   return {body_figure(finest, drawn, frame, cycle), mesh_figure(material.surface, frame)};
 }
 
+void add_loads(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  if (material.model.loads.empty()) return;
+  page.begin_fold("What its loads do");
+  add_figure(loads_figure(material.model, material.surface.level(material.surface.mesh.finest_level())), page, figures);
+  page.end_fold();
+}
+
 void add_run(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
   if (!material.trace) return;
   page.heading("The run");
@@ -216,6 +224,7 @@ Report make_report(const ModelFile& model, const ReportInputs& inputs) {
   add_figures(body_pictures(material), page, report.figures);
   add_run(material, page, report.figures);
   page.heading("Details");
+  add_loads(material, page, report.figures);
   add_errors(material, page, report.figures);
   add_frontiers(material, page, report.figures);
   add_size(material, page, report.figures);
