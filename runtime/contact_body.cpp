@@ -262,9 +262,23 @@ void write_answer(TouchedBody& body, std::uint32_t count, std::span<const Contac
   body.grips.turn();
 }
 
-std::uint64_t touching_work(const TouchedBody& body, std::span<const Tool> tools) {
+// copies of the tools, without what a solver needs besides
+std::span<const Tool> put_tools(std::span<const ContactBody::ToolInput> tools, TouchedBody& body) {
+  const std::size_t count = tools.size() < body.max_tools ? tools.size() : body.max_tools;
+  for (std::size_t t = 0; t < count; ++t) body.tool[t] = tools[t].tool;
+  return {body.tool, count};
+}
+
+std::uint64_t most_touching_work(const TouchedBody& body, std::span<const Tool> tools) {
   return body.deformed.update_work() + body.search.find_work(body.deformed, tools) + tools.size() * tool_price +
          std::uint64_t{body.max_contacts} * contact_price;
+}
+
+// why limits have no requirement
+CreateError refusal(const Model& model, const ContactBody::Limits& limits) {
+  if (!in_range(limits)) return CreateError::bad_limits;
+  const CreateError error = Elastostatic::create(model, limits.elastostatic, {}).error;
+  return error == CreateError::bad_limits ? error : CreateError::unsupported_model;
 }
 
 ContactBody::StepReport held(Status status) {
@@ -279,7 +293,7 @@ ContactBody::StepReport held(Status status) {
 ContactBody::Requirement ContactBody::required(const Model& model, const Limits& limits) noexcept {
   if (!in_range(limits)) return {};
   const Elastostatic::Requirement elastostatic = Elastostatic::required(model, limits.elastostatic);
-  if (elastostatic.bytes == 0 || limits.elastostatic.max_contacts > 256) return {};
+  if (elastostatic.bytes == 0) return {};
   Arena counting;
   TouchedBody body;
   static_cast<void>(counting.take<TouchedBody>(1));
@@ -298,7 +312,7 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
   created.available = memory.size();
   created.requested = required(model, limits).bytes;
   if (created.requested == 0) {
-    created.error = in_range(limits) ? CreateError::unsupported_model : CreateError::bad_limits;
+    created.error = refusal(model, limits);
     return created;
   }
   if (created.requested > memory.size()) {
@@ -327,9 +341,8 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
                                           Budget budget) noexcept {
   TouchedBody& body = *body_;
   if (tools.size() > body.max_tools) return held(Status::held_out_of_range);
-  for (std::size_t t = 0; t < tools.size(); ++t) body.tool[t] = tools[t].tool;
-  const std::span<const Tool> shapes{body.tool, tools.size()};
-  const std::uint64_t reserved = touching_work(body, shapes);
+  const std::span<const Tool> shapes = put_tools(tools, body);
+  const std::uint64_t reserved = most_touching_work(body, shapes);
   if (budget.work < reserved + body.elastostatic_least) return held(Status::held_over_budget);
   std::uint64_t work = tools.size() * tool_price;
   body.deformed.update({body.displacement, body.nodes}, work);
@@ -360,6 +373,10 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   return report;
 }
 
+std::uint64_t ContactBody::touching_work(std::span<const ToolInput> tools) const noexcept {
+  return most_touching_work(*body_, put_tools(tools, *body_));
+}
+
 std::span<const ContactBody::ToolAnswer> ContactBody::tools() const noexcept {
   return {body_->tool_answer, body_->tool_count};
 }
@@ -369,7 +386,9 @@ std::span<const ContactBody::Contact> ContactBody::contacts() const noexcept {
 std::span<const Vec4> ContactBody::displacement() const noexcept { return {body_->displacement, body_->nodes}; }
 
 void ContactBody::forget(std::uint32_t tool) noexcept {
-  if (tool < body_->max_tools) body_->search.forget(tool);
+  if (tool >= body_->max_tools) return;
+  body_->search.forget(tool);
+  body_->grips.forget(tool);
 }
 
 }  // namespace greenloop
