@@ -286,6 +286,13 @@ void write_answer(TouchedBody& body, std::uint32_t count, std::span<const Contac
   body.grips.turn();
 }
 
+// copies of the tools, without what a solver needs besides
+std::span<const Tool> put_tools(std::span<const ContactBody::ToolInput> tools, TouchedBody& body) {
+  const std::size_t count = tools.size() < body.max_tools ? tools.size() : body.max_tools;
+  for (std::size_t t = 0; t < count; ++t) body.tool[t] = tools[t].tool;
+  return {body.tool, count};
+}
+
 void account_energy(TouchedBody& body, std::span<const ContactBody::ToolInput> tools) {
   ContactBody::Energy& energy = body.energy;
   for (std::uint32_t t = 0; t < body.max_tools; ++t) {
@@ -308,10 +315,17 @@ void account_energy(TouchedBody& body, std::span<const ContactBody::ToolInput> t
 // what choose takes, if every pass leaves one out
 std::uint64_t most_choosing(std::uint64_t contacts) { return contacts * contacts * 8; }
 
-std::uint64_t most_touching(const TouchedBody& body, std::span<const Tool> tools) {
+std::uint64_t most_touching_work(const TouchedBody& body, std::span<const Tool> tools) {
   const std::uint64_t contacts = body.max_contacts;
   return body.deformed.update_work() + body.search.find_work(body.deformed, tools) + tools.size() * tool_price +
          contacts * contact_price + most_choosing(contacts);
+}
+
+// why limits have no requirement
+CreateError refusal(const Model& model, const ContactBody::Limits& limits) {
+  if (!in_range(limits)) return CreateError::bad_limits;
+  const CreateError error = Elastostatic::create(model, limits.elastostatic, {}).error;
+  return error == CreateError::bad_limits ? error : CreateError::unsupported_model;
 }
 
 ContactBody::StepReport held(Status status) {
@@ -326,7 +340,7 @@ ContactBody::StepReport held(Status status) {
 ContactBody::Requirement ContactBody::required(const Model& model, const Limits& limits) noexcept {
   if (!in_range(limits)) return {};
   const Elastostatic::Requirement elastostatic = Elastostatic::required(model, limits.elastostatic);
-  if (elastostatic.bytes == 0 || limits.elastostatic.max_contacts > 256) return {};
+  if (elastostatic.bytes == 0) return {};
   Arena counting;
   TouchedBody body;
   static_cast<void>(counting.take<TouchedBody>(1));
@@ -345,7 +359,7 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
   created.available = memory.size();
   created.requested = required(model, limits).bytes;
   if (created.requested == 0) {
-    created.error = in_range(limits) ? CreateError::unsupported_model : CreateError::bad_limits;
+    created.error = refusal(model, limits);
     return created;
   }
   if (created.requested > memory.size()) {
@@ -374,8 +388,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
                                           Budget budget) noexcept {
   TouchedBody& body = *body_;
   if (tools.size() > body.max_tools) return held(Status::held_out_of_range);
-  for (std::size_t t = 0; t < tools.size(); ++t) body.tool[t] = tools[t].tool;
-  const std::span<const Tool> shapes{body.tool, tools.size()};
+  const std::span<const Tool> shapes = put_tools(tools, body);
   std::uint64_t work = tools.size() * tool_price;
   body.deformed.update({body.displacement, body.nodes}, work);
   const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work);
@@ -409,9 +422,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
 }
 
 std::uint64_t ContactBody::touching_work(std::span<const ToolInput> tools) const noexcept {
-  std::uint64_t work = 0;
-  for (const ToolInput& tool : tools) work += most_touching(*body_, {&tool.tool, 1});
-  return work;
+  return most_touching_work(*body_, put_tools(tools, *body_));
 }
 
 const ContactBody::Energy& ContactBody::energy() const noexcept { return body_->energy; }
@@ -425,7 +436,9 @@ std::span<const ContactBody::Contact> ContactBody::contacts() const noexcept {
 std::span<const Vec4> ContactBody::displacement() const noexcept { return {body_->displacement, body_->nodes}; }
 
 void ContactBody::forget(std::uint32_t tool) noexcept {
-  if (tool < body_->max_tools) body_->search.forget(tool);
+  if (tool >= body_->max_tools) return;
+  body_->search.forget(tool);
+  body_->grips.forget(tool);
 }
 
 }  // namespace greenloop

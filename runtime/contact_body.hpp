@@ -5,7 +5,6 @@
 #include <span>
 
 #include "runtime/constraint.hpp"
-#include "runtime/contact/candidate_search.hpp"
 #include "runtime/contact/tool.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/loop.hpp"
@@ -70,6 +69,8 @@ class ContactBody {
     double generated = 0;
   };
 
+  /// What Limits cost. least_work and worst_work: of the elastic body alone, coarsest and finest; finding contacts
+  /// takes up to `touching_work` besides, which depends on the tools.
   struct Requirement : greenloop::Requirement {
     std::uint64_t worst_work = 0;  ///< of the answer at the finest level
   };
@@ -93,20 +94,24 @@ class ContactBody {
   /// One cycle of the loop: finds what may touch the tools, continuously in their motion since the last step, and the
   /// forces of contact. A tool is known from step to step by its place among them; those beyond max_tools are refused:
   /// held_out_of_range. No heap, lock, system call, exception or clock; the same model, limits, tools, history and
-  /// budget give the same bits. On a `held_` status the last answer stands. Work: at most budget.work for the answer,
-  /// and touching_work() before it.
+  /// budget give the same bits. Budgets from Requirement::least_work on are enough: what they do not hold is answered
+  /// coarser, each force pushing and within its cone of friction. On a `held_` status the last answer stands;
+  /// held_not_finite and held_bad_surface are said of a tool's friction, held_over_budget at no more than
+  /// touching_work. Work: at most budget.work for the answer, and touching_work before it.
   StepReport step(std::span<const ToolInput> tools, const Elastostatic::Loads& loads, Budget budget) noexcept;
 
-  /// The most that finding what touches such tools takes, units. Constant work, and a polyhedron's vertices.
+  /// Units that finding what may touch these tools takes at most, wherever they are: beside the budget. For the loop;
+  /// work: the tools.
   [[nodiscard]] std::uint64_t touching_work(std::span<const ToolInput> tools) const noexcept;
 
-  // The last answer, until the next step.
-  [[nodiscard]] std::span<const ToolAnswer> tools() const noexcept;
-  [[nodiscard]] std::span<const Contact> contacts() const noexcept;
-  [[nodiscard]] std::span<const Vec4> displacement() const noexcept;  ///< [nodes] m
+  // The last answer, until the next step; empty or at rest before the first. For the loop; constant work.
+  [[nodiscard]] std::span<const ToolAnswer> tools() const noexcept;   ///< [tools] in their order
+  [[nodiscard]] std::span<const Contact> contacts() const noexcept;   ///< by tool
+  [[nodiscard]] std::span<const Vec4> displacement() const noexcept;  ///< [nodes] m, x y z 0
   [[nodiscard]] const Energy& energy() const noexcept;
 
-  /// The tool is somewhere else without having been between.
+  /// The tool is somewhere else without having been between: in the next step it is placed where it is, and holds on to
+  /// nothing. Numbers that no tool has are ignored. For the loop; work: linear in the contacts.
   void forget(std::uint32_t tool) noexcept;
 
  private:

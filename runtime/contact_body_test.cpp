@@ -156,11 +156,15 @@ TEST_CASE("whatever the budget, the answer obeys the laws and the budget; too sm
   const TestModel model(sphere);
   TouchableBody touched(model);
   const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  const std::uint64_t enough =
+      touched.requirement().least_work + touched.body.touching_work(std::vector{ball(radius, {}, 0.3)});
   std::uint64_t least = 0;
   for (std::uint64_t budget = 1; budget < (std::uint64_t{1} << 40); budget += budget / 8 + 1) {
     const std::vector tools{ball(radius, {0, 0, 1.25 * body_radius}, 0.3)};
     const auto report = touched.step(tools, budget);
     if (report.status == Status::held_over_budget) {
+      CHECK(budget < enough);
+      CHECK(report.work == 0);
       CHECK(least == 0);
       continue;
     }
@@ -170,6 +174,45 @@ TEST_CASE("whatever the budget, the answer obeys the laws and the budget; too sm
     check_laws(touched.body, tools);
   }
   CHECK(least > 0);
+  CHECK(least >= enough);
+}
+
+TEST_CASE("what a body cannot be made with is refused by name") {
+  const TestModel model(sphere);
+  const auto refused = [&](auto change) {
+    ContactBody::Limits limits = TouchableBody::usual();
+    change(limits);
+    CHECK(ContactBody::required(model.model(), limits).bytes == 0);
+    return ContactBody::create(model.model(), limits, {}).error;
+  };
+  using Limits = ContactBody::Limits;
+  CHECK(refused([](Limits& of) { of.max_tools = 0; }) == CreateError::bad_limits);
+  CHECK(refused([](Limits& of) { of.max_points = 129; }) == CreateError::bad_limits);
+  CHECK(refused([](Limits& of) { of.margin = -1; }) == CreateError::bad_limits);
+  CHECK(refused([](Limits& of) { of.elastostatic.iterations = 0; }) == CreateError::bad_limits);
+  CHECK(refused([](Limits& of) { of.elastostatic.max_contacts = 257; }) == CreateError::bad_limits);
+  const ContactBody::Created small = ContactBody::create(model.model(), TouchableBody::usual(), {});
+  CHECK(small.error == CreateError::arena_too_small);
+  CHECK(small.missing == small.requested);
+}
+
+TEST_CASE("a tool that is put elsewhere drags nothing along, one that moves there does") {
+  const TestModel model(sphere);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;
+  double drag[2] = {};
+  for (const bool forgotten : {false, true}) {
+    TouchableBody touched(model);
+    std::vector tools{ball(radius, {0, 0, body_radius + radius - depth}, 1)};
+    for (int k = 0; k < 3; ++k) REQUIRE(answered(touched.step(tools).status));
+    if (forgotten) touched.body.forget(0);
+    tools[0].tool.pose.position.x = 0.01 * body_radius;
+    REQUIRE(answered(touched.step(tools).status));
+    const Double3 force = touched.body.tools()[0].force;
+    drag[forgotten ? 1 : 0] = std::abs(force.x) / force.z;
+  }
+  MESSAGE("drag over pressure: moved ", drag[0], ", put there ", drag[1]);
+  CHECK(drag[0] > 0.1);
+  CHECK(drag[1] < 0.5 * drag[0]);
 }
 
 TEST_CASE("a place that cannot move pushes back too") {

@@ -12,16 +12,6 @@
 
 namespace greenloop {
 
-/// Why a tool was left alone in a step.
-enum class ToolFault : std::uint8_t {
-  none,
-  bad_shape,        ///< Shape::check
-  too_many_points,  ///< more than Limits::max_points
-  not_finite,       ///< its pose, see PoseError
-  too_far,
-  not_unit,
-};
-
 /// Finds what of a deformed surface may touch rigid tools, continuously in the tools' motion: touchable nodes against
 /// the shapes, and the shapes' points against the triangles, each on the side from which the tool came. It remembers
 /// the tools' last placements and their points' proxies. A tool is known by its place among the tools.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/memory/arena.hpp"
 #include "runtime/surface/closest_point.hpp"
 
 namespace greenloop {

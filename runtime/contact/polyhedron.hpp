@@ -5,9 +5,10 @@
 #include <span>
 
 #include "runtime/algebra/double3.hpp"
-#include "runtime/memory/arena.hpp"
 
 namespace greenloop {
+
+class Arena;
 
 /// How far a place is outside of a shape, and which way out leads.
 struct SignedDistance {

@@ -73,4 +73,14 @@ struct Tool {
   Pose pose;
 };
 
+/// Why a tool was left alone in a step.
+enum class ToolFault : std::uint8_t {
+  none,
+  bad_shape,        ///< Shape::check
+  too_many_points,  ///< more than the limits have
+  not_finite,       ///< its pose, see PoseError
+  too_far,
+  not_unit,
+};
+
 }  // namespace greenloop

@@ -20,4 +20,12 @@ void Grips::turn() noexcept {
   made_count_ = 0;
 }
 
+void Grips::forget(std::uint32_t tool) noexcept {
+  std::uint32_t kept = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    if (tool_of_key(grip_[i].key) != tool) grip_[kept++] = grip_[i];
+  }
+  count_ = kept;
+}
+
 }  // namespace greenloop

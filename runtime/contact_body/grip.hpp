@@ -28,6 +28,9 @@ constexpr std::uint64_t grip_key(const Candidate& candidate) {
          (is_node ? candidate.node[0] : std::uint64_t{1} << 32 | candidate.feature);
 }
 
+/// The tool that it is of.
+constexpr std::uint64_t tool_of_key(std::uint64_t key) { return key >> 33; }
+
 /// The contacts of the last answer that had a force, in the order of their keys.
 class Grips {
  public:
@@ -42,6 +45,9 @@ class Grips {
   /// Takes the next step's in, in the order of their keys, then puts them in the place of the last one's.
   void add(const Grip& grip) noexcept { made_[made_count_++] = grip; }
   void turn() noexcept;
+
+  /// Lets go of what a tool has. Linear.
+  void forget(std::uint32_t tool) noexcept;
 
   [[nodiscard]] std::span<const Grip> all() const noexcept { return {grip_, count_}; }
 
