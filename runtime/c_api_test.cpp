@@ -19,7 +19,10 @@ constexpr greenloop_elastostatic_limits limits{.max_contacts = 9,
                                                .keep_capacitance = 0,
                                                .glide_cycles = 5,
                                                .refining_work = 0,
-                                               .prices = nullptr};
+                                               .prices = nullptr,
+                                               .max_forces = 0,
+                                               .model_loads = 0,
+                                               .max_points = 0};
 
 // a body made and stepped through C alone
 class CBody {
@@ -156,7 +159,7 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 1, 0, nullptr}, arena.data(), c.need.bytes).error ==
+  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 1, 0, nullptr, 0, 0, 0}, arena.data(), c.need.bytes).error ==
         GREENLOOP_CREATE_BAD_LIMITS);
 }
 
@@ -192,7 +195,7 @@ TEST_CASE("a share of the period that the scene states is told") {
 TEST_CASE("no cycles of a glide stand for the default") {
   CBody c;
   const auto bytes = [&c](std::uint32_t cycles) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, cycles, 0, nullptr}).bytes;
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, cycles, 0, nullptr, 0, 0, 0}).bytes;
   };
   CHECK(bytes(0) == bytes(Elastostatic::Limits{}.glide_cycles));
   CHECK(bytes(256) > 0);
@@ -202,7 +205,7 @@ TEST_CASE("no cycles of a glide stand for the default") {
 TEST_CASE("no refining work stands for no bound of it") {
   CBody c;
   const auto worst = [&c](std::uint64_t work) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, work, nullptr}).worst_work[0];
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, work, nullptr, 0, 0, 0}).worst_work[0];
   };
   CHECK(worst(0) == worst(~std::uint64_t{0}));
   CHECK(worst(1) < worst(0));

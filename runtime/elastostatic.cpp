@@ -5,46 +5,18 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/body.hpp"
-#include "runtime/elastostatic/loads.hpp"
+#include "runtime/elastostatic/inputs.hpp"
 #include "runtime/elastostatic/planner.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
-
 namespace {
-
-// the finest level of the nodes that the response has room for; none if that is no level
-std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& response) {
-  for (std::uint32_t q = body.counts.levels; q-- > 0 && !body.counts.forces_only;) {
-    if (response.displacement.size() == body.counts.nodes[q]) {
-      return q;
-    }
-  }
-  return layout::none;
-}
-
-Status check_request(const Body& body, std::size_t constraints, const Elastostatic::Loads& loads, Budget budget,
-                     const Elastostatic::Response& response) {
-  if (budget.work < body.least_work) {
-    return Status::held_over_budget;
-  }
-  if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
-    return Status::held_out_of_range;
-  }
-  const Status acting = check_loads(body, loads);
-  if (acting != Status::ok) {
-    return acting;
-  }
-  const bool field_fits = response.displacement.empty() ||
-                          (finest_displaced(body, response) != layout::none &&
-                           reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
-  return response.force.size() == constraints && field_fits ? Status::ok : Status::held_response_size;
-}
 
 // the factor of the planned set; null if its capacitance matrix is not positive definite
 Factor* find_factor(Body& body, const Plan& plan) {
@@ -370,99 +342,23 @@ void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_
   }
 }
 
-// what comes of checking a step's inputs, the units that took, and the contacts among them
-struct Accepted {
-  Status status = Status::ok;
-  std::uint32_t refused = StepReport::no_constraint;
-  std::uint64_t work = 0;
-  Contacts contacts;
-};
-
-// apart, so that it does not stand on the stack of an answer
-[[gnu::noinline]] void accept_inputs(Body& body, std::span<const Constraint> constraints,
-                                     const Elastostatic::Loads& loads, Budget budget,
-                                     const Elastostatic::Response& response, Accepted& accepted) {
-  accepted.status = check_request(body, constraints.size(), loads, budget, response);
-  if (accepted.status != Status::ok) {
-    return;
-  }
-  const Prices& prices = body.counts.prices;
-  const std::uint32_t most = body.counts.max_forces;
-  const std::uint64_t forces = most > 0 ? count_forces(constraints, loads.masks) : 0;
-  accepted.work = check_contacts_work(prices, constraints.size() + (forces < most ? forces : most));
-  const CheckedContacts checked =
-      check_contacts(constraints, body.view->node_count, body.facts, {body.counts.max_contacts, most, loads.masks});
-  accepted.status = checked.status;
-  accepted.refused = checked.refused;
-  if (checked.status != Status::ok) {
-    return;
-  }
-  accepted.work += forces > 0 ? list_forces_work(prices, constraints.size(), forces) : 0;
-  if (!take_loads(body, constraints, loads, response.force, accepted.contacts)) {
-    accepted.status = Status::held_overflow;
-  }
-}
-
-// the same of unilateral contacts, whose nodes are the contacts
-[[gnu::noinline]] void accept_inputs(Body& body, std::span<const UnilateralContact> surfaces,
-                                     const Elastostatic::Loads& loads, Budget budget,
-                                     const Elastostatic::UnilateralResponse& response, ContactAnswer& found,
-                                     Accepted& accepted) {
-  accepted.status = check_request(body, surfaces.size(), loads, budget, response);
-  const std::uint32_t most = body.counts.max_contacts;
-  const auto fits = [&](std::size_t size) { return size == 0 || size == surfaces.size(); };
-  if (accepted.status == Status::ok) {
-    accepted.status = !fits(response.state.size()) || !fits(response.gap.size()) ? Status::held_response_size
-                      : surfaces.size() > most                                   ? Status::held_out_of_range
-                      : body.counts.iterations == 0 && !surfaces.empty()         ? Status::held_unsupported
-                                                                                 : Status::ok;
-  }
-  if (accepted.status != Status::ok) {
-    return;
-  }
-  const Prices& prices = body.counts.prices;
-  UnilateralScratch& scratch = body.unilateral;
-  std::uint32_t nodes = 0;
-  CheckedContacts checked = list_unilateral(surfaces, body.view->node_count, most, scratch, nodes);
-  const std::span<const Constraint> holds{scratch.hold, nodes};
-  if (checked.status == Status::ok) {
-    checked = check_contacts(holds, body.view->node_count, body.facts, {most, 0, {}});
-    checked.refused = checked.status == Status::ok ? checked.refused : contact_of(scratch, checked.refused);
-  }
-  accepted.work = list_unilateral_work(prices, surfaces.size(), most) + check_contacts_work(prices, most);
-  accepted.status = checked.status;
-  accepted.refused = checked.refused;
-  if (checked.status != Status::ok) {
-    return;
-  }
-  if (!take_loads(body, holds, loads, {}, accepted.contacts)) {
-    accepted.status = Status::held_overflow;
-    return;
-  }
-  Contacts& contacts = accepted.contacts;
-  contacts.held = holds;
-  contacts.force = scratch.hold_force;
-  contacts.surfaces = surfaces;
-  contacts.output = {response.force, response.state, response.gap};
-  contacts.found = &found;
-  contacts.corner_count = surfaces.empty() ? 0 : scratch.begin[surfaces.size()];
+// surfaces that touch nothing that moves; apart for its stack
+[[gnu::noinline]] bool push_rigid(Body& body, const Contacts& contacts, std::uint64_t& work) {
+  const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
+  return push(body, contacts, {}, {}, nullptr, allowance, work);
 }
 
 // a step whose inputs are accepted
 void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elastostatic::Response& response,
                Elastostatic::StepReport& report) {
-  report.refused = accepted.refused;
-  if (accepted.status != Status::ok) {
-    return hold(accepted.status, accepted.work, report);
+  report.refused = accepted.checked.refused;
+  if (accepted.checked.status != Status::ok) {
+    return hold(accepted.checked.status, accepted.work, report);
   }
   const Contacts& contacts = accepted.contacts;
   std::uint64_t work = accepted.work;
-  if (contacts.held.empty() && !contacts.surfaces.empty()) {
-    // surfaces that touch nothing that moves
-    const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
-    if (!push(body, contacts, {}, {}, nullptr, allowance, work)) {
-      return hold(Status::held_overflow, work, report);
-    }
+  if (contacts.held.empty() && !contacts.surfaces.empty() && !push_rigid(body, contacts, work)) {
+    return hold(Status::held_overflow, work, report);
   }
   if (contacts.held.empty() && !body.is_loaded) {
     return release(body, response, work, report);
@@ -473,7 +369,7 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   wants.finest_displaced = wants.field ? finest_displaced(body, response) : body.counts.levels - 1;
   wants.corners = contacts.are_held() ? 0 : contacts.corners();
   wants.iterations = least_iterations(body.counts.iterations);
-  const Plan plan = make_plan(body, contacts.held, wants);
+  const Plan& plan = *new (body.plan) Plan(make_plan(body, contacts.held, wants));
   work += plan.work;
   if (!plan.fits) {
     return hold(Status::held_over_budget, work, report);
@@ -484,11 +380,23 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   answer(body, contacts, plan, work, budget.work, response, report);
 }
 
-void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads, Budget budget,
+// loads: null where nothing but contacts acts
+void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads* loads, Budget budget,
                const Elastostatic::Response& response, Elastostatic::StepReport& report) {
   body.answered = false;
-  Accepted accepted;
-  accept_inputs(body, constraints, loads, budget, response, accepted);
+  const Status request = check_request(body, constraints.size(), budget, response);
+  if (request != Status::ok) {
+    return hold(request, 0, report);
+  }
+  if (constraints.empty() && loads == nullptr) {
+    return release(body, response, check_contacts_work(body.counts.prices, 0), report);
+  }
+  Accepted& accepted = *new (body.accepted) Accepted;
+  if (loads == nullptr) {
+    accept_contacts(body, constraints, response.force, accepted);
+  } else {
+    accept_loaded(body, constraints, *loads, response.force, accepted);
+  }
   carry_out(body, accepted, budget, response, report);
 }
 
@@ -499,7 +407,7 @@ Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
     return {};
   }
   const layout::Info& info = *model.view().info;
-  return {.limits = {.max_contacts = info.max_contacts},
+  return {.limits = {.max_contacts = info.max_contacts, .model_loads = info.loads > 0},
           .budget = {info.step_work},
           .rate = info.rate,
           .share = info.share > 0 ? info.share : 1};
@@ -555,9 +463,9 @@ Elastostatic::Created Elastostatic::create(const Model& model, const Elastostati
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
-  StepReport report;
   static constexpr Loads none{};
-  take_step(*body_, contacts, none, budget, response, report);
+  StepReport report;
+  take_step(*body_, contacts, body_->loads == nullptr ? nullptr : &none, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
@@ -565,7 +473,7 @@ Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
                                             const Response& response) noexcept {
   StepReport report;
-  take_step(*body_, constraints, loads, budget, response, report);
+  take_step(*body_, constraints, &loads, budget, response, report);
   assert(Arena::intact(body_->last_red_zone));
   return report;
 }
@@ -574,10 +482,13 @@ Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralCont
                                                   Budget budget, const UnilateralResponse& response) noexcept {
   Body& body = *body_;
   body.answered = false;
-  ContactAnswer found;
-  Accepted accepted;
-  accept_inputs(body, contacts, loads, budget, response, found, accepted);
   UnilateralReport report;
+  ContactAnswer found;
+  Accepted& accepted = *new (body.accepted) Accepted;
+  accepted.checked.status = check_request(body, contacts.size(), budget, response);
+  if (accepted.checked.status == Status::ok) {
+    accept_surfaces(body, contacts, loads, response, found, accepted);
+  }
   carry_out(body, accepted, budget, response, report);
   report.residual = found.residual;
   report.iterations = found.iterations;

@@ -37,7 +37,7 @@ class Elastostatic {
 
   /// The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md).
   struct Intent {
-    Limits limits;    ///< the scene's contacts, the rest by default: what `budget` was computed for
+    Limits limits;    ///< the scene's contacts and loads, the rest by default: what `budget` was computed for
     Budget budget;    ///< the scene's work or share of a period, else what the build chose: enough for the finest level
     float rate = 0;   ///< Hz, steps per second
     float share = 1;  ///< of a period that a step may take, above 0 and at most 1; 1: or the scene has none

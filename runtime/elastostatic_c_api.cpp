@@ -5,6 +5,8 @@
 #include <type_traits>
 
 #include "runtime/c_values.hpp"
+#include "runtime/mask.hpp"
+#include "runtime/wrench.hpp"
 
 namespace greenloop {
 namespace {
@@ -17,6 +19,11 @@ static_assert(sizeof(Constraint) == sizeof(greenloop_constraint) &&
               offsetof(Constraint, kind) == offsetof(greenloop_constraint, kind));
 // NOLINTEND(misc-redundant-expression)
 static_assert(sizeof(Prices) == sizeof(greenloop_prices) && std::is_trivially_copyable_v<Prices>);
+// a span is a pointer and a size
+static_assert(sizeof(Mask) == sizeof(greenloop_mask) && alignof(Mask) == alignof(greenloop_mask) &&
+              offsetof(Mask, weight) == offsetof(greenloop_mask, weight) && std::is_trivially_copyable_v<Mask>);
+static_assert(sizeof(MeshPoint) == sizeof(greenloop_vertex) &&
+              offsetof(MeshPoint, weight) == offsetof(greenloop_vertex, weight));
 static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
 
 }  // namespace
@@ -31,7 +38,30 @@ Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
   if (limits.prices != nullptr) {
     same.prices = std::bit_cast<Prices>(*limits.prices);
   }
+  same.max_forces = limits.max_forces;
+  same.model_loads = limits.model_loads != 0;
+  same.max_points = limits.max_points;
+  same.iterations = limits.iterations;
   return same;
+}
+
+namespace {
+
+std::span<const Mask> masks_of(const greenloop_mask* masks, std::size_t count) {
+  return {reinterpret_cast<const Mask*>(masks), count};
+}
+
+std::span<const MeshPoint> points_of(const greenloop_vertex* points, std::size_t count) {
+  return {reinterpret_cast<const MeshPoint*>(points), count};
+}
+
+}  // namespace
+
+Elastostatic::Loads loads_of(const greenloop_loads& loads) noexcept {
+  return {masks_of(loads.mask, loads.masks),
+          {loads.gravity[0], loads.gravity[1], loads.gravity[2]},
+          {loads.pressure, loads.pressures},
+          loads.stiffness == 0 ? 1 : loads.stiffness};
 }
 
 greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept {
@@ -58,7 +88,8 @@ greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_mo
   const Elastostatic::Intent intent = Elastostatic::intended(model_in(model));
   const Elastostatic::Limits& limits = intent.limits;
   return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.keep_capacitance ? 1 : 0,
-           limits.glide_cycles, limits.refining_work, nullptr},
+           limits.glide_cycles, limits.refining_work, nullptr, limits.max_forces, limits.model_loads ? 1 : 0,
+           limits.max_points, limits.iterations},
           intent.budget.work,
           intent.rate,
           intent.share};
@@ -67,7 +98,7 @@ greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_mo
 greenloop_elastostatic_requirement greenloop_elastostatic_required(const greenloop_model* model,
                                                                    greenloop_elastostatic_limits limits) {
   const Elastostatic::Requirement need = Elastostatic::required(model_in(model), limits_of(limits));
-  greenloop_elastostatic_requirement requirement = {need.bytes, need.least_work, {}};
+  greenloop_elastostatic_requirement requirement = {need.bytes, need.least_work, {}, need.selected_work};
   std::memcpy(requirement.worst_work, need.worst_work, sizeof need.worst_work);
   return requirement;
 }
@@ -93,4 +124,50 @@ int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32
   const auto* const in_arena = reinterpret_cast<const Body*>(body);
   const auto same = std::bit_cast<Elastostatic>(in_arena);
   return same.compliance(i, j, std::span<float, 9>(block, 9)) ? 1 : 0;
+}
+
+greenloop_elastostatic_report greenloop_elastostatic_step_loaded(greenloop_elastostatic* body,
+                                                                 const greenloop_constraint* constraints, size_t count,
+                                                                 const greenloop_loads* loads, uint64_t work,
+                                                                 float* force, float* displacement, uint32_t nodes) {
+  return report_of(body_in(body).step(constraints_of(constraints, count), loads_of(*loads), {work},
+                                      response_of(count, force, displacement, nodes)));
+}
+
+int greenloop_has_gravity(const greenloop_model* model) { return model_in(model).view().has_gravity() ? 1 : 0; }
+
+uint32_t greenloop_pressure_count(const greenloop_model* model) {
+  const ModelView& view = model_in(model).view();
+  return static_cast<uint32_t>(view.loads.size()) - (view.has_gravity() ? layout::accelerations : 0);
+}
+
+greenloop_mask greenloop_make_mask(const greenloop_model* model, const float* area, size_t areas,
+                                   const greenloop_vertex* point, float radius, uint32_t* node, float* weight,
+                                   size_t capacity) {
+  return std::bit_cast<greenloop_mask>(
+      make_mask(model_in(model), {area, areas}, points_of(point, 1)[0], radius, {node, capacity}, {weight, capacity}));
+}
+
+uint64_t greenloop_elastostatic_displacements(greenloop_elastostatic* body, const greenloop_vertex* points,
+                                              size_t count, float* displacement) {
+  return body_in(body).displacements(points_of(points, count), {reinterpret_cast<Vec3*>(displacement), count});
+}
+
+uint64_t greenloop_elastostatic_masked_compliance(greenloop_elastostatic* body, uint32_t node,
+                                                  const greenloop_mask* mask, float* block) {
+  return body_in(body).masked_compliance(node, masks_of(mask, 1)[0], std::span<float, 9>(block, 9));
+}
+
+uint64_t greenloop_elastostatic_stiffness(greenloop_elastostatic* body, const greenloop_vertex* point,
+                                          const greenloop_mask* masks, float rigid, int capped, float* stiffness) {
+  return body_in(body).stiffness(points_of(point, 1)[0], std::span<const Mask, 3>(masks_of(masks, 3)), rigid,
+                                 capped != 0, std::span<float, 9>(stiffness, 9));
+}
+
+greenloop_wrench greenloop_total_wrench(const float* position, const float* force, size_t count, const float* about) {
+  const auto vectors = [count](const float* of) {
+    return std::span<const Vec3>(reinterpret_cast<const Vec3*>(of), count);
+  };
+  return std::bit_cast<greenloop_wrench>(
+      total_wrench(vectors(position), vectors(force), {about[0], about[1], about[2]}));
 }

@@ -136,6 +136,10 @@ typedef struct greenloop_elastostatic_limits {
   uint32_t glide_cycles;   /* 1..256, steps in which the forces go over to another level; 1: at once; 0: 16 */
   uint64_t refining_work;  /* units of a step up to which it prepares a finer level; 0: no bound */
   const greenloop_prices* prices; /* that make work units of what a step does; read at once; null: the default ones */
+  uint32_t max_forces; /* 0..4096, nodes that known forces are on in a step, those of masks each time; 0: refused */
+  int model_loads;     /* 1: the model's loads may act, gravity and pressures */
+  uint32_t max_points; /* 0..4096, points whose displacement may be asked for at once; 0: none, nor what masks meet */
+  uint32_t iterations; /* 0..1024 for unilateral contacts (greenloop_contact.h), at most 256 of them; 0: refused */
 } greenloop_elastostatic_limits;
 
 /* The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md). */
@@ -151,6 +155,7 @@ typedef struct greenloop_elastostatic_requirement {
   size_t bytes;                              /* of the arena; 0: greenloop_elastostatic_create would refuse */
   uint64_t least_work;                       /* the smallest budget that greenloop_elastostatic_step accepts */
   uint64_t worst_work[GREENLOOP_MAX_LEVELS]; /* of a step by its constraint_level */
+  uint64_t selected_work; /* of greenloop_elastostatic_displacements and _masked_compliance; 0: they are not answered */
 } greenloop_elastostatic_requirement;
 
 typedef struct greenloop_elastostatic_created {
@@ -159,19 +164,52 @@ typedef struct greenloop_elastostatic_created {
   greenloop_elastostatic* body;         /* null on an error */
 } greenloop_elastostatic_created;
 
-/* What is known of a node; greenloop_elastostatic_step knows GREENLOOP_HOLD and refuses the others. */
+/* What is known of a node. GREENLOOP_NORMAL is refused; forces are known by greenloop_elastostatic_limits.max_forces.
+ */
 typedef enum greenloop_constraint_kind {
   GREENLOOP_HOLD,   /* all three components of its displacement */
   GREENLOOP_NORMAL, /* its displacement along the normal; it slides freely across it */
   GREENLOOP_FORCE,  /* the force on it */
-  GREENLOOP_PATTERN /* a pattern of forces, by its number, as a whole */
+  GREENLOOP_PATTERN /* the force of a mask, by its number, as a whole; it is spread by the mask's weights */
 } greenloop_constraint_kind;
 
 typedef struct greenloop_constraint {
-  uint32_t node;  /* index in the model file; of a pattern its number */
+  uint32_t node;  /* index in the model file; of a pattern the number of its mask */
   float value[3]; /* m where displacements are known, N where forces are */
   greenloop_constraint_kind kind;
 } greenloop_constraint;
+
+/* A point of the surface, where a vertex of the author's lies for example: nodes of the model and the share of each.
+ * Its displacement is that of the nodes, weighted. */
+typedef struct greenloop_vertex {
+  uint32_t node[3];
+  float weight[3]; /* 0..1, sum 1 */
+} greenloop_vertex;
+
+/* A scalar pressure mask: the nodes that a force is spread over, and the part of it on each, >= 0 with sum 1, or the
+ * share of the force that it takes. As many nodes as weights. */
+typedef struct greenloop_mask {
+  const uint32_t* node;
+  size_t nodes;
+  const float* weight;
+  size_t weights;
+} greenloop_mask;
+
+/* What acts on a body in a step beside its constraints, and how stiff it is. */
+typedef struct greenloop_loads {
+  const greenloop_mask* mask; /* that constraints of kind GREENLOOP_PATTERN name */
+  size_t masks;
+  float gravity[3];      /* m/s^2, of the whole body, where greenloop_has_gravity */
+  const float* pressure; /* Pa, of the model's first pressures, in their order */
+  size_t pressures;
+  float stiffness; /* 2^-20..2^20, Young's modulus over the model's; 0: 1 */
+} greenloop_loads;
+
+/* A force [N] and its torque [N m] about a point. */
+typedef struct greenloop_wrench {
+  float force[3];
+  float torque[3];
+} greenloop_wrench;
 
 /* How a step was answered. */
 typedef struct greenloop_elastostatic_details {
@@ -245,6 +283,44 @@ greenloop_elastostatic_report greenloop_elastostatic_step(greenloop_elastostatic
  * displacement r per force c. 0, and nothing is written, unless the capacitance is kept (limits), the last step was
  * answered and its factor is still in the cache, which one factor of a finer level may replace. For the loop. */
 int greenloop_elastostatic_compliance(const greenloop_elastostatic* body, uint32_t i, uint32_t j, float* block);
+
+/* The same step with what else acts: known forces, on nodes and by masks, gravity and pressures. They reduce what the
+ * contacts have to do; the force of a known one is itself. Of all kinds of constraints there are `count`. For the loop.
+ */
+greenloop_elastostatic_report greenloop_elastostatic_step_loaded(greenloop_elastostatic* body,
+                                                                 const greenloop_constraint* constraints, size_t count,
+                                                                 const greenloop_loads* loads, uint64_t work,
+                                                                 float* force, float* displacement, uint32_t nodes);
+
+/* Whether the model has accelerations, so that gravity may act; how many pressures it has. */
+int greenloop_has_gravity(const greenloop_model* model);
+uint32_t greenloop_pressure_count(const greenloop_model* model);
+
+/* The mask of a point-like contact: of every corner of the point the function max(0, 1 - distance / radius) on
+ * touchable nodes, times their areas, normalised; of these the mean by the point's weights. area:
+ * greenloop_surface_areas of the first `areas` nodes. node, weight: room for `capacity` of each, which the mask refers
+ * to. Of 0 nodes if they do not fit, or a number or node is wrong. For the loop; some 60 operations per area. */
+greenloop_mask greenloop_make_mask(const greenloop_model* model, const float* area, size_t areas,
+                                   const greenloop_vertex* point, float radius, uint32_t* node, float* weight,
+                                   size_t capacity);
+
+/* Selected answers. Each returns the units that it spent beside those of steps; 0, and nothing is written, where it is
+ * refused. For the loop; at most greenloop_elastostatic_requirement.selected_work, the stiffness three times that. */
+
+/* Displacements of points by all that acts in the last answer, 3 * count floats [m]. */
+uint64_t greenloop_elastostatic_displacements(greenloop_elastostatic* body, const greenloop_vertex* points,
+                                              size_t count, float* displacement);
+/* The displacement of a node per force on a mask [m/N], of the model's own stiffness. block: 9 floats, 3 c + r. */
+uint64_t greenloop_elastostatic_masked_compliance(greenloop_elastostatic* body, uint32_t node,
+                                                  const greenloop_mask* mask, float* block);
+/* The stiffness of a point-like contact [N/m]: the mean of its corners' by the point's weights, `rigid` along all axes
+ * where a corner is held in place. masks: 3, of the corners. capped: 1: none is stiffer than `rigid`. */
+uint64_t greenloop_elastostatic_stiffness(greenloop_elastostatic* body, const greenloop_vertex* point,
+                                          const greenloop_mask* masks, float rigid, int capped, float* stiffness);
+
+/* The sum of `count` forces at positions, 3 * count floats of each, and of their torques about a point. For the loop.
+ */
+greenloop_wrench greenloop_total_wrench(const float* position, const float* force, size_t count, const float* about);
 
 /* One sentence each; static storage. */
 const char* greenloop_rule_text(greenloop_rule rule);
@@ -328,13 +404,6 @@ int greenloop_surface_areas(const greenloop_surface* surface, uint32_t level, co
 greenloop_nearest_node greenloop_surface_nearest_node(const greenloop_surface* surface, const float* position,
                                                       uint32_t flags);
 greenloop_nearest_point greenloop_surface_nearest_point(const greenloop_surface* surface, const float* position);
-
-/* Where a vertex of the author's surface lies on the model's: nodes of the model and the share of each. The
- * displacement of the vertex is that of the nodes, weighted. */
-typedef struct greenloop_vertex {
-  uint32_t node[3];
-  float weight[3]; /* 0..1, sum 1 */
-} greenloop_vertex;
 
 /* Vertices of the author's surface, in the order of its file; 0 if the scene did not ask to keep them. */
 size_t greenloop_vertex_count(const greenloop_model* model);

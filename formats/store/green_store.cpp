@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "formats/output/output_file.hpp"
+#include "formats/store/body_force.hpp"
 #include "formats/store/green_store_contents.hpp"
 #include "formats/store/hdf5_fault.hpp"
 #include "formats/store/hdf5_file.hpp"
@@ -50,6 +51,9 @@ Hdf5File create_file(const PendingFile& unfinished, const std::filesystem::path&
   auto hdf5 = Hdf5File::create(unfinished.name());
   write_contents(hdf5, contents);
   reserve_columns(hdf5, contents);
+  if (contents.components == 3 && !contents.volume.vertices.empty()) {
+    reserve_body_force(hdf5, contents.row_node.size());
+  }
   hdf5.flush();
   return hdf5;
 } catch (const std::runtime_error& error) {  // people know the file by another name
@@ -163,6 +167,7 @@ GreenStore GreenStore::open(const std::filesystem::path& path, Access access) {
   }
   hdf5.require_exact(kDisplacement);
   require_checksum(hdf5, contents);
+  static_cast<void>(greenloop::has_body_force_room(hdf5, contents.row_node.size()));
   const Hdf5Shape columns{contents.column_node.size()};
   const bool has_checksum = hdf5.has(kChecksum);
   for (const char* dataset : {kDone, kChecksum}) {
@@ -269,6 +274,25 @@ Eigen::MatrixXd GreenStore::read_block(int first_row, int rows, int first_column
     file_->require_right(first_column + c, block.data() + static_cast<std::size_t>(c) * file_->column_size());
   }
   return block;
+}
+
+bool GreenStore::has_body_force_room() const {
+  return greenloop::has_body_force_room(file_->hdf5, file_->contents.row_node.size());
+}
+
+bool GreenStore::is_body_force_done() const {
+  return has_body_force_room() && greenloop::is_body_force_done(file_->hdf5);
+}
+
+void GreenStore::write_body_force(const Eigen::MatrixXd& displacement) {
+  if (!file_->writable) file_->hdf5.fail(kBodyForce, "the store was opened read-only");
+  if (!has_body_force_room()) file_->hdf5.fail(kBodyForce, "the store has no room for it");
+  greenloop::write_body_force(file_->hdf5, file_->contents.row_node.size(), displacement);
+}
+
+Eigen::MatrixXd GreenStore::read_body_force() const {
+  if (!has_body_force_room()) file_->hdf5.fail(kBodyForce, "the store has no body force");
+  return greenloop::read_body_force(file_->hdf5, file_->contents.row_node.size());
 }
 
 }  // namespace greenloop

@@ -77,6 +77,15 @@ class GreenStore {
   /// Refuses values that are not finite.
   void write_columns(int first, const Eigen::Ref<const Eigen::MatrixXd>& displacement);
 
+  /// Whether there is room for what a uniform force on the body's volume does: in new stores with a volume.
+  [[nodiscard]] bool has_body_force_room() const;
+  [[nodiscard]] bool is_body_force_done() const;
+
+  /// What a uniform force of 1 N/m^3 along x, y and z does, 3 R x 3 in m: row 3 r + i is axis i at row node r.
+  void write_body_force(const Eigen::MatrixXd& displacement);
+  /// The same; it must be done and equal its checksum.
+  [[nodiscard]] Eigen::MatrixXd read_body_force() const;
+
   /// Closes the file, throwing if something was lost; the store is not to be used afterwards. Columns are safe without.
   void close();
 

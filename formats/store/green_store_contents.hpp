@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "formats/store/body_force.hpp"
 #include "formats/store/green_store.hpp"
 #include "formats/store/hdf5_file.hpp"
 
@@ -25,6 +26,9 @@ inline constexpr std::array kGreenStoreDatasets{"/surface/position",
                                                 "/green/displacement",
                                                 "/green/checksum",
                                                 "/green/done",
+                                                kBodyForce,
+                                                kBodyForceChecksum,
+                                                kBodyForceDone,
                                                 "/volume/position",
                                                 "/volume/tetrahedra",
                                                 "/volume/fixed",
@@ -35,7 +39,7 @@ inline constexpr std::array kGreenStoreDatasets{"/surface/position",
 /// Throws std::invalid_argument naming the first field that contradicts another or is out of range.
 void require_valid(const GreenStoreContents& contents);
 
-/// Writes everything but /green/displacement, /green/checksum and /green/done; see docs/store.md.
+/// Writes everything but /green/displacement, /green/checksum, /green/done and /body_force; see docs/store.md.
 void write_contents(Hdf5File& file, const GreenStoreContents& contents);
 
 /// The reverse, with shapes, units, finiteness and cross-references checked. How many components there are is said by

@@ -117,6 +117,41 @@ TEST_CASE("a store without a volume is for columns from elsewhere") {
   CHECK(GreenStore::open(file.path, Access::kReadOnly).contents().volume.vertices.empty());
 }
 
+TEST_CASE("a store with a volume has room for a body force, which is done once it is written and stays") {
+  const TemporaryFile file("body_force.h5");
+  const MatrixXd moved = column_values(4, 17);
+  {
+    auto store = GreenStore::create(file.path, small_contents(3));
+    CHECK(store.has_body_force_room());
+    CHECK(!store.is_body_force_done());
+    CHECK_THROWS_WITH((void)store.read_body_force(), doctest::Contains("not solved yet"));
+    MatrixXd bad = moved;
+    bad(7, 1) = std::numeric_limits<double>::infinity();
+    CHECK_THROWS_WITH(store.write_body_force(bad), doctest::Contains("not finite"));
+    CHECK_THROWS_WITH(store.write_body_force(column_values(4, 16)), doctest::Contains("48 x 3 does not fit; 51 x 3"));
+    CHECK(!store.is_body_force_done());
+    store.write_body_force(moved);
+  }
+  auto store = GreenStore::open(file.path, Access::kReadOnly);
+  CHECK(store.is_body_force_done());
+  CHECK(store.read_body_force() == moved);
+  CHECK_THROWS_WITH(store.write_body_force(moved), doctest::Contains("read-only"));
+}
+
+TEST_CASE("stores of a scalar problem, or without a volume, have no room for a body force") {
+  const TemporaryFile file("no_body_force.h5");
+  auto contents = small_contents(3);
+  contents.volume = {};
+  contents.volume_fixed.clear();
+  for (const auto& without : {contents, scalar_contents(3)}) {
+    auto store = GreenStore::create(file.path, without);
+    CHECK(!store.has_body_force_room());
+    CHECK(!store.is_body_force_done());
+    CHECK_THROWS_WITH((void)store.read_body_force(), doctest::Contains("has no body force"));
+    CHECK_THROWS_WITH(store.write_body_force(column_values(4, 17)), doctest::Contains("no room"));
+  }
+}
+
 TEST_CASE("what is not finite, does not fit or may not be written is refused") {
   const TemporaryFile file("refuse.h5");
   {

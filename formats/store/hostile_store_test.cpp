@@ -318,6 +318,38 @@ TEST_CASE("hostile stores: a column marked done that was never written is refuse
   }
 }
 
+TEST_CASE("hostile stores: a body force that was changed, never written, or of another shape or unit is refused") {
+  const TemporaryFile file("body_force.h5");
+  {
+    auto store = GreenStore::create(file.path, small_contents(3));
+    store.write_body_force(column_values(4, 17));
+  }
+  overwrite(file.path, offset_of(file.path, "/body_force/displacement") + 400, "\1");
+  CHECK_THROWS_WITH((void)GreenStore::open(file.path, Access::kReadOnly).read_body_force(),
+                    doctest::Contains("/body_force/displacement: differs from its checksum"));
+  { auto store = GreenStore::create(file.path, small_contents(3)); }
+  overwrite(file.path, offset_of(file.path, "/body_force/done"), "\1");
+  CHECK_THROWS_WITH((void)GreenStore::open(file.path, Access::kReadOnly).read_body_force(),
+                    doctest::Contains("differs from its checksum"));
+  overwrite(file.path, offset_of(file.path, "/body_force/done"), "\2");
+  CHECK_THROWS_WITH((void)GreenStore::open(file.path, Access::kReadOnly), doctest::Contains("holds not only 0, 1"));
+  check_refused([](hid_t id) { remove_link(id, "/body_force/done"); }, "/body_force/done", "");
+  const Hdf5Handle two = simple({2});
+  check_refused([&](hid_t id) { replace_dataset(id, "/body_force/done", H5T_STD_U8LE, two.get(), H5P_DEFAULT); },
+                "/body_force/done", "its shape asks for other values");
+  const Hdf5Handle fewer = simple({3, 16, 3});
+  check_refused(
+      [&](hid_t id) { replace_dataset(id, "/body_force/displacement", H5T_IEEE_F64LE, fewer.get(), H5P_DEFAULT); },
+      "/body_force/displacement", "its shape asks for other values");
+}
+
+TEST_CASE("a store made before there was room for a body force is taken as it is") {
+  const TemporaryFile file("before.h5");
+  make_store(file.path, [](hid_t id) { remove_link(id, "/body_force"); });
+  CHECK(refusal(file.path).empty());
+  CHECK(!GreenStore::open(file.path, Access::kReadWrite).has_body_force_room());
+}
+
 TEST_CASE("hostile stores: another mesh or material under the same fingerprint is refused") {
   check_refused(
       [](hid_t file) {

@@ -21,6 +21,7 @@
 #include "formats/write/model_file.hpp"
 #include "formats/write/nested_json.hpp"
 #include "formats/write/writer.hpp"
+#include "offline/compress/encode/load_columns.hpp"
 #include "offline/compress/encode/ready_model.hpp"
 #include "offline/compress/model_builder.hpp"
 #include "offline/compress/wavelet_choice.hpp"
@@ -30,6 +31,7 @@
 #include "offline/pipeline/build_files.hpp"
 #include "offline/pipeline/least_work.hpp"
 #include "offline/pipeline/model_quality.hpp"
+#include "offline/pipeline/scene_loads.hpp"
 #include "offline/pipeline/stage_records.hpp"
 #include "offline/pipeline/vertex_map.hpp"
 #include "offline/scene/fingerprint.hpp"
@@ -243,6 +245,19 @@ BuiltModel compress(const Scene& scene, const GreenStore& store, double asymmetr
   return built;
 }
 
+/// Puts what the scene's loads do into the model.
+void load(const Scene& scene, GreenStore& store, ModelData& model, ProgressBar& progress) {
+  progress.begin("loads");
+  auto loads = load_displacements(scene, store);
+  std::string names;
+  for (const layout::LoadRecord& record : loads.records) {
+    names += (names.empty() ? "" : ", ") + load_name(record);
+  }
+  if (scene.gravity) names += fmt::format("; a mass of {:.4g} kg", loads.records.front().resultant[0]);
+  add_loads(std::move(loads.records), loads.displacement, model);
+  progress.end(names);
+}
+
 }  // namespace
 
 std::filesystem::path build_record_path(const std::filesystem::path& model) {
@@ -294,6 +309,7 @@ BuildOutcome build_model_file(const BuildRequest& asked, ProgressBar& progress) 
   provenance["patches"] = built.report.patches;
   built.model.provenance = json_text(provenance, -1);
   if (scene.mesh.keep_vertex_map) built.model.vertices = vertex_map(scene.mesh, store.contents().surface);
+  if (scene.gravity || !scene.pressures.empty()) load(scene, store, built.model, progress);
   if (!scene.budget.asked_work()) {
     built.model.info.step_work = worst_step_work(AlignedBytes(encode(built.model)).span()).back();
   }

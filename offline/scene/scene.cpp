@@ -54,6 +54,27 @@ void name_empty_regions(const std::string& role, const NodeSet& set, const std::
   }
 }
 
+/// Names every pressure that acts on no node, or on some that nothing is stored of.
+void name_unstored_pressures(const Scene& scene, const NodeSets& sets, std::span<const Eigen::Vector3d> positions,
+                             const Eigen::AlignedBox3d& box, std::vector<std::string>& problems) {
+  for (const PressureLoad& load : scene.pressures) {
+    const auto pressed = evaluate(load.region, positions, box);
+    std::size_t movable = 0, unstored = 0;
+    for (std::size_t i = 0; i < pressed.size(); ++i) {
+      if (!pressed[i] || sets.fixed.holds[i]) continue;
+      ++movable;
+      unstored += sets.touched.holds[i] || sets.read.holds[i] ? 0 : 1;
+    }
+    const std::string which = "loads: \"" + load.name + "\": the region holds ";
+    if (movable == 0 || std::count(pressed.begin(), pressed.end(), true) < 3) {
+      problems.push_back(which + "no triangle that can move; the bounding box goes from " + box_text(box));
+    } else if (unstored > 0) {
+      problems.push_back(which + std::to_string(unstored) + " nodes that are neither touched nor read, of " +
+                         std::to_string(movable) + " that can move; add the region as one of [[read]]");
+    }
+  }
+}
+
 }  // namespace
 
 SceneError::SceneError(std::vector<std::string> problems)
@@ -96,6 +117,7 @@ NodeSets select_nodes(const Scene& scene, std::span<const Eigen::Vector3d> posit
                     " of " + total + " are fixed)" + where;
   name_empty_regions("touched", sets.touched, none, problems);
   name_empty_regions("read", sets.read, none, problems);
+  name_unstored_pressures(scene, sets, positions, box, problems);
   if (!problems.empty()) {
     throw SceneError(std::move(problems));
   }

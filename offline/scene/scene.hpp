@@ -91,6 +91,17 @@ struct StepBudget {
   [[nodiscard]] std::optional<std::int64_t> asked_work() const;
 };
 
+/// A pressure on the part of the surface whose triangles have all their corners in a region.
+struct PressureLoad {
+  std::string name;  ///< printable ASCII, 1 to longest_load_name letters, none twice
+  Region region;
+  std::optional<Eigen::Vector3d> direction;  ///< of any length but 0; none: inwards, along the normals
+};
+
+/// Letters of a load's name, and pressures of a scene.
+inline constexpr std::size_t longest_load_name = sizeof(layout::LoadRecord::name) - 1;
+inline constexpr std::size_t most_pressures = layout::most_loads - layout::accelerations;
+
 /// What scene.toml asks for, in SI units. docs/scene.md has the grammar.
 struct Scene {
   MeshSource mesh;
@@ -100,6 +111,9 @@ struct Scene {
   std::vector<Region> fixed;             ///< at least one
   std::vector<Region> touched;           ///< none: everything that is not fixed
   std::vector<Region> read;              ///< none: everything that is not fixed
+  std::optional<double> density;         ///< of the material [kg/m^3]
+  bool gravity = false;                  ///< keep what accelerations of the whole body do; needs a density
+  std::vector<PressureLoad> pressures;   ///< keep what these do
   int coarsest_constraints = 0;          ///< coarsest level offered for contacts, 0..remesh.levels
   AccuracyGoal accuracy;
   std::optional<layout::Wavelet> wavelet;  ///< none: the best, by measurement
@@ -142,7 +156,8 @@ struct NodeSets {
 };
 
 /// Finds the nodes of each role among positions [m] of a body with this bounding box. Throws SceneError with counts and
-/// box if everything is fixed, nothing is left to touch or to read, or a region holds no node of its role.
+/// box if everything is fixed, nothing is left to touch or to read, a region holds no node of its role, or a pressure
+/// acts on nodes that can move but are neither touched nor read.
 [[nodiscard]] NodeSets select_nodes(const Scene& scene, std::span<const Eigen::Vector3d> positions,
                                     const Eigen::AlignedBox3d& box);
 

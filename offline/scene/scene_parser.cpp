@@ -103,11 +103,11 @@ void read_remesh(const Table& scene, bool tetrahedra, Remesh& remesh) {
   }
 }
 
-void read_material(const Table& scene, Material& material) {
+void read_material(const Table& scene, Material& material, std::optional<double>& density) {
   if (!scene.has("material")) {
     scene.problems().add({}, "material", "missing; write for example [material] young = \"20 kPa\", poisson = 0.4");
   }
-  const auto table = section(scene, "material", {"young", "poisson"});
+  const auto table = section(scene, "material", {"young", "poisson", "density"});
   if (!table) {
     return;
   }
@@ -115,6 +115,7 @@ void read_material(const Table& scene, Material& material) {
   table->require("poisson", "poisson = 0.4");
   set_if(material.young, table->quantity("young", Dimension::pressure));
   set_if(material.poisson, table->number("poisson", {-1, 0.5, true, true}));
+  density = table->quantity("density", Dimension::density);
 }
 
 void read_solve(const Table& scene, Elements& elements) {
@@ -204,7 +205,10 @@ std::optional<Region> read_region(const Table& table) {
   return given[0] == "box" ? read_box(table) : given[0] == "sphere" ? read_sphere(table) : read_nearest(table);
 }
 
-void read_regions(const Table& scene, std::string_view role, std::vector<Region>& regions) {
+/// Calls read(table) for each of the tables [[role]].
+template <class Read>
+void read_tables(const Table& scene, std::string_view role, const std::string& example,
+                 std::initializer_list<std::string_view> valid, const Read& read) {
   const auto* node = scene.find(role);
   if (node == nullptr) {
     return;
@@ -214,16 +218,65 @@ void read_regions(const Table& scene, std::string_view role, std::vector<Region>
                       std::all_of(array->begin(), array->end(), [](const toml::node& item) { return item.is_table(); });
   if (!tables) {
     scene.refuse(role, "is " + std::string(kind_of(*node)) + "; expected one or more tables [[" + std::string(role) +
-                           "]], such as [[" + std::string(role) + "]] below = 0.1, axis = \"y\"");
+                           "]], such as [[" + std::string(role) + "]] " + example);
     return;
   }
   for (std::size_t i = 0; i < array->size(); ++i) {
-    const Table table(*(*array)[i].as_table(), std::string(role) + "[" + std::to_string(i) + "]",
-                      {"below", "above", "axis", "box", "sphere", "near", "count"}, scene.problems());
-    if (auto region = read_region(table)) {
-      regions.push_back(std::move(*region));
-    }
+    read(Table(*(*array)[i].as_table(), std::string(role) + "[" + std::to_string(i) + "]", valid, scene.problems()));
   }
+}
+
+void read_regions(const Table& scene, std::string_view role, std::vector<Region>& regions) {
+  read_tables(scene, role, "below = 0.1, axis = \"y\"", {"below", "above", "axis", "box", "sphere", "near", "count"},
+              [&](const Table& table) {
+                if (auto region = read_region(table)) regions.push_back(std::move(*region));
+              });
+}
+
+void read_gravity(const Table& table, const std::optional<double>& density, bool& gravity) {
+  if (table.toml().size() > 1) {
+    table.refuse("gravity", "acts on the whole body; write it in a table [[loads]] of its own");
+  }
+  set_if(gravity, table.boolean("gravity"));
+  if (gravity && !density) {
+    table.refuse("gravity", "needs the body's mass: write for example [material] density = \"1000 kg/m^3\"");
+  }
+}
+
+void read_load_name(const Table& table, const std::vector<PressureLoad>& others, std::string& name) {
+  table.require("name", "name = \"palm\"");
+  set_if(name, table.string("name"));
+  const bool printable = std::all_of(name.begin(), name.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  if (!printable || name.size() > longest_load_name) {
+    table.refuse("name", "has to be of at most " + std::to_string(longest_load_name) + " printable ASCII letters");
+  } else if (std::any_of(others.begin(), others.end(), [&](const PressureLoad& other) { return other.name == name; })) {
+    table.refuse("name", "\"" + name + "\" is another load's name already");
+  }
+}
+
+void read_pressure(const Table& table, std::vector<PressureLoad>& pressures) {
+  PressureLoad load;
+  read_load_name(table, pressures, load.name);
+  const auto* direction = table.find("direction");
+  if (direction != nullptr && direction->value<std::string>() != "normal")
+    load.direction = table.direction("direction");
+  auto region = read_region(table);
+  if (pressures.size() == most_pressures) {
+    table.refuse_table("there are at most " + std::to_string(most_pressures) + " pressures");
+  } else if (region) {
+    load.region = std::move(*region);
+    pressures.push_back(std::move(load));
+  }
+}
+
+/// Gravity, or the pressure on a region.
+void read_loads(const Table& scene, Scene& result) {
+  read_tables(scene, "loads", "gravity = true",
+              {"gravity", "name", "direction", "below", "above", "axis", "box", "sphere", "near", "count"},
+              [&](const Table& table) {
+                table.has("gravity") ? read_gravity(table, result.density, result.gravity)
+                                     : read_pressure(table, result.pressures);
+              });
 }
 
 void read_constraints(const Table& scene, int levels, int& coarsest) {
@@ -351,13 +404,13 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   const auto toml = parse_toml(text, file);
   Problems problems(file.string());
   const Table table(toml, "",
-                    {"surface", "volume", "remesh", "material", "solve", "fixed", "touched", "read", "constraints",
-                     "accuracy", "compression", "budget", "store"},
+                    {"surface", "volume", "remesh", "material", "solve", "fixed", "touched", "read", "loads",
+                     "constraints", "accuracy", "compression", "budget", "store"},
                     problems);
   Scene scene;
   read_mesh(table, file, scene.mesh);
   read_remesh(table, scene.mesh.tetrahedra, scene.remesh);
-  read_material(table, scene.material);
+  read_material(table, scene.material, scene.density);
   read_solve(table, scene.elements);
   if (!table.has("fixed")) {
     problems.add({}, "fixed",
@@ -366,6 +419,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   read_regions(table, "fixed", scene.fixed);
   read_regions(table, "touched", scene.touched);
   read_regions(table, "read", scene.read);
+  read_loads(table, scene);
   read_constraints(table, scene.remesh.levels, scene.coarsest_constraints);
   read_accuracy(table, scene.accuracy);
   read_compression(table, scene.wavelet, scene.ready);

@@ -1,6 +1,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "formats/write/describe.hpp"
@@ -88,8 +89,9 @@ std::string remesh_text(const Scene& scene) {
          "\n";
 }
 
-std::string material_text(const Material& material) {
-  return "\n[material]\nyoung = " + quantity(material.young, "Pa") + "\npoisson = " + number(material.poisson) + "\n";
+std::string material_text(const Material& material, std::optional<double> density) {
+  return "\n[material]\nyoung = " + quantity(material.young, "Pa") + "\npoisson = " + number(material.poisson) + "\n" +
+         (density ? "density = " + quantity(*density, "kg/m^3") + "\n" : "");
 }
 
 std::string solve_text(Elements elements) {
@@ -120,18 +122,30 @@ std::string budget_text(const StepBudget& budget) {
          "contacts = " + std::to_string(budget.contacts) + "\n";
 }
 
-std::string tables_of_body(const Scene& scene) {
-  return remesh_text(scene) + material_text(scene.material) + solve_text(scene.elements) +
+std::string loads_text(const Scene& scene) {
+  std::string text = scene.gravity ? "\n[[loads]]\ngravity = true\n" : "";
+  for (const PressureLoad& load : scene.pressures) {
+    text += "\n[[loads]]\nname = " + string(load.name) + "\n" +
+            std::visit([](const auto& shape) { return region_text(shape); }, load.region) +
+            "direction = " + (load.direction ? triple(*load.direction) : string("normal")) + "\n";
+  }
+  return text;
+}
+
+// columns do not follow from the density
+std::string tables_of_body(const Scene& scene, std::optional<double> density) {
+  return remesh_text(scene) + material_text(scene.material, density) + solve_text(scene.elements) +
          regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) + regions_text("read", scene.read);
 }
 
 }  // namespace
 
-std::string body_text(const Scene& scene) { return mesh_text(scene.mesh) + tables_of_body(scene); }
+std::string body_text(const Scene& scene) { return mesh_text(scene.mesh) + tables_of_body(scene, std::nullopt); }
 
 std::string canonical_text(const Scene& scene) {
   return mesh_text(scene.mesh) + (scene.mesh.keep_vertex_map ? "keep_vertex_map = true\n" : "") +
-         tables_of_body(scene) + "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
+         tables_of_body(scene, scene.density) + loads_text(scene) +
+         "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
          accuracy_text(scene.accuracy) + compression_text(scene.wavelet, scene.ready) + budget_text(scene.budget) +
          (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
 }

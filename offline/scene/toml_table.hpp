@@ -257,6 +257,20 @@ class Table {
     return result;
   }
 
+  /// A direction, of any length but 0.
+  [[nodiscard]] std::optional<Eigen::Vector3d> direction(std::string_view key) const {
+    const auto* array = find(key)->as_array();
+    Eigen::Vector3d result = Eigen::Vector3d::Zero();
+    const bool three = array != nullptr && array->size() == 3 &&
+                       std::all_of(array->begin(), array->end(), [](const auto& item) { return item.is_number(); });
+    for (std::size_t i = 0; three && i < 3; ++i) result[static_cast<Eigen::Index>(i)] = *(*array)[i].value<double>();
+    if (!result.allFinite() || result.isZero(0)) {
+      refuse(key, "expected \"normal\" or three finite numbers that are not all zero, such as [0, 0, -1]");
+      return std::nullopt;
+    }
+    return result;
+  }
+
  private:
   const toml::table& table_;
   std::string name_;

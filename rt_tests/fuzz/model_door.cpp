@@ -16,6 +16,7 @@ class ModelDoor final : public Door {
     seeds_ = {encode(smallest_model()),
               encode(smallest_scalar_model()),
               encode(synthetic_model({.levels = 2, .vertices = 4})),
+              encode(synthetic_model({.levels = 2, .gravity = true, .pressures = 2})),
               encode(synthetic_model({.levels = 3, .epsilon = 0.02, .touchable_above = 0.5})),
               encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::equilibrated})),
               encode(crowded_model(8, 4)),

@@ -18,9 +18,17 @@ levels = 3
 [material]
 young = "20 kPa"
 poisson = 0.4
+density = "1.1 g/cm3"
 [[fixed]]
 below = 0.19
 axis = "y"
+[[loads]]
+gravity = true
+[[loads]]
+name = "palm"
+near = [0.5, 1, 0.5]
+count = 40
+direction = [0, -1, 0.5]
 [[touched]]
 sphere = { center = [0.5, 0.4, 0.8], radius = "3 cm" }
 [[read]]

@@ -19,6 +19,7 @@ class TransportDoor final : public Door {
     for (const ModelData& model :
          {smallest_model(), smallest_scalar_model(), synthetic_model({.levels = 1}), synthetic_model({.levels = 2}),
           synthetic_model({.components = 1, .levels = 2, .vertices = 4}),
+          synthetic_model({.levels = 2, .gravity = true, .pressures = 1}),
           synthetic_model({.levels = 2, .wavelet = layout::Wavelet::equilibrated}), crowded_model(8, 3)}) {
       seeds_.push_back(transport::pack(encode(model)));
     }

@@ -107,7 +107,8 @@ TEST_CASE("verify survives random changes of valid files, and what it accepts is
        encode(synthetic_model({.levels = 3, .epsilon = 0.008})),
        encode(synthetic_model({.levels = 2, .coarsest_constraint_level = 1, .wavelet = layout::Wavelet::linear})),
        encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::lifted_butterfly})), measured_model(),
-       encode(synthetic_model({.levels = 2, .vertices = 40}))}));
+       encode(synthetic_model({.levels = 2, .vertices = 40})),
+       encode(synthetic_model({.levels = 2, .gravity = true, .pressures = 2}))}));
 }
 
 // everything is read

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "formats/write/aligned_bytes.hpp"
-#include "rt_tests/harness/elastostatic_driver.hpp"
+#include "rt_tests/harness/loaded_driver.hpp"
 #include "runtime/elastostatic/body.hpp"
 #include "runtime/elastostatic/planner.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
@@ -155,5 +155,6 @@ std::vector<DearSet> dear_sets(const Model& model, const typename D::Solver::Lim
 }
 
 template std::vector<DearSet> dear_sets<ElastostaticDriver>(const Model&, const Elastostatic::Limits&, std::uint64_t);
+template std::vector<DearSet> dear_sets<LoadedDriver>(const Model&, const Elastostatic::Limits&, std::uint64_t);
 
 }  // namespace greenloop

@@ -17,7 +17,7 @@
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/pipeline/progress_bar.hpp"
-#include "rt_tests/harness/elastostatic_driver.hpp"
+#include "rt_tests/harness/loaded_driver.hpp"
 #include "rt_tests/harness/prices_file.hpp"
 #include "rt_tests/harness/time_of.hpp"
 #include "rt_tests/stress/stress_report.hpp"
@@ -32,6 +32,7 @@ using greenloop::StressReport;
 struct Arguments {
   std::string model;
   greenloop::StressOptions options;
+  bool loads = false;
   bool json = false;
   bool count_instructions = false, list_steps = false;
   double rate = 0;
@@ -87,6 +88,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--judge-time", arguments.judge_time,
                "fail if a step takes longer, or if this machine cannot tell: it takes a thread that is pinned to one "
                "isolated processor");
+  app.add_flag("--loads", arguments.loads, "known forces, masks and gravity beside the contacts of the scripts");
   app.add_flag("--json", arguments.json, "machine-readable result");
   const std::map<std::string, InjectedFault> faults = {{"allocation", InjectedFault::allocation},
                                                        {"lock", InjectedFault::lock},
@@ -114,6 +116,9 @@ greenloop::PredictedWork count_instructions(const Arguments& arguments, const gr
   }
   if (options.budget > 0) {
     command.insert(command.end(), {"--budget", std::to_string(options.budget)});
+  }
+  if (arguments.loads) {
+    command.emplace_back("--loads");
   }
   if (options.script) {
     command.insert(command.end(), {"--script", greenloop::name(*options.script)});
@@ -145,7 +150,8 @@ StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
     bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
   };
   const auto begin = std::chrono::steady_clock::now();
-  report.result = greenloop::run_stress<ElastostaticDriver>(model, options);
+  report.result = arguments.loads ? greenloop::run_stress<greenloop::LoadedDriver>(model, options)
+                                  : greenloop::run_stress<ElastostaticDriver>(model, options);
   const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
   report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
   bar.end(fmt::format("{} cycles", report.result.cycles));
@@ -171,7 +177,9 @@ int run(const Arguments& arguments) {
   greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
   if (arguments.list_steps) {
     const auto options = options_for(opened.model, arguments);
-    greenloop::write_steps(greenloop::run_plainly<ElastostaticDriver>(opened.model, options), std::cout);
+    greenloop::write_steps(arguments.loads ? greenloop::run_plainly<greenloop::LoadedDriver>(opened.model, options)
+                                           : greenloop::run_plainly<ElastostaticDriver>(opened.model, options),
+                           std::cout);
     return 0;
   }
   StressReport report = stress(opened.model, arguments);

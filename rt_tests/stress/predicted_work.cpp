@@ -19,7 +19,7 @@
 
 #include "formats/testing/temporary_folder.hpp"
 #include "rt_tests/harness/contact_script.hpp"
-#include "rt_tests/harness/elastostatic_driver.hpp"
+#include "rt_tests/harness/loaded_driver.hpp"
 #include "runtime/hosted/hosted.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
 
@@ -120,6 +120,7 @@ std::vector<ReportedStep> run_plainly(const Model& model, const StressOptions& o
 }
 
 template std::vector<ReportedStep> run_plainly<ElastostaticDriver>(const Model&, const StressOptions&);
+template std::vector<ReportedStep> run_plainly<LoadedDriver>(const Model&, const StressOptions&);
 
 void write_steps(const std::vector<ReportedStep>& steps, std::ostream& out) {
   for (const ReportedStep& step : steps) out << step.work << ' ' << step.way << '\n';

@@ -10,8 +10,8 @@
 #include <memory>
 #include <mutex>
 
-#include "rt_tests/harness/elastostatic_driver.hpp"
 #include "rt_tests/harness/fast_digest.hpp"
+#include "rt_tests/harness/loaded_driver.hpp"
 #include "rt_tests/harness/minor_faults.hpp"
 #include "rt_tests/harness/time_of.hpp"
 #include "rt_tests/stress/force_step.hpp"
@@ -221,5 +221,6 @@ StressResult run_stress(const Model& model, const StressOptions& options) {
 }
 
 template StressResult run_stress<ElastostaticDriver>(const Model&, const StressOptions&);
+template StressResult run_stress<LoadedDriver>(const Model&, const StressOptions&);
 
 }  // namespace greenloop

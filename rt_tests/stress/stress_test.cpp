@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "rt_tests/harness/elastostatic_driver.hpp"
+#include "rt_tests/harness/loaded_driver.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 #include "runtime/testing/test_body.hpp"
 
@@ -72,6 +72,31 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
       CHECK(result.held());
     }
   }
+}
+
+TEST_CASE("nor does it with loads beside the contacts, and points that are asked for") {
+  const SyntheticOptions models[] = {{.levels = 1, .gravity = true},
+                                     {.levels = 4, .wavelet = layout::Wavelet::linear},
+                                     {.levels = 4, .wavelet = layout::Wavelet::lifted_butterfly, .gravity = true},
+                                     {.levels = 4, .coarsest_constraint_level = 2, .touchable_above = 0.6},
+                                     {.levels = 4, .wavelet = layout::Wavelet::equilibrated, .gravity = true}};
+  std::uint64_t seed = 40, coarser = 0;
+  for (const auto& synthetic : models) {
+    const TestModel model(synthetic);
+    for (const std::uint32_t contacts : {1U, 16U, 33U}) {
+      CAPTURE(++seed);
+      CAPTURE(contacts);
+      const StressResult result =
+          run_stress<LoadedDriver>(model.model(), {.cycles = 1400, .seed = seed, .contacts = contacts, .factors = 3});
+      CHECK(result.violations.work_overruns == 0);
+      CHECK(result.violations.wrong_answers == 0);
+      CHECK(result.violations.allocations == 0);
+      CHECK(result.violations.system_calls == 0);
+      CHECK(result.held());
+      coarser += result.counts.of(Status::coarser);
+    }
+  }
+  CHECK(coarser > 1000);
 }
 
 TEST_CASE("what is declared is near what the dearest sets take, at other prices too") {

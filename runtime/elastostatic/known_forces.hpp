@@ -31,9 +31,11 @@ struct KnownForces {
 /// constraint.
 [[nodiscard]] std::uint64_t count_forces(std::span<const Constraint> constraints, std::span<const Mask> masks) noexcept;
 
-/// Work units of list_forces.
-constexpr std::uint64_t list_forces_work(const Prices& prices, std::uint64_t constraints, std::uint64_t forces) {
-  return priced(constraints + forces, prices.force_column);
+/// Work units of checking constraints and loads and of list_forces; forces: nodes with known ones, those of masks each
+/// time.
+constexpr std::uint64_t check_loaded_work(const Prices& prices, std::uint64_t constraints, std::uint64_t forces) {
+  return check_contacts_work(prices, constraints + forces) + priced(2, prices.step) +
+         priced(constraints + forces, prices.force_column);
 }
 
 /// Lists the known forces among checked constraints, and the others in `held`; returns how many those are. Whether the

@@ -32,7 +32,7 @@ struct Contacts {
 [[nodiscard]] Status check_loads(const Body& body, const Elastostatic::Loads& loads) noexcept;
 
 /// Takes what acts in a step, out of checked constraints, into the body. False if it could overflow the answer. For the
-/// loop; work: list_forces_work where constraints of other kinds than hold are among them.
+/// loop; work: within check_loaded_work.
 bool take_loads(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads,
                 std::span<Vec3> force, Contacts& contacts) noexcept;
 
@@ -46,7 +46,7 @@ std::uint64_t displace(const Body& body, const ColumnForces& forces, const Actin
 std::uint64_t displace_by_loads(const Body& body) noexcept;
 
 /// Hands the forces of all constraints of an answered step out, and the report's forces and energies, by the stiffness
-/// scale; where they stand already, it does nothing. For the loop; work: within list_forces_work, or that of the glide.
+/// scale; where they stand already, it does nothing. For the loop; work: within check_loaded_work.
 void hand_out_forces(const Body& body, const Contacts& contacts, std::span<Vec3> force,
                      Elastostatic::StepReport& report) noexcept;
 

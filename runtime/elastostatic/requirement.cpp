@@ -63,12 +63,14 @@ std::uint64_t functional_of(const ModelView& view, const ReachBound& reach) {
   return functional;
 }
 
-// of checking constraints and listing what they are: holds, known forces, and the nodes of masks
+// of checking constraints, and of listing the known forces among them
 std::uint64_t check_work(const Elastostatic::Limits& limits, const ModelCounts& counts) {
   const std::uint64_t constraints = std::uint64_t{limits.max_contacts} + limits.max_forces;
-  return (limits.iterations > 0 ? list_unilateral_work(counts.prices, limits.max_contacts, limits.max_contacts) : 0) +
-         check_contacts_work(counts.prices, constraints + limits.max_forces) +
-         (limits.max_forces > 0 ? list_forces_work(counts.prices, constraints, limits.max_forces) : 0);
+  const std::uint64_t listing =
+      limits.iterations > 0 ? list_unilateral_work(counts.prices, limits.max_contacts, limits.max_contacts) : 0;
+  return listing + (counts.takes_loads() || limits.max_points > 0 || limits.iterations > 0
+                        ? check_loaded_work(counts.prices, constraints, limits.max_forces)
+                        : check_contacts_work(counts.prices, constraints));
 }
 
 // of holds and of unilateral contacts, whichever is more

@@ -52,6 +52,12 @@ Interpolation vertices_from_points(const TetrahedralMesh& mesh, const MeshEdges&
   return from;
 }
 
+double volume_of(const TetrahedralMesh& mesh, const std::array<int, 4>& tetrahedron) {
+  const Eigen::Vector3d& x = mesh.vertices[tetrahedron[0]];
+  const auto side = [&](int corner) { return Eigen::Vector3d(mesh.vertices[tetrahedron[corner]] - x); };
+  return side(1).cross(side(2)).dot(side(3)) / 6;
+}
+
 // the columns of free points alone
 Interpolation restricted(const Interpolation& all, const FreePoints& free) {
   const auto vertices = static_cast<Eigen::Index>(free.vertex.size());
@@ -96,6 +102,20 @@ Eigen::SparseMatrix<double> assemble_stiffness(const FemProblem& problem, const 
 Interpolation nodes_from_points(const FemProblem& problem, const MeshEdges& edges, const FreePoints& free) {
   if (problem.elements == Elements::linear) return restricted(problem.interpolation, free);
   return restricted(problem.interpolation * vertices_from_points(problem.volume, edges), free);
+}
+
+Eigen::VectorXd point_volumes(const FemProblem& problem, const MeshEdges& edges, const FreePoints& free) {
+  constexpr double vertex_share = 1.0 / 4, edge_share = 1.0 / 5;  // of L_a, of 4 L_a L_b
+  Eigen::VectorXd volumes = Eigen::VectorXd::Zero(free.count);
+  const auto add = [&](int number, double volume) {
+    if (number >= 0) volumes[number] += volume;
+  };
+  for (std::size_t t = 0; t < problem.volume.tetrahedra.size(); ++t) {
+    const double volume = volume_of(problem.volume, problem.volume.tetrahedra[t]);
+    for (const int v : problem.volume.tetrahedra[t]) add(free.vertex[v], vertex_share * volume);
+    for (const int e : edges.of_tetrahedron[t]) add(free.edge[e], edge_share * volume);
+  }
+  return volumes;
 }
 
 }  // namespace greenloop::offline

@@ -37,4 +37,7 @@ struct FemProblem {
 [[nodiscard]] Interpolation nodes_from_points(const FemProblem& problem, const MeshEdges& edges,
                                               const FreePoints& free);
 
+/// The integral of each free point's function over the body, m^3: what a uniform force of 1 N/m^3 pulls it with, N.
+[[nodiscard]] Eigen::VectorXd point_volumes(const FemProblem& problem, const MeshEdges& edges, const FreePoints& free);
+
 }  // namespace greenloop::offline

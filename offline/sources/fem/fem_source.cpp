@@ -33,11 +33,26 @@ FemSource::FemSource(const FemProblem& problem, const MeshEdges& edges, const Fr
     : problem_(problem),
       rows_{.surface_nodes = problem.row_nodes},
       interpolation_(nodes_from_points(problem, edges, free)),
+      point_volumes_(point_volumes(problem, edges, free)),
       factors_(assemble_stiffness(problem, edges, free), 3) {}
 
 Eigen::MatrixXd FemSource::displacement(const Eigen::SparseMatrix<double>& patterns) {
-  factors_.solve(volume_forces(patterns), volume_displacement_);
-  Eigen::MatrixXd displacement(3 * static_cast<Eigen::Index>(rows_.size()), 3 * patterns.cols());
+  return solve(volume_forces(patterns));
+}
+
+Eigen::MatrixXd FemSource::body_force() {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int point = 0; point < point_volumes_.size(); ++point) {
+    for (int axis = 0; axis < 3; ++axis) entries.emplace_back(3 * point + axis, axis, point_volumes_[point]);
+  }
+  Eigen::SparseMatrix<double> forces(unknowns(), 3);
+  forces.setFromTriplets(entries.begin(), entries.end());
+  return solve(forces);
+}
+
+Eigen::MatrixXd FemSource::solve(const Eigen::SparseMatrix<double>& forces) {
+  factors_.solve(forces, volume_displacement_);
+  Eigen::MatrixXd displacement(3 * static_cast<Eigen::Index>(rows_.size()), forces.cols());
   for (Eigen::Index c = 0; c < displacement.cols(); ++c) gather(c, displacement);
   return displacement;
 }

@@ -35,6 +35,9 @@ class FemSource final : public ColumnSource {
   /// node r, column 3c + j is pattern c along axis j. Work: 12 factor entries per pattern.
   [[nodiscard]] Eigen::MatrixXd displacement(const Eigen::SparseMatrix<double>& patterns);
 
+  /// What a uniform force of 1 N/m^3 on the whole body does, along x, y and z: 3R x 3, m. Work: 12 factor entries.
+  [[nodiscard]] Eigen::MatrixXd body_force();
+
   [[nodiscard]] std::int64_t factor_entries() const { return factors_.factor_entries(); }
   [[nodiscard]] std::int64_t unknowns() const { return 3 * interpolation_.cols(); }
 
@@ -51,11 +54,13 @@ class FemSource final : public ColumnSource {
   FemSource(const FemProblem& problem, const MeshEdges& edges);
   FemSource(const FemProblem& problem, const MeshEdges& edges, const FreePoints& free);
   [[nodiscard]] Eigen::SparseMatrix<double> volume_forces(const Eigen::SparseMatrix<double>& patterns) const;
+  [[nodiscard]] Eigen::MatrixXd solve(const Eigen::SparseMatrix<double>& forces);
   void gather(Eigen::Index column, Eigen::MatrixXd& displacement) const;
 
   FemProblem problem_;
   RowSet rows_;
-  Interpolation interpolation_;  // surface nodes from free points
+  Interpolation interpolation_;    // surface nodes from free points
+  Eigen::VectorXd point_volumes_;  // m^3
   Factorization factors_;
   Eigen::MatrixXd volume_displacement_;
 };

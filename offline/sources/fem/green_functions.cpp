@@ -29,6 +29,14 @@ void solve_missing(GreenStore& store, SolveReport& report, const FillProgressCal
   const FillReport filled = fill_store(store, source, progress);
   report.columns_solved = filled.columns;
   report.solve_seconds = filled.seconds;
+  if (store.has_body_force_room() && !store.is_body_force_done()) store.write_body_force(source.body_force());
+}
+
+void require_volume(const GreenStore& store) {
+  store.require_components(3);
+  if (!store.contents().volume.vertices.empty()) return;
+  throw std::runtime_error(store.path().string() +
+                           ": /volume: there is no volume to solve; only a store with tetrahedra can be completed");
 }
 
 }  // namespace
@@ -39,11 +47,7 @@ void require_solvable(const GreenStoreContents& contents) {
 }
 
 SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback& progress) {
-  store.require_components(3);
-  if (store.contents().volume.vertices.empty()) {
-    throw std::runtime_error(store.path().string() +
-                             ": /volume: there is no volume to solve; only a store with tetrahedra can be completed");
-  }
+  require_volume(store);
   require_solvable(store.contents());
   SolveReport report;
   report.unknowns = unknowns(fem_problem(store.contents()));
@@ -54,6 +58,14 @@ SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback&
                              std::to_string(report.largest_asymmetry) + "; " + remedy(store, report));
   }
   return report;
+}
+
+Eigen::MatrixXd body_force_displacement(GreenStore& store) {
+  if (store.is_body_force_done()) return store.read_body_force();
+  require_volume(store);
+  Eigen::MatrixXd displacement = FemSource(fem_problem(store.contents())).body_force();
+  if (store.has_body_force_room()) store.write_body_force(displacement);
+  return displacement;
 }
 
 }  // namespace greenloop::offline

@@ -28,4 +28,9 @@ void require_solvable(const GreenStoreContents& contents);
 /// asymmetric than 1e-8, or the store has no volume.
 SolveReport solve_green_functions(GreenStore& store, const FillProgressCallback& progress = {});
 
+/// What a uniform force of 1 N/m^3 on the whole body does, along x, y and z, from the store or, where it is not done
+/// there, from a factorisation: 3R x 3, m, row 3r + i axis i at row node r. solve_green_functions solves it beside the
+/// columns and writes it where the store has room for it. Throws std::runtime_error if the store has no volume.
+[[nodiscard]] Eigen::MatrixXd body_force_displacement(GreenStore& store);
+
 }  // namespace greenloop::offline

@@ -127,6 +127,25 @@ TEST_CASE("an interrupted run solves only what is missing, with the same result"
   CHECK(solve_green_functions(resumed).columns_solved == 0);
 }
 
+TEST_CASE("the body force is solved beside the columns, or by itself where it is missing, to the same bits") {
+  const TemporaryStore file("body_force.h5"), other("body_force_later.h5"), third("no_volume.h5");
+  const auto contents = ellipsoid_problem(1);
+  auto store = GreenStore::create(file.path, contents);
+  (void)solve_green_functions(store);
+  REQUIRE(store.is_body_force_done());
+  const MatrixXd moved = store.read_body_force();
+  CHECK(moved.norm() > 0);
+  CHECK(body_force_displacement(store) == moved);
+  auto later = GreenStore::create(other.path, contents);
+  CHECK(body_force_displacement(later) == moved);
+  CHECK(later.is_body_force_done());
+  auto without = contents;
+  without.volume = {};
+  without.volume_fixed.clear();
+  auto measured = GreenStore::create(third.path, without);
+  CHECK_THROWS_WITH_AS((void)body_force_displacement(measured), doctest::Contains("no volume"), std::runtime_error);
+}
+
 TEST_CASE("reciprocity that does not hold is measured and refused") {
   const TemporaryStore file("asymmetric.h5");
   auto store = GreenStore::create(file.path, ellipsoid_problem(1));
