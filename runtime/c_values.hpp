@@ -35,6 +35,8 @@ inline Elastostatic::Response response_of(std::size_t count, float* force, float
   return {{reinterpret_cast<Vec3*>(force), count}, field};
 }
 
+[[nodiscard]] Elastostatic::Loads loads_of(const greenloop_loads& loads) noexcept;
+
 [[nodiscard]] greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept;
 
 }  // namespace greenloop

@@ -5,41 +5,18 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/field.hpp"
 #include "runtime/elastostatic/body.hpp"
-#include "runtime/elastostatic/loads.hpp"
+#include "runtime/elastostatic/inputs.hpp"
 #include "runtime/elastostatic/planner.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
-
 namespace {
-
-// the finest level of the nodes that the response has room for; none if that is no level
-std::uint32_t finest_displaced(const Body& body, const Elastostatic::Response& response) {
-  for (std::uint32_t q = body.counts.levels; q-- > 0 && !body.counts.forces_only;) {
-    if (response.displacement.size() == body.counts.nodes[q]) {
-      return q;
-    }
-  }
-  return layout::none;
-}
-
-Status check_request(const Body& body, std::size_t constraints, Budget budget, const Elastostatic::Response& response) {
-  if (budget.work < body.least_work) {
-    return Status::held_over_budget;
-  }
-  if (constraints > std::size_t{body.counts.max_contacts} + body.counts.max_forces) {
-    return Status::held_out_of_range;
-  }
-  const bool field_fits = response.displacement.empty() ||
-                          (finest_displaced(body, response) != layout::none &&
-                           reinterpret_cast<std::uintptr_t>(response.displacement.data()) % alignof(Float4) == 0);
-  return response.force.size() == constraints && field_fits ? Status::ok : Status::held_response_size;
-}
 
 // the factor of the planned set; null if its capacitance matrix is not positive definite
 Factor* find_factor(Body& body, const Plan& plan) {
@@ -366,83 +343,13 @@ void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_
   }
 }
 
-// what comes of checking a step's constraints and loads, the units that took, and the contacts among them
-struct Accepted {
-  CheckedContacts checked;
-  std::uint64_t work = 0;
-  Contacts contacts;
-};
-
-// contacts alone; apart, so that it does not stand on the stack of an answer
-[[gnu::noinline]] void accept_contacts(Body& body, std::span<const Constraint> contacts, std::span<Vec3> force,
-                                       Accepted& accepted) {
-  body.stiffness = 1;
-  body.is_loaded = false;
-  accepted.work = check_contacts_work(body.counts.prices, contacts.size());
-  accepted.checked = check_contacts(contacts, body.view->node_count, body.facts, {body.counts.max_contacts, 0, {}});
-  accepted.contacts = {contacts, contacts, as_floats(force).data()};
+// surfaces that touch nothing that moves; apart for its stack
+[[gnu::noinline]] bool push_rigid(Body& body, const Contacts& contacts, std::uint64_t& work) {
+  const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
+  return push(body, contacts, {}, {}, nullptr, allowance, work);
 }
 
-// and whatever else acts
-[[gnu::noinline]] void accept_loaded(Body& body, std::span<const Constraint> constraints,
-                                     const Elastostatic::Loads& loads, std::span<Vec3> force, Accepted& accepted) {
-  const Status acting = check_loads(body, loads);
-  if (acting != Status::ok) {
-    accepted.checked.status = acting;
-    return;
-  }
-  const std::uint32_t most = body.counts.max_forces;
-  const std::uint64_t forces = most > 0 ? count_forces(constraints, loads.masks) : 0;
-  accepted.work = check_loaded_work(body.counts.prices, constraints.size(), forces < most ? forces : most);
-  accepted.checked =
-      check_contacts(constraints, body.view->node_count, body.facts, {body.counts.max_contacts, most, loads.masks});
-  if (accepted.checked.status == Status::ok && !take_loads(body, constraints, loads, force, accepted.contacts)) {
-    accepted.checked.status = Status::held_overflow;
-  }
-}
-
-// unilateral contacts, whose nodes are the contacts, and whatever else acts
-[[gnu::noinline]] void accept_surfaces(Body& body, std::span<const UnilateralContact> surfaces,
-                                       const Elastostatic::Loads& loads,
-                                       const Elastostatic::UnilateralResponse& response, ContactAnswer& found,
-                                       Accepted& accepted) {
-  const std::uint32_t most = body.counts.max_contacts;
-  const auto fits = [&](std::size_t size) { return size == 0 || size == surfaces.size(); };
-  CheckedContacts& checked = accepted.checked;
-  checked.status = !fits(response.state.size()) || !fits(response.gap.size()) ? Status::held_response_size
-                   : surfaces.size() > most                                   ? Status::held_out_of_range
-                   : body.counts.iterations == 0 && !surfaces.empty()         ? Status::held_unsupported
-                                                                              : check_loads(body, loads);
-  if (checked.status != Status::ok) {
-    return;
-  }
-  const Prices& prices = body.counts.prices;
-  UnilateralScratch& scratch = body.unilateral;
-  std::uint32_t nodes = 0;
-  checked = list_unilateral(surfaces, body.view->node_count, most, scratch, nodes);
-  const std::span<const Constraint> holds{scratch.hold, nodes};
-  if (checked.status == Status::ok) {
-    checked = check_contacts(holds, body.view->node_count, body.facts, {most, 0, {}});
-    checked.refused = checked.status == Status::ok ? checked.refused : contact_of(scratch, checked.refused);
-  }
-  accepted.work = list_unilateral_work(prices, surfaces.size(), most) + check_loaded_work(prices, most, 0);
-  if (checked.status != Status::ok) {
-    return;
-  }
-  if (!take_loads(body, holds, loads, {}, accepted.contacts)) {
-    checked.status = Status::held_overflow;
-    return;
-  }
-  Contacts& contacts = accepted.contacts;
-  contacts.held = holds;
-  contacts.force = scratch.hold_force;
-  contacts.surfaces = surfaces;
-  contacts.output = {response.force, response.state, response.gap};
-  contacts.found = &found;
-  contacts.corner_count = surfaces.empty() ? 0 : scratch.begin[surfaces.size()];
-}
-
-// a step whose inputs are accepted, or not
+// a step whose inputs are accepted
 void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elastostatic::Response& response,
                Elastostatic::StepReport& report) {
   report.refused = accepted.checked.refused;
@@ -451,12 +358,8 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   }
   const Contacts& contacts = accepted.contacts;
   std::uint64_t work = accepted.work;
-  if (contacts.held.empty() && !contacts.surfaces.empty()) {
-    // surfaces that touch nothing that moves
-    const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
-    if (!push(body, contacts, {}, {}, nullptr, allowance, work)) {
-      return hold(Status::held_overflow, work, report);
-    }
+  if (contacts.held.empty() && !contacts.surfaces.empty() && !push_rigid(body, contacts, work)) {
+    return hold(Status::held_overflow, work, report);
   }
   if (contacts.held.empty() && !body.is_loaded) {
     return release(body, response, work, report);
@@ -467,7 +370,7 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   wants.finest_displaced = wants.field ? finest_displaced(body, response) : body.counts.levels - 1;
   wants.corners = contacts.are_held() ? 0 : contacts.corners();
   wants.iterations = least_iterations(body.counts.iterations);
-  const Plan plan = make_plan(body, contacts.held, wants);
+  const Plan& plan = *new (body.plan) Plan(make_plan(body, contacts.held, wants));
   work += plan.work;
   if (!plan.fits) {
     return hold(Status::held_over_budget, work, report);
@@ -489,7 +392,7 @@ void take_step(Body& body, std::span<const Constraint> constraints, const Elasto
   if (constraints.empty() && loads == nullptr) {
     return release(body, response, check_contacts_work(body.counts.prices, 0), report);
   }
-  Accepted accepted;
+  Accepted& accepted = *new (body.accepted) Accepted;
   if (loads == nullptr) {
     accept_contacts(body, constraints, response.force, accepted);
   } else {
@@ -582,7 +485,7 @@ Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralCont
   body.answered = false;
   UnilateralReport report;
   ContactAnswer found;
-  Accepted accepted;
+  Accepted& accepted = *new (body.accepted) Accepted;
   accepted.checked.status = check_request(body, contacts.size(), budget, response);
   if (accepted.checked.status == Status::ok) {
     accept_surfaces(body, contacts, loads, response, found, accepted);

@@ -41,6 +41,7 @@ Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
   same.max_forces = limits.max_forces;
   same.model_loads = limits.model_loads != 0;
   same.max_points = limits.max_points;
+  same.iterations = limits.iterations;
   return same;
 }
 
@@ -54,14 +55,14 @@ std::span<const MeshPoint> points_of(const greenloop_vertex* points, std::size_t
   return {reinterpret_cast<const MeshPoint*>(points), count};
 }
 
-Elastostatic::Loads loads_of(const greenloop_loads& loads) {
+}  // namespace
+
+Elastostatic::Loads loads_of(const greenloop_loads& loads) noexcept {
   return {masks_of(loads.mask, loads.masks),
           {loads.gravity[0], loads.gravity[1], loads.gravity[2]},
           {loads.pressure, loads.pressures},
           loads.stiffness == 0 ? 1 : loads.stiffness};
 }
-
-}  // namespace
 
 greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept {
   const Elastostatic::StepDetails& details = report.details;
@@ -88,7 +89,7 @@ greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_mo
   const Elastostatic::Limits& limits = intent.limits;
   return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.keep_capacitance ? 1 : 0,
            limits.glide_cycles, limits.refining_work, nullptr, limits.max_forces, limits.model_loads ? 1 : 0,
-           limits.max_points},
+           limits.max_points, limits.iterations},
           intent.budget.work,
           intent.rate,
           intent.share};

@@ -139,6 +139,7 @@ typedef struct greenloop_elastostatic_limits {
   uint32_t max_forces; /* 0..4096, nodes that known forces are on in a step, those of masks each time; 0: refused */
   int model_loads;     /* 1: the model's loads may act, gravity and pressures */
   uint32_t max_points; /* 0..4096, points whose displacement may be asked for at once; 0: none, nor what masks meet */
+  uint32_t iterations; /* 0..1024 for unilateral contacts (greenloop_contact.h), at most 256 of them; 0: refused */
 } greenloop_elastostatic_limits;
 
 /* The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md). */

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "rt_tests/harness/touching_script.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -16,6 +17,7 @@ namespace greenloop {
 namespace {
 
 constexpr std::size_t promised = 1536;
+constexpr std::size_t promised_of_tools = 3072;
 constexpr std::size_t stack_bytes = 1 << 18;
 constexpr unsigned char paint = 0xa5;
 
@@ -136,6 +138,24 @@ TEST_CASE("a search for candidates keeps below 3 kB") {
     CHECK(found.left_out > 0);
     CHECK(bytes < 3072);
   }
+}
+
+TEST_CASE("a step of tools keeps below what docs/touching.md promises, whatever they do") {
+  const TestModel model({.levels = 4});
+  const ContactBody::Limits limits = TouchingScript::limits(64, 30);
+  const ContactBody::Requirement need = ContactBody::required(model.model(), limits);
+  AlignedBytes memory(need.bytes);
+  auto created = ContactBody::create(model.model(), limits, {memory.data(), memory.size()});
+  REQUIRE(created);
+  TouchingScript script(model.model(), need, 7);
+  std::size_t deepest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const TouchingScript::Cycle cycle = script.next(created.body);
+    deepest = std::max(deepest, depth_of([&] { static_cast<void>(created.body.step(cycle.tools, {}, cycle.budget)); }));
+  }
+  MESSAGE("deepest stack of a step of tools: ", deepest, " bytes");
+  CHECK(deepest > 1000);
+  CHECK(deepest < promised_of_tools);
 }
 
 }  // namespace

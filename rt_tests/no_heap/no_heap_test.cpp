@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "rt_tests/harness/minor_faults.hpp"
+#include "rt_tests/harness/touching_script.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -59,6 +60,31 @@ class Scripted {
   TestModel model_;
   TestBody body_;
   std::vector<std::vector<Constraint>> sets_;
+};
+
+// tools of all shapes that press, drag, jump and are refused
+class Touching {
+ public:
+  Touching()
+      : model_({.levels = 4}),
+        limits_(TouchingScript::limits(64, 30)),
+        need_(ContactBody::required(model_.model(), limits_)),
+        memory_(need_.bytes),
+        body_(ContactBody::create(model_.model(), limits_, {memory_.data(), memory_.size()}).body),
+        script_(model_.model(), need_, 3) {}
+
+  ContactBody::StepReport cycle() {
+    const TouchingScript::Cycle cycle = script_.next(body_);
+    return body_.step(cycle.tools, {}, cycle.budget);
+  }
+
+ private:
+  TestModel model_;
+  ContactBody::Limits limits_;
+  ContactBody::Requirement need_;
+  AlignedBytes memory_;
+  ContactBody body_;
+  TouchingScript script_;
 };
 
 TEST_CASE("the allocation guard trips on malloc, new and free") {
@@ -130,6 +156,25 @@ TEST_CASE("no allocation and no lock in the loop") {
   CHECK(seen.locks == 0);
   CHECK(refused > 0);
   CHECK(refused < cycles / 2);
+}
+
+TEST_CASE("no allocation, lock or minor page fault in steps of tools, whatever their poses") {
+  Touching touching;
+  for (int i = 0; i < 100; ++i) touching.cycle();
+  GuardCounts seen;
+  int refused = 0, pushed = 0;
+  const std::uint64_t faults = minor_faults();
+  for (int i = 0; i < cycles; ++i) {
+    ContactBody::StepReport report;
+    seen += guarded([&] { report = touching.cycle(); });
+    refused += answered(report.status) ? 0 : 1;
+    pushed += report.iterations > 0 ? 1 : 0;
+  }
+  CHECK(minor_faults() == faults);
+  CHECK(seen.allocations == 0);
+  CHECK(seen.locks == 0);
+  CHECK(refused > 0);
+  CHECK(pushed > cycles / 2);
 }
 
 TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is made") {
@@ -216,6 +261,12 @@ TEST_CASE("no system call in the loop, by Syscall User Dispatch") {
     scripted.cycle(i);
     system_call_guard::disarm();
   }
+  Touching touching;
+  for (int i = 0; i < cycles; ++i) {
+    system_call_guard::arm();
+    touching.cycle();
+    system_call_guard::disarm();
+  }
   CHECK(system_call_guard::count() == 1);
 }
 
@@ -238,12 +289,14 @@ int strict_child(Work work) {
 
 TEST_CASE("no system call in the loop, by strict seccomp") {
   Scripted scripted;
+  Touching touching;
   const int caught = strict_child([] { static_cast<void>(syscall(SYS_getppid)); });
   REQUIRE(!(WIFEXITED(caught) && WEXITSTATUS(caught) == 99));
   CHECK(WIFSIGNALED(caught));
-  const int clean = strict_child([&scripted] {
+  const int clean = strict_child([&] {
     for (int i = 0; i < cycles; ++i) {
       scripted.cycle(i);
+      touching.cycle();
     }
   });
   CHECK(WIFEXITED(clean));

@@ -7,6 +7,8 @@
 #include "formats/stored_blocks.hpp"
 #include "runtime/algebra/cholesky.hpp"
 #include "runtime/compliance/couplings.hpp"
+#include "runtime/elastostatic/inputs.hpp"
+#include "runtime/elastostatic/planner.hpp"
 #include "runtime/wavelet/domain.hpp"
 
 namespace greenloop {
@@ -188,6 +190,8 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   if (sizes.counts.iterations > 0) {
     body.unilateral.carve(arena, sizes.counts.max_contacts, view.node_count);
   }
+  body.accepted = arena.take<Accepted>(1);
+  body.plan = arena.take<Plan>(1);
 }
 
 void count_stored(const ModelView& view, std::uint32_t* stored) {

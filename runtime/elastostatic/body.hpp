@@ -23,6 +23,9 @@
 
 namespace greenloop {
 
+struct Accepted;
+struct Plan;
+
 /// What a body keeps of what acts on it beside its contacts.
 struct LoadState {
   KnownForces forces;                 ///< of a step
@@ -83,6 +86,9 @@ struct Body {
   bool is_loaded = false;  ///< something but contacts acts in the step
   Glide glide;
   UnilateralScratch unilateral;  ///< without room unless unilateral contacts are allowed
+  // of a step, kept off the stack
+  Accepted* accepted = nullptr;
+  Plan* plan = nullptr;
   const std::byte* last_red_zone = nullptr;
 
   [[nodiscard]] const FactorTools<3>& factor_tools() const { return *tools; }

@@ -15,6 +15,8 @@
 #include "rt_tests/harness/elastostatic_driver.hpp"
 #include "rt_tests/harness/recorded_run.hpp"
 #include "rt_tests/harness/recorded_script.hpp"
+#include "rt_tests/harness/touching_run.hpp"
+#include "rt_tests/harness/touching_script.hpp"
 
 namespace {
 
@@ -92,6 +94,25 @@ int compare(const Recorded& of, bool flip) {
   return run.digest == of.digest ? 0 : 4;
 }
 
+// the same of tools that touch the first model
+int compare_touching(bool flip) {
+  const auto opened = greenloop::Model::open(recorded[0].model);
+  if (!opened) {
+    return 1;
+  }
+  const auto run = greenloop::run_touching_script(
+      opened.model, greenloop::TouchingScript::limits(greenloop::touching_contacts, greenloop::touching_iterations),
+      arena, greenloop::touching_cycles, 1, flip);
+  std::printf("%s, tools: %" PRIu64 " contacts with a force, arena %zu bytes\ndigest %016" PRIx64
+              ", expected %016" PRIx64 "\n",
+              this_build, run.contacts, run.memory_bytes, run.digest, greenloop::touching_digest);
+  if (run.error != nullptr) {
+    std::printf("%s\n", run.error);
+    return 1;
+  }
+  return run.digest == greenloop::touching_digest ? 0 : 4;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -109,5 +130,6 @@ int main(int argc, char** argv) {
     const int of_model = compare(of, flip && &of == std::end(recorded) - 1);
     status = of_model == 0 ? status : of_model;
   }
-  return status;
+  const int touching = compare_touching(flip);
+  return touching == 0 ? status : touching;
 }

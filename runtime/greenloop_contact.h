@@ -1,0 +1,200 @@
+/* Unilateral contacts and rigid tools in C99: what Elastostatic::step of unilateral contacts (docs/loop.md) and
+ * runtime/contact_body.hpp (docs/touching.md) give, the same bits. Memory and threads: as greenloop.h says. */
+#ifndef GREENLOOP_CONTACT_H
+#define GREENLOOP_CONTACT_H
+/* NOLINTBEGIN(modernize-use-using, modernize-deprecated-headers): this header is C */
+
+#include "runtime/greenloop.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a unilateral contact does; in an uint8_t where it stands in an array. */
+typedef enum greenloop_contact_state {
+  GREENLOOP_CONTACT_OPEN,  /* no force */
+  GREENLOOP_CONTACT_STICK, /* it does not slide */
+  GREENLOOP_CONTACT_SLIP   /* it slides, or is about to: the force is on the cone of friction */
+} greenloop_contact_state;
+
+/* A rigid surface at a point of a body: it may push the point and rub against it, but not pull it. */
+typedef struct greenloop_unilateral_contact {
+  uint32_t node[3]; /* touchable ones that the point hangs on; GREENLOOP_NONE: there are fewer */
+  float weight[3];  /* of each, above 0; 1 in all, or less where a corner cannot move */
+  float value[3];   /* m, the point's displacement at which it touches the surface and has not slid along it */
+  float normal[3];  /* unit vector out of the surface, to where the point may be */
+  float friction;   /* Coulomb's coefficient, 0 or more */
+  float softness;   /* m/N, of the surface itself, 0 or more; above 0 if no node is named */
+  float force[3];   /* N, a guess to begin with, as from the last step */
+} greenloop_unilateral_contact;
+
+typedef struct greenloop_unilateral_report {
+  greenloop_elastostatic_report step;
+  float residual;      /* of the contact laws, relative */
+  uint32_t iterations; /* that were made */
+} greenloop_unilateral_report;
+
+/* greenloop_elastostatic_step for `count` rigid surfaces that push and rub, of a body with limits.iterations. loads:
+ * null: nothing else acts. force: 3 * count floats [N]. state: count of greenloop_contact_state; null: not wanted.
+ * gap: 4 * count floats, 16-byte aligned [m], from where each touches and has not slid; null: not wanted. For the
+ * loop. */
+greenloop_unilateral_report greenloop_elastostatic_push(greenloop_elastostatic* body,
+                                                        const greenloop_unilateral_contact* contacts, size_t count,
+                                                        const greenloop_loads* loads, uint64_t work, float* force,
+                                                        uint8_t* state, float* gap, float* displacement,
+                                                        uint32_t nodes);
+
+/* ---- Rigid tools. ---- */
+
+/* A convex polyhedron in the caller's memory. */
+typedef struct greenloop_polyhedron greenloop_polyhedron;
+
+typedef enum greenloop_polyhedron_error {
+  GREENLOOP_POLYHEDRON_OK,
+  GREENLOOP_POLYHEDRON_BAD_COUNT,  /* fewer than four vertices or faces, or more than 128 or 252 */
+  GREENLOOP_POLYHEDRON_NOT_FINITE, /* a vertex is not finite, or a coordinate of more than 1e6 m */
+  GREENLOOP_POLYHEDRON_BAD_INDEX,  /* a face names no vertex */
+  GREENLOOP_POLYHEDRON_FLAT_FACE,  /* a face has no area */
+  GREENLOOP_POLYHEDRON_NOT_CLOSED, /* an edge is not that of just two faces that run along it in opposite directions */
+  GREENLOOP_POLYHEDRON_INWARD,     /* faces are clockwise seen from outside, or enclose nothing */
+  GREENLOOP_POLYHEDRON_NOT_CONVEX, /* a vertex stands out from a face's plane */
+  GREENLOOP_POLYHEDRON_MEMORY_TOO_SMALL,
+  GREENLOOP_POLYHEDRON_MEMORY_MISALIGNED
+} greenloop_polyhedron_error;
+
+typedef struct greenloop_polyhedron_created {
+  greenloop_polyhedron_error error;
+  uint32_t at;                            /* the vertex or face, by its number, that the error is about */
+  size_t requested, available, missing;   /* bytes */
+  const greenloop_polyhedron* polyhedron; /* null on an error */
+} greenloop_polyhedron_created;
+
+/* Bytes. Start-up. */
+size_t greenloop_polyhedron_required(size_t vertices, size_t faces);
+
+/* vertex: 3 * vertices doubles [m]; face: 3 * faces numbers of vertices, counter-clockwise seen from outside. Both are
+ * copied into `memory`, GREENLOOP_ALIGNMENT-aligned. Start-up; quadratic. */
+greenloop_polyhedron_created greenloop_polyhedron_create(const double* vertex, size_t vertices, const uint32_t* face,
+                                                         size_t faces, void* memory, size_t bytes);
+
+typedef enum greenloop_shape_kind {
+  GREENLOOP_SHAPE_POINT,     /* in the origin of its own frame */
+  GREENLOOP_SHAPE_SPHERE,    /* around the origin. size[0]: its radius */
+  GREENLOOP_SHAPE_CAPSULE,   /* along z. size[0]: its radius; size[1]: half the length of its axis */
+  GREENLOOP_SHAPE_BOX,       /* around the origin. size: half its sides */
+  GREENLOOP_SHAPE_PLANE,     /* the half space z <= 0 */
+  GREENLOOP_SHAPE_POLYHEDRON /* polyhedron: what it is */
+} greenloop_shape_kind;
+
+/* The shape of a tool, in its own frame. An unknown kind, or a polyhedron that is null, is a bad shape. */
+typedef struct greenloop_shape {
+  greenloop_shape_kind kind;
+  double size[3];                         /* m */
+  const greenloop_polyhedron* polyhedron; /* its memory must outlive the shape; null for others */
+} greenloop_shape;
+
+typedef struct greenloop_tool {
+  greenloop_shape shape;
+  double position[3];   /* m, of its origin, in the frame of the model */
+  double quaternion[4]; /* w, x, y, z of unit length: turns the tool's axes into the model's */
+  double friction;      /* Coulomb's coefficient, 0 or more */
+} greenloop_tool;
+
+/* Why a tool was left alone in a step. */
+typedef enum greenloop_tool_fault {
+  GREENLOOP_TOOL_OK,
+  GREENLOOP_TOOL_BAD_SHAPE,
+  GREENLOOP_TOOL_TOO_MANY_POINTS, /* more than the limits have */
+  GREENLOOP_TOOL_NOT_FINITE,      /* its pose */
+  GREENLOOP_TOOL_TOO_FAR,         /* a coordinate of more than 1e6 m */
+  GREENLOOP_TOOL_NOT_UNIT         /* its quaternion's length differs from 1 by more than 0.01 */
+} greenloop_tool_fault;
+
+/* What a tool feels. */
+typedef struct greenloop_tool_answer {
+  uint8_t fault;          /* a greenloop_tool_fault: with one the tool is left out */
+  double force[3];        /* N, on the tool */
+  double torque[3];       /* N m, on the tool about its position */
+  uint32_t first_contact; /* among greenloop_contact_body_contacts */
+  uint32_t contacts;      /* places that may touch, of which those with a force do */
+  double depth;           /* m, how far the tool was inside of the surface before this step's answer */
+} greenloop_tool_answer;
+
+/* A place of the surface that may touch a tool. */
+typedef struct greenloop_touch {
+  uint32_t node[3]; /* those after the first are GREENLOOP_NONE unless it lies in a triangle */
+  double weight[3];
+  uint32_t tool;
+  uint8_t state;      /* a greenloop_contact_state */
+  double position[3]; /* m, of the surface, displaced */
+  double normal[3];   /* unit, out of the tool */
+  double force[3];    /* N, on the body */
+  double gap;         /* m, from the tool along the normal */
+} greenloop_touch;
+
+/* An elastic body that tools touch; it lives in the caller's memory. */
+typedef struct greenloop_contact_body greenloop_contact_body;
+
+typedef struct greenloop_contact_body_limits {
+  greenloop_elastostatic_limits elastostatic; /* max_contacts: at most 256; iterations above 0; forces_only 0 */
+  uint32_t max_tools;                         /* 1..16; 0: 2 */
+  uint32_t max_points;                        /* of a tool that are followed, 1..128; 0: 8 */
+  double margin;          /* m, how near the surface is looked at; 0: a quarter of its mean edge length */
+  double rigid_stiffness; /* N/m, of places that cannot move; 0: what the model's material has over 1 mm */
+} greenloop_contact_body_limits;
+
+typedef struct greenloop_contact_body_requirement {
+  size_t bytes;        /* 0: greenloop_contact_body_create would refuse */
+  uint64_t least_work; /* of the elastic body alone, coarsest; greenloop_contact_body_touching_work comes to it */
+  uint64_t worst_work; /* the same at the finest level */
+} greenloop_contact_body_requirement;
+
+typedef struct greenloop_contact_body_created {
+  greenloop_create_error error;
+  size_t requested, available, missing; /* bytes */
+  greenloop_contact_body* body;         /* null on an error */
+} greenloop_contact_body_created;
+
+typedef struct greenloop_contact_body_report {
+  greenloop_unilateral_report contact;
+  uint64_t touching_work;  /* part of the work: what finding contacts took */
+  uint32_t left_out;       /* places that may touch, but for which there was no room: the deepest were kept */
+  double deepest_left_out; /* m, depth of the deepest of these */
+} greenloop_contact_body_report;
+
+/* Start-up. */
+greenloop_contact_body_requirement greenloop_contact_body_required(const greenloop_model* model,
+                                                                   greenloop_contact_body_limits limits);
+
+/* memory: GREENLOOP_ALIGNMENT-aligned. Start-up; linear in the model's bytes. */
+greenloop_contact_body_created greenloop_contact_body_create(const greenloop_model* model,
+                                                             greenloop_contact_body_limits limits, void* memory,
+                                                             size_t bytes);
+
+/* Units that finding what may touch these tools takes at most, wherever they are. For the loop. */
+uint64_t greenloop_contact_body_touching_work(const greenloop_contact_body* body, const greenloop_tool* tools,
+                                              size_t count);
+
+/* One cycle of the loop. A tool is known from step to step by its place among them; with more than max_tools the step
+ * is refused. loads: null: nothing else acts. On a held status the last answer stands. For the loop. */
+greenloop_contact_body_report greenloop_contact_body_step(greenloop_contact_body* body, const greenloop_tool* tools,
+                                                          size_t count, const greenloop_loads* loads, uint64_t work);
+
+/* The last answer, in the body's memory, until the next step. displacement: 4 floats per node [m], x y z 0. */
+const greenloop_tool_answer* greenloop_contact_body_tools(const greenloop_contact_body* body, size_t* count);
+const greenloop_touch* greenloop_contact_body_contacts(const greenloop_contact_body* body, size_t* count);
+const float* greenloop_contact_body_displacement(const greenloop_contact_body* body, size_t* nodes);
+
+/* The tool is somewhere else without having been between. For the loop. */
+void greenloop_contact_body_forget(greenloop_contact_body* body, uint32_t tool);
+
+/* One sentence each; static storage. */
+const char* greenloop_polyhedron_error_text(greenloop_polyhedron_error error);
+const char* greenloop_tool_fault_text(greenloop_tool_fault fault);
+
+#ifdef __cplusplus
+}
+#endif
+
+/* NOLINTEND(modernize-use-using, modernize-deprecated-headers) */
+#endif
