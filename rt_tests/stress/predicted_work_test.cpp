@@ -104,8 +104,9 @@ TEST_CASE("starved, a moving tool's force steps as the finest level's does where
     CHECK(steps.finest > 0);
     CHECK(steps.tenth <= std::max(1.5, 1.001 * steps.apart));
     CHECK(steps.quarter <= std::max(1.5, 1.001 * steps.apart));
-    const StarvedSteps same = starved_steps<ElastostaticDriver>(model.model(), options, 400);
-    CHECK(same.tenth == steps.tenth);
+    if (seed == 1) {
+      CHECK(starved_steps<ElastostaticDriver>(model.model(), options, 400).tenth == steps.tenth);
+    }
   }
 }
 
