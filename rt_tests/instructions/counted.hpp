@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -34,6 +35,24 @@ std::uint64_t count_instructions(Prepare prepare, Work work) {
 template <class Work>
 std::uint64_t count_instructions(Work work) {
   return count_instructions([] {}, work);
+}
+
+/// Instructions of work(i) after `prepare`, for each i below n. If two or more counts all agree, one of each is enough;
+/// otherwise each is counted until two in a row agree.
+template <class Prepare, class Work>
+std::vector<std::uint64_t> count_each(std::size_t n, Prepare prepare, Work work) {
+  std::size_t i = 0;
+  const auto of_this = [&] { work(i); };
+  std::vector<std::uint64_t> counts(n);
+  for (i = 0; i < n; ++i) {
+    prepare();
+    counts[i] = count_once(of_this);
+  }
+  const bool agree = n > 1 && std::count(counts.begin(), counts.end(), counts[0]) == static_cast<std::ptrdiff_t>(n);
+  for (i = 0; i < n && !agree; ++i) {
+    counts[i] = count_instructions(prepare, of_this);
+  }
+  return counts;
 }
 
 /// Says what the counts were where they differ.

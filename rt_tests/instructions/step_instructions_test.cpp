@@ -39,21 +39,20 @@ struct Outcome {
 
 Outcome take(const Way& way, TestBody& body, std::initializer_list<float> values) {
   Outcome outcome;
+  std::vector<std::vector<Constraint>> sets;
+  for (const float value : values) {
+    sets.push_back(contacts(way.nodes, value));
+  }
   const auto prepare = [&] {
     body.renew();
     if (!way.before.empty()) {
       body.step(contacts(way.before, 1e-3F), any_budget, true);
     }
   };
-  const auto count = [&](float value) {
-    const auto set = contacts(way.nodes, value);
-    return count_instructions(prepare, [&] { outcome.report = body.step(set, way.budget, way.with_field); });
-  };
-  prepare();  // every library function has been called before
-  body.step(contacts(way.nodes, *values.begin()), way.budget, way.with_field);
-  for (const float value : values) {
-    outcome.instructions.push_back(count(value));
-  }
+  const auto step = [&](std::size_t i) { outcome.report = body.step(sets[i], way.budget, way.with_field); };
+  prepare();
+  step(0);  // every library function has been called before
+  outcome.instructions = count_each(sets.size(), prepare, step);
   return outcome;
 }
 

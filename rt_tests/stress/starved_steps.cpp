@@ -42,9 +42,19 @@ std::vector<std::uint32_t> path_over(const ModelView& view, std::uint64_t seed) 
   return path;
 }
 
+// a tool's way over the nodes; apart: a new contact is held in the cycle after an old one has gone, not in the same
+struct Tool {
+  std::vector<std::uint32_t> path;
+  std::size_t contacts = 0;
+  bool apart = false;
+};
+
 // the tool's constraints in a cycle
-std::vector<Constraint> held_in(const std::vector<std::uint32_t>& path, std::size_t contacts, std::uint64_t cycle) {
+std::vector<Constraint> held_in(const Tool& tool, std::uint64_t cycle) {
+  const auto& path = tool.path;
   const float share = std::min(1.0F, static_cast<float>(cycle + 1) / static_cast<float>(cycles_of_press));
+  const bool comes = cycle >= cycles_of_node && cycle % cycles_of_node == 0;
+  const std::size_t contacts = tool.apart && comes ? tool.contacts - 1 : tool.contacts;
   std::vector<Constraint> held;
   for (std::size_t i = 0; i < std::min(contacts, path.size()); ++i) {
     held.push_back({path[(cycle / cycles_of_node + i) % path.size()], {0, 0, -depth * share}});
@@ -58,13 +68,12 @@ struct Motion {
 };
 
 template <Driver D>
-Motion move_tool(Hosted<typename D::Solver>& host, const std::vector<std::uint32_t>& path, std::size_t contacts,
-                 std::uint64_t cycles, std::uint64_t budget) {
+Motion move_tool(Hosted<typename D::Solver>& host, const Tool& tool, std::uint64_t cycles, std::uint64_t budget) {
   host.renew();
   Motion motion;
   double last[3] = {};
   for (std::uint64_t cycle = 0; cycle < cycles; ++cycle) {
-    const auto report = host.step(held_in(path, contacts, cycle), budget, false);
+    const auto report = host.step(held_in(tool, cycle), budget, false);
     motion.most_needed = std::max(motion.most_needed, report.details.needed_work);
     double total[3] = {}, change = 0;
     for (std::size_t i = 0; i < host.force().size(); ++i) total[i % 3] += double{host.force()[i]};
@@ -83,15 +92,16 @@ template <Driver D>
 StarvedSteps starved_steps(const Model& model, const StressOptions& options, std::uint64_t cycles) {
   const std::uint32_t held = std::min(options.contacts, most_contacts);
   Hosted<typename D::Solver> host(model, D::limits(held, options.factors, options.prices));
-  const std::vector<std::uint32_t> path = path_over(model.view(), options.seed);
-  const Motion finest = move_tool<D>(host, path, held, cycles, any_budget);
+  const Tool tool{path_over(model.view(), options.seed), held, false};
+  const Tool apart{tool.path, held, true};
+  const Motion finest = move_tool<D>(host, tool, cycles, any_budget);
   const std::uint64_t least = D::bounds(host.limits(), host.requirement()).least_work;
-  const auto starved = [&](std::uint64_t part) {
-    const std::uint64_t budget = std::max(least, finest.most_needed / part);
-    return finest.largest_step > 0 ? move_tool<D>(host, path, held, cycles, budget).largest_step / finest.largest_step
-                                   : 0;
+  const auto over_finest = [&](const Tool& moved, std::uint64_t budget) {
+    const double step = move_tool<D>(host, moved, cycles, std::max(least, budget)).largest_step;
+    return finest.largest_step > 0 ? step / finest.largest_step : 0;
   };
-  return {finest.largest_step, starved(10), starved(4)};
+  return {finest.largest_step, over_finest(tool, finest.most_needed / 10), over_finest(tool, finest.most_needed / 4),
+          over_finest(apart, any_budget)};
 }
 
 template StarvedSteps starved_steps<ElastostaticDriver>(const Model&, const StressOptions&, std::uint64_t);

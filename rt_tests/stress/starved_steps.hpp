@@ -14,6 +14,7 @@ struct StarvedSteps {
   double finest = 0;   ///< N, largest step of the total force with any budget
   double tenth = 0;    ///< largest step at a tenth of the work of the dearest of those cycles, over `finest`
   double quarter = 0;  ///< the same at a quarter
+  double apart = 0;    ///< the same with any budget, where the new contact is held a cycle after the old one has gone
 };
 
 /// A patch of up to 16 nodes, pressed by 1 mm over its first 32 cycles, that moves on by a node every 16 cycles: a new

@@ -57,6 +57,13 @@ json as_json(const PredictedWork& predicted) {
   return all;
 }
 
+json as_json(const StarvedSteps& starved) {
+  return {{"finest_N", starved.finest},
+          {"tenth_over_finest", starved.tenth},
+          {"quarter_over_finest", starved.quarter},
+          {"apart_over_finest", starved.apart}};
+}
+
 void print_scripts(const std::vector<ScriptResult>& scripts) {
   fmt::print("{:<12} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>12} {:>9} {:>10}\n", "script", "cycles", "answered",
              "coarser", "waiting", "cached", "changed", "refused", "worst work", "worst us", "force step");
@@ -128,32 +135,30 @@ std::string StressReport::replay() const {
 }
 
 nlohmann::json StressReport::json() const {
-  nlohmann::json all = {
-      {"model", model},
-      {"seed", options.seed},
-      {"contacts", options.contacts},
-      {"factors", options.factors},
-      {"cycles", result.cycles},
-      {"worst_work", result.counts.worst_work},
-      {"declared_work", result.declared_work},
-      {"declared_over_worst", declared_over_worst()},
-      {"predicted_over_instructions", nullptr},
-      {"force_step_over_finest", starved.tenth},
-      {"force_steps",
-       {{"finest_N", starved.finest}, {"tenth_over_finest", starved.tenth}, {"quarter_over_finest", starved.quarter}}},
-      {"time", time},
-      {"time_verdict", time.word()},
-      {"instructions_max", nullptr},
-      {"force_step_max", result.force_step_max},
-      {"digest", fmt::format("{:016x}", result.digest)},
-      {"open_ms", open_ms},
-      {"create_ms", result.create_ms},
-      {"arena_bytes", result.arena_bytes},
-      {"minutes_per_million_cycles", minutes_per_million},
-      {"histogram", as_json(result.times)},
-      {"scripts", nlohmann::json::array()},
-      {"first_violation", nullptr},
-      {"verdict", result.held() ? "HELD" : "VIOLATED"}};
+  nlohmann::json all = {{"model", model},
+                        {"seed", options.seed},
+                        {"contacts", options.contacts},
+                        {"factors", options.factors},
+                        {"cycles", result.cycles},
+                        {"worst_work", result.counts.worst_work},
+                        {"declared_work", result.declared_work},
+                        {"declared_over_worst", declared_over_worst()},
+                        {"predicted_over_instructions", nullptr},
+                        {"force_step_over_finest", starved.tenth},
+                        {"force_steps", as_json(starved)},
+                        {"time", time},
+                        {"time_verdict", time.word()},
+                        {"instructions_max", nullptr},
+                        {"force_step_max", result.force_step_max},
+                        {"digest", fmt::format("{:016x}", result.digest)},
+                        {"open_ms", open_ms},
+                        {"create_ms", result.create_ms},
+                        {"arena_bytes", result.arena_bytes},
+                        {"minutes_per_million_cycles", minutes_per_million},
+                        {"histogram", as_json(result.times)},
+                        {"scripts", nlohmann::json::array()},
+                        {"first_violation", nullptr},
+                        {"verdict", result.held() ? "HELD" : "VIOLATED"}};
   for (const auto& [name, count] : named(result.violations)) {
     all[name] = count;
   }
@@ -203,8 +208,8 @@ void StressReport::print() const {
   fmt::print("largest relative step of the forces by a change of level alone {:.3g}\n", result.force_step_max);
   fmt::print(
       "largest step of a moving tool's force at a tenth, a quarter of the finest level's work: {:.2f}, {:.2f} times "
-      "the finest level's\n",
-      starved.tenth, starved.quarter);
+      "the finest level's; {:.2f} where contacts go before others come\n",
+      starved.tenth, starved.quarter, starved.apart);
   fmt::print("digest {:016x}; {:.1f} minutes per million cycles\n\n", result.digest, minutes_per_million);
   print_histogram(result.times);
 }

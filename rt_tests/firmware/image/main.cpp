@@ -2,8 +2,9 @@
 // Equilibrated wavelets and compares the digests, "--loop" runs a hand of eight contacts in a 1 kHz interrupt and
 // compares the instructions of a step with the bar, "--ready" holds eight contacts on a larger model that is read in
 // place. "--steps" prints the instructions of every step of the recorded script with counting_prices on each model,
-// what greenloop-calibrate fits this processor's prices to; "--priced" compares work at these prices with instructions.
-// "--flip-bit" and "--slow" are their negative controls. Exit status: 0, or which check failed.
+// what greenloop-calibrate fits this processor's prices to; "--priced" compares work at these prices with instructions,
+// with "--more" of three scripts a model. "--flip-bit" and "--slow" are their negative controls. Exit status: 0, or
+// which check failed.
 #include <algorithm>
 
 #include "body_model.h"
@@ -234,16 +235,20 @@ int print_steps() {
   return passed;
 }
 
-int compare_priced() {
+// scripts of so many seeds
+int compare_priced(std::uint64_t seeds) {
   int status = passed;
   for (const auto model : counted_models) {
     PredictedInstructions predicted;
-    const CountedScript script{std::as_bytes(model), cortex_m7_prices(), 21, arena, field};
-    const bool ran = script.run([&](const Solver::StepReport& report, std::uint64_t counted) {
-      if (answered(report.status)) {
-        predicted.add(report.work, counted);
-      }
-    });
+    bool ran = true;
+    for (std::uint64_t seed = 21; ran && seed < 21 + seeds; ++seed) {
+      const CountedScript script{std::as_bytes(model), cortex_m7_prices(), seed, arena, field};
+      ran = script.run([&](const Solver::StepReport& report, std::uint64_t counted) {
+        if (answered(report.status)) {
+          predicted.add(report.work, counted);
+        }
+      });
+    }
     predicted.print();
     status = !ran ? does_not_run : predicted.meets_the_bar() ? status : over_the_bar;
   }
@@ -270,7 +275,7 @@ int main() {
   } else if (command_line_contains("--ready")) {
     status = run_ready(command_line_contains("--slow"));
   } else if (command_line_contains("--priced")) {
-    status = compare_priced();
+    status = compare_priced(command_line_contains("--more") ? 3 : 1);
   }
   print_sizes();
   return status;
