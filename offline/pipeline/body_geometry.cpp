@@ -58,8 +58,10 @@ auto offering_a_wrap(const Scene& scene, const std::string& offer, const Work& w
   try {
     return work();
   } catch (const std::runtime_error& error) {
-    if (scene.mesh.tetrahedra || scene.mesh.wrap) throw;
-    throw std::runtime_error(std::string(error.what()) + "\n" + offer + ": set [surface] wrap = \"auto\"");
+    if (scene.mesh.wrap) throw;
+    const char* const how = scene.mesh.tetrahedra ? ": name the file in [surface] and set wrap = \"auto\""
+                                                  : ": set [surface] wrap = \"auto\"";
+    throw std::runtime_error(std::string(error.what()) + "\n" + offer + how);
   }
 }
 

@@ -6,13 +6,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "offline/pipeline/body_sizes.hpp"
 #include "offline/surface/area_and_volume.hpp"
 
 namespace greenloop::offline {
@@ -20,19 +18,15 @@ namespace {
 
 /// Radii of rounding, in edges of a finest triangle, in the order in which they are tried.
 constexpr std::array roundings{0.0, 1.0, 2.0, 4.0};
-constexpr double work_of_rounding = 6;
+/// What a rung may take before the next one is: times the base asked for, and attempts.
+constexpr int most_growth = 2;
+constexpr double most_work = 6;
 
 RemeshOptions options_of(const Scene& scene) {
   RemeshOptions options;
   options.base_vertices = scene.remesh.base_vertices;
   options.levels = scene.remesh.levels;
   return options;
-}
-
-/// As large as a store of a body that is touched and read everywhere allows; twice what is asked for at least.
-int most_base_vertices(const RemeshOptions& options) {
-  const double nodes = std::sqrt(most_bytes_unasked / (9 * sizeof(double)));
-  return std::max(2 * options.base_vertices, static_cast<int>(std::ldexp(nodes, -2 * options.levels)));
 }
 
 /// "2 repairs: ...; ..."
@@ -94,8 +88,8 @@ class Ladder {
          ProgressBar& progress)
       : faces_(faces), notes_(notes), options_(options), progress_(progress), area_(surface_area(faces)) {
     wrapping_.largest_piece = largest_piece;
-    options_.most_base_vertices = most_base_vertices(options);
-    options_.most_work = work_of_rounding;
+    options_.most_base_vertices = most_growth * options.base_vertices;
+    options_.most_work = most_work;
   }
 
   RemeshedSkin climb() {

@@ -23,9 +23,9 @@ struct RemeshedSkin {
 [[nodiscard]] RemeshedSkin remesh_skin(const Scene& scene, PreparedSurface surface, ProgressBar& progress);
 
 /// Wraps any faces [m], of whose reading `notes` tells, and remeshes that. A wrap of a given length is remeshed as it
-/// is. Of one whose length is chosen, a form that the levels asked for resolve is found: while no base small enough for
-/// a store of most_bytes_unasked will do, it is wrapped again, rounded by one, two, four edges of a finest triangle
-/// (see round_solid); why is told among the repairs. The work is that of four wraps, and of four times six attempts to
+/// is. Of one whose length is chosen, a form that the levels asked for resolve is found: while no base of at most twice
+/// the size asked for will do, it is wrapped again, rounded by one, two, four edges of a finest triangle (see
+/// round_solid); why is told among the repairs. The work is that of four wraps, and of four times six attempts to
 /// remesh at most. Throws as wrap, prepare_surface and remesh do.
 [[nodiscard]] RemeshedSkin wrap_and_remesh(const Scene& scene, const TriangleMesh& faces, const MeshNotes& notes,
                                            ProgressBar& progress);

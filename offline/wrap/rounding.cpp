@@ -97,7 +97,9 @@ void round_solid(std::vector<float>& field, const Lattice& lattice, double radiu
   const auto in = distance_to(complement(inside), lattice), out = distance_to(inside, lattice);
   const auto reach = static_cast<float>(radius) + band;
   for (std::size_t i = 0; i < field.size(); ++i) {
-    field[i] = std::clamp(inside[i] != 0 ? 0.5F - in[i] : out[i] - 0.5F, -reach, reach);
+    const float rounded = std::clamp(inside[i] != 0 ? 0.5F - in[i] : out[i] - 0.5F, -reach, reach);
+    const bool moved = std::abs(rounded - field[i]) > 1;  // elsewhere the field is more exact than its points
+    if (moved) field[i] = rounded;
   }
   for (int pass = 0; pass < 2; ++pass) blur(field, std::max(1, static_cast<int>(radius / 3)), lattice);
   for (float& value : field) value = std::clamp(value, -band, band);

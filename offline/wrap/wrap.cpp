@@ -264,22 +264,21 @@ Wrapped wrap(const TriangleMesh& input, const WrapOptions& options) {
   report.filled_shells = sides.filled_shells;
   const bool plate = sides.sheet > 0.5;
   if (plate) thicken(field);
+  double plate_half = plate_offset;
   const bool rounded = options.rounding > 0;
-  if (rounded) keep_thin_parts(field, crossings, lattice);
+  if (rounded) {
+    const double radius = options.rounding / frame.length;
+    keep_thin_parts(field, crossings, lattice);
+    round_solid(field, lattice, radius);
+    report.rounding = options.rounding;
+    plate_half = std::max(plate_half, radius);
+  }
   const Pieces pieces = keep_largest_piece(field, lattice);
-  require_one_piece(pieces, options.largest_piece, frame.length);
+  require_one_piece(pieces, options.largest_piece || rounded, frame.length);
   std::size_t dropped = 0;
   for (std::size_t i = 1; i < pieces.size(); ++i) dropped += pieces[i];
   report.pieces_dropped = pieces.size() - 1;
   report.dropped_share = static_cast<double>(dropped) / static_cast<double>(dropped + pieces[0]);
-  double plate_half = plate_offset;
-  if (rounded) {
-    const double radius = options.rounding / frame.length;
-    round_solid(field, lattice, radius);
-    static_cast<void>(keep_largest_piece(field, lattice));
-    report.rounding = options.rounding;
-    plate_half = std::max(plate_half, radius);
-  }
   make_well_composed(field, lattice);
 
   const QuadSurface zero = zero_surface(field, lattice);

@@ -71,7 +71,8 @@ class NothingLeft : public std::runtime_error {
 /// makes some 70,000 triangles.
 ///
 /// With `rounding`, parts thinner than twice its radius are thickened to it, even those that the length does not tell,
-/// narrower gaps closed, edges rounded; the length is half of it at most, if none is given.
+/// narrower gaps closed, edges rounded, and the largest piece kept of what is left; the length is half of it at most,
+/// if none is given.
 ///
 /// Throws std::runtime_error, naming the number, if the length is too short for most_lattice_points or too long, if no
 /// face has an area, NothingLeft if the length resolves nothing, and std::runtime_error if there is more than one piece
