@@ -1,14 +1,49 @@
 #include "formats/mesh/surface_io.hpp"
 
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "formats/mesh/surface_formats.hpp"
+#include "formats/mesh/volume_formats.hpp"
 
 namespace greenloop {
 namespace {
 
-constexpr const char* surface_file = "a surface file: .off, .obj, .stl, .ply or .vtk";
+constexpr const char* surface_file =
+    "a surface file: .off, .obj, .stl, .ply or .vtk, or tetrahedra, whose boundary is taken: .msh, .mesh, .meshb, "
+    ".vtu, "
+    ".node, .ele or .veg";
 constexpr const char* written_surface = "a surface file: .off, .obj, .stl or .ply";
+
+using ParseSurface = PolygonMesh (*)(const std::filesystem::path&, std::string, MeshNotes&);
+
+ParseSurface parser_of(const std::filesystem::path& file) {
+  const auto extension = lower_extension(file);
+  return extension == ".off"   ? parse_off
+         : extension == ".obj" ? parse_obj
+         : extension == ".stl" ? parse_stl
+         : extension == ".ply" ? parse_ply
+         : extension == ".vtk" ? parse_vtk_surface
+                               : nullptr;
+}
+
+/// Whether a legacy VTK file holds cells of any kind, not a surface.
+bool is_vtk_grid(const std::filesystem::path& file, std::string_view content) {
+  constexpr std::size_t header = 1024;
+  return lower_extension(file) == ".vtk" &&
+         content.substr(0, header).find("DATASET UNSTRUCTURED_GRID") != std::string_view::npos;
+}
+
+TriangleMesh read_triangles(const std::filesystem::path& file, MeshNotes& notes) {
+  if (auto* const parse = parser_of(file)) {
+    auto content = read_file(file);
+    if (!is_vtk_grid(file, content)) return triangulate(file, parse(file, std::move(content), notes), notes);
+  }
+  auto cells = read_cells(file, notes);
+  if (!cells) refuse_extension(file, surface_file);
+  return cells->skin(notes);
+}
 
 }  // namespace
 
@@ -23,17 +58,7 @@ void append_corner_lists(std::string& text, const TriangleMesh& mesh) {
 }
 
 TriangleMesh read_surface(const std::filesystem::path& file, MeshNotes& notes) {
-  const auto extension = lower_extension(file);
-  auto* const parse = extension == ".off"   ? parse_off
-                      : extension == ".obj" ? parse_obj
-                      : extension == ".stl" ? parse_stl
-                      : extension == ".ply" ? parse_ply
-                      : extension == ".vtk" ? parse_vtk_surface
-                                            : nullptr;
-  if (parse == nullptr) {
-    refuse_extension(file, surface_file);
-  }
-  auto mesh = triangulate(file, parse(file, read_file(file), notes), notes);
+  auto mesh = read_triangles(file, notes);
   if (mesh.triangles.empty()) {
     throw MeshFileError(file.string() + ": found no face, expected a surface");
   }

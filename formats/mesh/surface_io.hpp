@@ -10,12 +10,14 @@ namespace greenloop {
 /// Reads a triangle surface; the extension, in any case, chooses the format: .off (also with colours, normals and
 /// texture coordinates, which are skipped), .obj (v and f; everything else skipped), .stl (ascii or binary, all its
 /// solids; vertices with the same coordinates become one), .ply (ascii or binary of either byte order; only positions,
-/// faces and strips kept), .vtk (legacy, ascii or binary: polygons and strips of POLYDATA). Polygons become triangles
+/// faces and strips kept), .vtk (legacy, ascii or binary: polygons and strips of POLYDATA), or a file of cells that
+/// read_volume knows: the boundary of its tetrahedra, however they are oriented, or, if it has none, its triangles and
+/// quadrilaterals (Gmsh, ascii Medit, VTK). Polygons become triangles
 /// (see triangulate in polygon_mesh.hpp). Vertices stay in the file's order and unit, those that no face uses too.
 /// Indices are in range and coordinates finite; nothing else is checked (see offline/surface). What a reader passes
 /// over beyond that is appended to `notes`. Throws MeshFileError with file, line, what was found and what was expected.
 /// The file has at most largest_mesh_file bytes. Work: linear in its length, but for polygons that are not convex (see
-/// triangulate). Memory: at most 16 times its length.
+/// triangulate). Memory: at most 16 times its length; of cells at most 64 times, as read_volume says.
 [[nodiscard]] TriangleMesh read_surface(const std::filesystem::path& file, MeshNotes& notes);
 [[nodiscard]] TriangleMesh read_surface(const std::filesystem::path& file);
 

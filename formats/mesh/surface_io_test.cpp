@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
@@ -164,6 +165,51 @@ TEST_CASE("files that others wrote") {
   CHECK(pig.triangles.size() == 16848);
   CHECK(pig.vertices.size() == 8642);
   check_refused([] { return read_surface(fetched("meshes/b9.ply")); }, "b9.ply: found no face");
+}
+
+TEST_CASE("the surface of tetrahedra is their boundary, however they are oriented") {
+  const std::string nodes =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n"
+      "5 1 1 1\n$EndNodes\n$Elements\n3\n";
+  const std::string face = "1 2 2 0 1 2 3 4\n";
+  for (const char* second : {"2 3 4 5", "2 4 3 5"}) {
+    write_file(folder / "two.msh", nodes + face + "2 4 2 0 1 1 2 3 4\n3 4 2 0 1 " + second + "\n$EndElements\n");
+    MeshNotes notes;
+    const auto mesh = read_surface(folder / "two.msh", notes);
+    CHECK(mesh.vertices.size() == 5);
+    CHECK(mesh.triangles.size() == 6);
+    for (auto triangle : mesh.triangles) {
+      std::sort(triangle.begin(), triangle.end());
+      CHECK(triangle != std::array{1, 2, 3});  // the inner face, though the file lists it
+    }
+    CHECK(notes == MeshNotes{"the boundary of 2 tetrahedra taken"});
+  }
+}
+
+TEST_CASE("cells without tetrahedra are a surface of their triangles and quadrilaterals") {
+  const TriangleMesh expected{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}},
+                              {{0, 1, 2}, {0, 2, 3}, {0, 1, 4}}};
+  const std::string corners = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n";
+  check_same(read_text("a.msh",
+                       "$NOD\n5\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 0 1\n$ENDNOD\n$ELM\n3\n"
+                       "1 3 1 1 4 1 2 3 4\n2 2 1 1 3 1 2 5\n3 15 1 1 1 4\n$ENDELM\n"),
+             expected);
+  check_same(
+      read_text("b.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 5 1 5\n2 1 0 5\n1\n2\n3\n4\n5\n" + corners +
+                             "$EndNodes\n$Elements\n2 2 1 2\n2 1 3 1\n1 1 2 3 4\n2 1 2 1\n2 1 2 5\n"
+                             "$EndElements\n"),
+      expected);
+  check_same(read_text("a.mesh",
+                       "MeshVersionFormatted 1\nDimension 3\nVertices\n5\n0 0 0 1\n1 0 0 1\n1 1 0 1\n0 1 0 1\n"
+                       "0 0 1 1\nQuadrilaterals\n1\n1 2 3 4 7\nTriangles\n1\n1 2 5 7\nEnd\n"),
+             expected);
+  check_same(read_text("a.vtk", "# vtk DataFile Version 3.0\nany\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n" +
+                                    corners + "CELLS 3 11\n4 0 1 2 3\n3 0 1 4\n1 2\nCELL_TYPES 3\n9\n5\n1\n"),
+             expected);
+  refuse("b.vtk",
+         "# vtk DataFile Version 3.0\nany\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 0\nCELLS 1 2\n"
+         "1 0\nCELL_TYPES 1\n1\n",
+         "b.vtk: found no face");
 }
 
 TEST_CASE("refused: an unknown extension, with the supported ones") {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -43,13 +44,29 @@ std::size_t nodes_of_lower_dimensional(std::int64_t type) {
             "linear tetrahedra (type 4); second order, hexahedra, prisms and pyramids are not supported");
 }
 
-/// True for a tetrahedron, false for what can be skipped.
-bool read_element_type(MeshText& text) {
+/// Of a tetrahedron, of a linear face, or of what can be skipped.
+std::int64_t read_element_type(MeshText& text) {
   const auto type = read_number(text, "an element type");
   if (type != linear_tetrahedron && nodes_of_lower_dimensional(type) == 0) {
     refuse_element_type(text, type);
   }
-  return type == linear_tetrahedron;
+  return type;
+}
+
+bool is_face(std::int64_t type) { return type == 2 || type == 3; }
+
+template <typename Next>
+void add_face(std::int64_t type, std::size_t line, const Next& next, VolumeBuilder& builder) {
+  std::array<std::int64_t, 4> nodes{};
+  const std::span corners(nodes.data(), nodes_of_lower_dimensional(type));
+  std::generate(corners.begin(), corners.end(), next);
+  builder.add_face(std::span<const std::int64_t>(corners), line);
+}
+
+void read_face(MeshText& text, std::int64_t type, VolumeBuilder& builder) {
+  const auto line = text.line_number();
+  add_face(
+      type, line, [&] { return read_number(text, "the number of a node"); }, builder);
 }
 
 void skip_numbers(MeshText& text, std::int64_t count) {
@@ -71,9 +88,10 @@ void read_elements(MeshText& text, VolumeBuilder& builder, bool version_1) {
   const auto count = text.count("the number of elements", 6);
   for (std::size_t i = 0; i < count; ++i) {
     skip_numbers(text, 1);
-    if (read_element_type(text)) {
+    const auto type = read_element_type(text);
+    if (type == linear_tetrahedron || is_face(type)) {
       skip_numbers(text, version_1 ? 3 : text.integer("the number of tags", 0, 1000));
-      builder.read_tetrahedron(text);
+      type == linear_tetrahedron ? builder.read_tetrahedron(text) : read_face(text, type, builder);
     }
     text.skip_line();
   }
@@ -100,13 +118,12 @@ void read_element_blocks(MeshText& text, VolumeBuilder& builder) {
   skip_numbers(text, 3);
   for (std::size_t block = 0; block < blocks; ++block) {
     skip_numbers(text, 2);
-    const bool tetrahedra = read_element_type(text);
+    const auto type = read_element_type(text);
     const auto count = text.count("the number of elements of a block", 4);
     for (std::size_t i = 0; i < count; ++i) {
       skip_numbers(text, 1);
-      if (tetrahedra) {
-        builder.read_tetrahedron(text);
-      }
+      if (type == linear_tetrahedron) builder.read_tetrahedron(text);
+      if (is_face(type)) read_face(text, type, builder);
       text.skip_line();
     }
   }
@@ -188,11 +205,10 @@ void read_binary_elements(MeshText& text, GmshBytes bytes, VolumeBuilder& builde
       refuse_element_type(text, type);
     }
     for (std::size_t i = 0; i < block; ++i) {
-      bytes.skip(4 + 4 * tags + 4 * nodes);
-      if (type == linear_tetrahedron) {
-        add_tetrahedron(
-            text, [&] { return bytes.next_int(); }, builder);
-      }
+      const auto next = [&] { return bytes.next_int(); };
+      bytes.skip(4 + 4 * tags + (is_face(type) ? 0 : 4 * nodes));
+      if (type == linear_tetrahedron) add_tetrahedron(text, next, builder);
+      if (is_face(type)) add_face(type, 0, next, builder);
     }
     done += block;
   }
@@ -232,11 +248,10 @@ void read_binary_element_blocks(MeshText& text, GmshBytes bytes, VolumeBuilder& 
     }
     const auto count = bytes.next_count(16);
     for (std::size_t i = 0; i < count; ++i) {
-      bytes.skip(8 + 8 * nodes);
-      if (type == linear_tetrahedron) {
-        add_tetrahedron(
-            text, [&] { return bytes.next_long(); }, builder);
-      }
+      const auto next = [&] { return bytes.next_long(); };
+      bytes.skip(8 + (is_face(type) ? 0 : 8 * nodes));
+      if (type == linear_tetrahedron) add_tetrahedron(text, next, builder);
+      if (is_face(type)) add_face(type, 0, next, builder);
     }
   }
 }
@@ -301,7 +316,7 @@ void read_element_section(MeshText& text, const Format& format, bool version_1, 
 
 }  // namespace
 
-TetrahedralMesh parse_gmsh(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
+VolumeBuilder parse_gmsh(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
   MeshText text(file, std::move(content), '\0');
   VolumeBuilder builder(file);
   Format format;
@@ -326,7 +341,7 @@ TetrahedralMesh parse_gmsh(const std::filesystem::path& file, std::string conten
     }
     text.word(end);
   }
-  return builder.finish();
+  return builder;
 }
 
 std::string format_gmsh(const TetrahedralMesh& mesh) {

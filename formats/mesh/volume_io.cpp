@@ -28,6 +28,29 @@ int orientation(const TetrahedralMesh& mesh, const std::array<int, 4>& tetrahedr
   return det > 0 ? 1 : -1;
 }
 
+/// The faces that one tetrahedron has.
+std::vector<std::array<int, 3>> outer_faces(const std::vector<std::array<int, 4>>& tetrahedra) {
+  struct Face {
+    std::array<int, 3> sorted, corners;
+    bool operator<(const Face& other) const { return sorted < other.sorted; }
+  };
+  std::vector<Face> faces;
+  for (const auto& [a, b, c, d] : tetrahedra) {
+    for (const auto& corners : {std::array{a, c, b}, std::array{a, b, d}, std::array{b, c, d}, std::array{c, a, d}}) {
+      faces.push_back({corners, corners});
+      std::sort(faces.back().sorted.begin(), faces.back().sorted.end());
+    }
+  }
+  std::stable_sort(faces.begin(), faces.end());
+  std::vector<std::array<int, 3>> outer;
+  for (auto face = faces.begin(); face != faces.end();) {
+    const auto next = std::upper_bound(face, faces.end(), *face);
+    if (next - face == 1) outer.push_back(face->corners);
+    face = next;
+  }
+  return outer;
+}
+
 }  // namespace
 
 std::int64_t read_number(MeshText& text, std::string_view expected) {
@@ -72,6 +95,14 @@ void VolumeBuilder::read_tetrahedron(MeshText& text) {
   add_tetrahedron(nodes, text.line_number());
 }
 
+void VolumeBuilder::add_face(std::span<const std::int64_t> nodes, std::size_t line) {
+  std::vector<int> corners;
+  for (const auto number : nodes) {
+    if (const auto index = numbers_.find(number)) corners.push_back(*index);
+  }
+  if (corners.size() == nodes.size()) add_face(corners, line);
+}
+
 void VolumeBuilder::add_tetrahedron(const std::array<int, 4>& nodes, std::size_t line) {
   mesh_.tetrahedra.push_back(nodes);
   lines_.push_back(line);
@@ -102,17 +133,20 @@ void VolumeBuilder::orient() {
   };
   const auto count = [&](int sign) { return static_cast<std::size_t>(std::count(signs.begin(), signs.end(), sign)); };
   if (count(0) > 0) {
-    throw MeshFileError(place(first(0)) + " flat, " + std::to_string(count(0)) +
-                        " in all, expected tetrahedra with a volume; remesh there");
+    throw MeshFileError(
+        place(first(0)) + " flat, " + std::to_string(count(0)) +
+        " in all, expected tetrahedra with a volume; remesh there, or name the file in [surface]: its boundary "
+        "is taken");
   }
   if (count(-1) == signs.size()) {
     for (auto& tetrahedron : mesh_.tetrahedra) {
       std::swap(tetrahedron[2], tetrahedron[3]);
     }
   } else if (count(-1) > 0) {
-    throw MeshFileError(place(first(-1)) + " inverted, " + std::to_string(count(-1)) + " of " +
-                        std::to_string(signs.size()) +
-                        " in all, expected the same orientation everywhere; remesh there");
+    throw MeshFileError(
+        place(first(-1)) + " inverted, " + std::to_string(count(-1)) + " of " + std::to_string(signs.size()) +
+        " in all, expected the same orientation everywhere; remesh there, or name the file in [surface]: its "
+        "boundary is taken");
   }
 }
 
@@ -140,14 +174,26 @@ void VolumeBuilder::drop_unused_nodes() {
 
 TetrahedralMesh VolumeBuilder::finish() {
   if (mesh_.tetrahedra.empty()) {
-    throw MeshFileError(file_.string() + ": found no tetrahedron, expected a volume mesh");
+    throw MeshFileError(file_.string() + ": found no tetrahedron, expected a volume mesh" +
+                        (faces_.size() > 0 ? "; its " + std::to_string(faces_.size()) +
+                                                 " faces may be a surface: name the file in [surface]"
+                                           : ""));
   }
   orient();
   drop_unused_nodes();
   return std::move(mesh_);
 }
 
-TetrahedralMesh read_volume(const std::filesystem::path& file, MeshNotes& notes) {
+TriangleMesh VolumeBuilder::skin(MeshNotes& notes) {
+  if (mesh_.tetrahedra.empty()) {
+    faces_.vertices = std::move(mesh_.vertices);
+    return triangulate(file_, std::move(faces_), notes);
+  }
+  notes.push_back("the boundary of " + std::to_string(mesh_.tetrahedra.size()) + " tetrahedra taken");
+  return {std::move(mesh_.vertices), outer_faces(mesh_.tetrahedra)};
+}
+
+std::optional<VolumeBuilder> read_cells(const std::filesystem::path& file, MeshNotes& notes) {
   const auto extension = lower_extension(file);
   auto* const parse = extension == ".msh"                             ? parse_gmsh
                       : extension == ".mesh" || extension == ".meshb" ? parse_medit
@@ -156,10 +202,16 @@ TetrahedralMesh read_volume(const std::filesystem::path& file, MeshNotes& notes)
                       : extension == ".veg"                           ? parse_vega
                       : extension == ".node" || extension == ".ele"   ? parse_tetgen
                                                                       : nullptr;
-  if (parse == nullptr) {
+  if (parse == nullptr) return std::nullopt;
+  return parse(file, read_file(file), notes);
+}
+
+TetrahedralMesh read_volume(const std::filesystem::path& file, MeshNotes& notes) {
+  auto cells = read_cells(file, notes);
+  if (!cells) {
     refuse_extension(file, "a file of tetrahedra: .msh, .mesh, .meshb, .vtk, .vtu, .node, .ele or .veg");
   }
-  return parse(file, read_file(file), notes);
+  return cells->finish();
 }
 
 TetrahedralMesh read_volume(const std::filesystem::path& file) {

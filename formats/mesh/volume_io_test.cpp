@@ -153,6 +153,7 @@ TEST_CASE("refused: some tetrahedra inverted") {
   write_volume(folder / "a.msh", mesh);
   check_refused([] { return read_volume(folder / "a.msh"); }, "a.msh:15: found tetrahedron 1 (counted from 0, centre ");
   check_refused([] { return read_volume(folder / "a.msh"); }, "inverted, 1 of 2 in all");
+  check_refused([] { return read_volume(folder / "a.msh"); }, "name the file in [surface]");
 }
 
 TEST_CASE("refused: a flat tetrahedron") {
@@ -164,6 +165,9 @@ TEST_CASE("refused: a flat tetrahedron") {
 TEST_CASE("refused: no tetrahedra") {
   refuse("a.msh", replaced(gmsh_2, "2\n1 2 2 0 1 10 20 30\n2 4 2 0 1 10 20 30 40", "1\n1 2 2 0 1 10 20 30"),
          "found no tetrahedron");
+  refuse(
+      "a.msh", replaced(gmsh_2, "2 4 2 0 1 10 20 30 40", "2 15 2 0 1 10"),
+      "a.msh: found no tetrahedron, expected a volume mesh; its 1 faces may be a surface: name the file in [surface]");
   refuse("a.msh", "", "a.msh: found no tetrahedron");
 }
 

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "formats/mesh/volume_formats.hpp"
 
@@ -32,6 +35,17 @@ void read_tetrahedra(MeshText& text, VolumeBuilder& builder) {
   }
 }
 
+void read_faces(MeshText& text, std::size_t corners, VolumeBuilder& builder) {
+  const auto count = text.count("the number of faces", 8);
+  std::vector<std::int64_t> nodes(corners);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto line = text.line_number();
+    for (auto& node : nodes) node = read_number(text, "the number of a vertex");
+    builder.add_face(std::span<const std::int64_t>(nodes), line);
+    static_cast<void>(text.real("the reference of a face"));
+  }
+}
+
 void skip_numbers(MeshText& text) {
   while (!text.at_end() && std::isalpha(static_cast<unsigned char>(text.peek().front())) == 0) {
     static_cast<void>(text.token("a number"));
@@ -40,7 +54,7 @@ void skip_numbers(MeshText& text) {
 
 }  // namespace
 
-TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
+VolumeBuilder parse_medit(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
   if (content.starts_with(std::string_view("\1\0\0\0", 4)) || content.starts_with(std::string_view("\0\0\0\1", 4))) {
     return parse_binary_medit(file, content);
   }
@@ -59,6 +73,10 @@ TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string conte
       read_vertices(text, builder);
     } else if (same_word(keyword, "Tetrahedra")) {
       read_tetrahedra(text, builder);
+    } else if (same_word(keyword, "Triangles")) {
+      read_faces(text, 3, builder);
+    } else if (same_word(keyword, "Quadrilaterals")) {
+      read_faces(text, 4, builder);
     } else if (is_other_volume(keyword) && text.peek() != "0") {
       text.fail(keyword, "linear tetrahedra only");
     } else {
@@ -66,7 +84,7 @@ TetrahedralMesh parse_medit(const std::filesystem::path& file, std::string conte
     }
   }
   text.note_rest(notes, "section");
-  return builder.finish();
+  return builder;
 }
 
 std::string format_medit(const TetrahedralMesh& mesh) {

@@ -180,7 +180,7 @@ void read_tetrahedra(MeditBytes bytes, VolumeBuilder& builder) {
 
 }  // namespace
 
-TetrahedralMesh parse_binary_medit(const std::filesystem::path& file, std::string_view content) {
+VolumeBuilder parse_binary_medit(const std::filesystem::path& file, std::string_view content) {
   MeditBytes bytes(file, content);
   const auto sections = find_sections(bytes);
   VolumeBuilder builder(file);
@@ -190,7 +190,7 @@ TetrahedralMesh parse_binary_medit(const std::filesystem::path& file, std::strin
   for (const MeditPart& part : sections.tetrahedra) {
     read_tetrahedra(MeditBytes(bytes, part), builder);
   }
-  return builder.finish();
+  return builder;
 }
 
 }  // namespace greenloop

@@ -41,7 +41,7 @@ std::filesystem::path tetgen_sibling(const std::filesystem::path& file) {
   return std::filesystem::path(file).replace_extension(nodes ? (upper ? ".ELE" : ".ele") : (upper ? ".NODE" : ".node"));
 }
 
-TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
+VolumeBuilder parse_tetgen(const std::filesystem::path& file, std::string content, MeshNotes& notes) {
   auto node_file = file;
   auto element_file = tetgen_sibling(file);
   auto other_content = read_file(element_file);
@@ -56,10 +56,10 @@ TetrahedralMesh parse_tetgen(const std::filesystem::path& file, std::string cont
   nodes.note_rest(notes, "node");
   read_elements(elements, builder);
   elements.note_rest(notes, "element");
-  return builder.finish();
+  return builder;
 }
 
-TetrahedralMesh parse_vega(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
+VolumeBuilder parse_vega(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
   MeshText text(file, std::move(content), '#');
   VolumeBuilder builder(file);
   while (!text.at_end()) {
@@ -78,7 +78,7 @@ TetrahedralMesh parse_vega(const std::filesystem::path& file, std::string conten
       text.skip_line();
     }
   }
-  return builder.finish();
+  return builder;
 }
 
 }  // namespace greenloop

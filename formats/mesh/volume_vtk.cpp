@@ -11,6 +11,8 @@ namespace {
 constexpr std::int64_t linear_tetrahedron = 10;
 
 /// Vertices, lines and faces: no volume.
+bool is_polygon(std::int64_t type) { return type == 5 || type == 7 || type == 9; }
+
 bool is_lower_dimensional(std::int64_t type) { return (type >= 0 && type <= 9) || (type >= 21 && type <= 23); }
 
 }  // namespace
@@ -18,6 +20,8 @@ bool is_lower_dimensional(std::int64_t type) { return (type >= 0 && type <= 9) |
 void add_vtk_cell(const NumberArray& numbers, const VtkCells& cells, std::size_t cell, std::int64_t type,
                   VolumeBuilder& builder) {
   if (is_lower_dimensional(type)) {
+    const bool face = is_polygon(type) && cells[cell].size() >= 3;
+    if (face) builder.add_face(cells[cell], cells.lines[cells.offsets[cell]]);
     return;
   }
   if (type != linear_tetrahedron) {
@@ -30,7 +34,7 @@ void add_vtk_cell(const NumberArray& numbers, const VtkCells& cells, std::size_t
   builder.add_tetrahedron({points[0], points[1], points[2], points[3]}, cells.lines[cells.offsets[cell]]);
 }
 
-TetrahedralMesh parse_vtk(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
+VolumeBuilder parse_vtk(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
   VtkLegacy vtk(file, std::move(content), "UNSTRUCTURED_GRID");
   MeshText& text = vtk.text();
   VolumeBuilder builder(file);
@@ -54,7 +58,7 @@ TetrahedralMesh parse_vtk(const std::filesystem::path& file, std::string content
       text.fail(keyword, "POINTS, CELLS or CELL_TYPES");
     }
   }
-  return builder.finish();
+  return builder;
 }
 
 std::string format_vtk(const TetrahedralMesh& mesh) {

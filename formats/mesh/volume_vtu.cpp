@@ -127,7 +127,7 @@ class XmlGrid {
   XmlGrid(std::filesystem::path file, MeshText& text, const Appended& appended)
       : file_(std::move(file)), text_(text), appended_(appended), builder_(file_) {}
 
-  TetrahedralMesh read() {
+  VolumeBuilder read() {
     for (auto tag = next_tag(text_); !tag.empty(); tag = next_tag(text_)) {
       const auto name = name_of(tag);
       if (name == "VTKFile") {
@@ -143,7 +143,7 @@ class XmlGrid {
       }
     }
     add_cells();
-    return builder_.finish();
+    return std::move(builder_);
   }
 
  private:
@@ -258,7 +258,7 @@ class XmlGrid {
 
 }  // namespace
 
-TetrahedralMesh parse_vtu(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
+VolumeBuilder parse_vtu(const std::filesystem::path& file, std::string content, MeshNotes& /*notes*/) {
   const Appended appended = take_appended(content);
   std::string spaced;  // a number may end where a tag begins
   spaced.reserve(content.size() + content.size() / 8);

@@ -66,7 +66,10 @@ void require_carried(const Scene& scene, const BodyGeometry& body) {
   if (why.empty()) return;
   const auto level = finest_level_that(
       body.surface, body.flags, [&](int, Flags coarser) { return why_not_carried(*body.volume, coarser).empty(); });
-  throw std::runtime_error(fmt::format("{}: {}: {}", scene.mesh.path.string(), why, levels_text(level)));
+  throw std::runtime_error(
+      fmt::format("{}: {}: {}; or name the file in [surface]: its boundary is filled with tetrahedra "
+                  "fine enough",
+                  scene.mesh.path.string(), why, levels_text(level)));
 }
 
 /// Of a store of a body's missing columns.

@@ -13,12 +13,11 @@
 #include "formats/mesh/surface_io.hpp"
 #include "formats/mesh/volume_io.hpp"
 #include "offline/compress/wavelet/node_order.hpp"
-#include "offline/remesh/remesh.hpp"
+#include "offline/pipeline/remeshed_skin.hpp"
 #include "offline/surface/lumped_areas.hpp"
 #include "offline/surface/surface_preparation.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/tetrahedralize.hpp"
-#include "offline/wrap/wrap.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -59,65 +58,11 @@ auto offering_a_wrap(const Scene& scene, const std::string& offer, const Work& w
   try {
     return work();
   } catch (const std::runtime_error& error) {
-    if (scene.mesh.tetrahedra || scene.mesh.wrap) throw;
-    throw std::runtime_error(std::string(error.what()) + "\n" + offer + ": set [surface] wrap = \"auto\"");
+    if (scene.mesh.wrap) throw;
+    const char* const how = scene.mesh.tetrahedra ? ": name the file in [surface] and set wrap = \"auto\""
+                                                  : ": set [surface] wrap = \"auto\"";
+    throw std::runtime_error(std::string(error.what()) + "\n" + offer + how);
   }
-}
-
-/// The surface around `skin`, in metres, as its own reader's would be.
-PreparedSurface wrap_skin(const Scene& scene, const TriangleMesh& skin, std::optional<WrapReport>& report) {
-  auto wrapped = wrap(skin, {scene.mesh.wrap->length, scene.mesh.wrap->largest_piece});
-  report = wrapped.report;
-  auto prepared = prepare_surface(wrapped.mesh);
-  const auto changes = describe_wrap(wrapped.report, "m");
-  prepared.repairs.insert(prepared.repairs.begin(), changes.begin(), changes.end());
-  return prepared;
-}
-
-/// The skin in metres, checked and repaired before it is scaled: defects are reported in the file's own coordinates.
-PreparedSurface read_input(const Scene& scene, std::optional<TetrahedralMesh>& volume,
-                           std::optional<WrapReport>& wrapped) {
-  MeshNotes notes;
-  TriangleMesh skin = naming_the_file(scene, [&] { return read_skin(scene, volume, notes); });
-  const double unit = scene.mesh.scale(bounding_box(volume ? volume->vertices : skin.vertices));
-  PreparedSurface prepared;
-  if (scene.mesh.wrap) {
-    scale(skin.vertices, unit);
-    prepared = naming_the_file(scene, [&] { return wrap_skin(scene, skin, wrapped); });
-  } else {
-    const Weld weld = scene.mesh.weld ? Weld(*scene.mesh.weld / unit) : std::nullopt;
-    prepared = naming_the_file(scene, [&] {
-      return offering_a_wrap(scene, "A closed surface can be put around it",
-                             [&] { return prepare_surface(skin, weld); });
-    });
-    scale(prepared.mesh.vertices, unit);
-  }
-  prepared.repairs.insert(prepared.repairs.begin(), notes.begin(), notes.end());
-  if (volume) {
-    scale(volume->vertices, unit);
-  }
-  return prepared;
-}
-
-/// "2 repairs: ...; ..."
-std::string repairs_text(const std::vector<std::string>& repairs) {
-  return fmt::format("{} repair{}{}{}", repairs.size(), repairs.size() == 1 ? "" : "s", repairs.empty() ? "" : ": ",
-                     fmt::join(repairs, "; "));
-}
-
-std::vector<std::uint32_t> node_flags(const NodeSets& sets) {
-  std::vector<std::uint32_t> flags(sets.fixed.holds.size(), 0);
-  for (std::size_t i = 0; i < flags.size(); ++i) {
-    flags[i] = (sets.fixed.holds[i] ? layout::node_fixed : 0U) | (sets.touched.holds[i] ? layout::node_touchable : 0U) |
-               (sets.read.holds[i] ? layout::node_read : 0U);
-  }
-  return flags;
-}
-
-/// "8 touched (3 + 5 by region)"
-std::string role_text(const NodeSet& set, std::string_view role) {
-  std::string text = fmt::format("{} {}", set.count(), role);
-  return set.of_region.size() < 2 ? text : text + fmt::format(" ({} by region)", fmt::join(set.of_region, " + "));
 }
 
 // single precision has places to 2^-24 of the largest coordinate
@@ -134,6 +79,45 @@ void require_near_origin(const Eigen::AlignedBox3d& box) {
         "{:.2g} m apart; it may be {:.3g} m away: subtract ({:.6g}, {:.6g}, {:.6g}) m from all coordinates",
         size, far, std::ldexp(far, -23), most_sizes_from_origin * size, center.x(), center.y(), center.z()));
   }
+}
+
+/// The skin of a scene's mesh in metres, remeshed, and its own tetrahedra. Defects of a surface that is used as it is
+/// are reported in the file's own coordinates.
+RemeshedSkin read_and_remesh(const Scene& scene, std::optional<TetrahedralMesh>& volume, ProgressBar& progress) {
+  MeshNotes notes;
+  TriangleMesh faces = naming_the_file(scene, [&] { return read_skin(scene, volume, notes); });
+  const double unit = scene.mesh.scale(bounding_box(volume ? volume->vertices : faces.vertices));
+  if (volume) scale(volume->vertices, unit);
+  if (scene.mesh.wrap) {
+    scale(faces.vertices, unit);
+    naming_the_file(scene, [&] { require_near_origin(bounding_box(faces.vertices)); });
+    return naming_the_file(scene, [&] { return wrap_and_remesh(scene, faces, notes, progress); });
+  }
+  const Weld weld = scene.mesh.weld ? Weld(*scene.mesh.weld / unit) : std::nullopt;
+  return naming_the_file(scene, [&] {
+    auto surface =
+        offering_a_wrap(scene, "A closed surface can be put around it", [&] { return prepare_surface(faces, weld); });
+    surface.repairs.insert(surface.repairs.begin(), notes.begin(), notes.end());
+    scale(surface.mesh.vertices, unit);
+    require_near_origin(bounding_box(surface.mesh.vertices));
+    return offering_a_wrap(scene, "An evenly meshed surface around it may do",
+                           [&] { return remesh_skin(scene, std::move(surface), progress); });
+  });
+}
+
+std::vector<std::uint32_t> node_flags(const NodeSets& sets) {
+  std::vector<std::uint32_t> flags(sets.fixed.holds.size(), 0);
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    flags[i] = (sets.fixed.holds[i] ? layout::node_fixed : 0U) | (sets.touched.holds[i] ? layout::node_touchable : 0U) |
+               (sets.read.holds[i] ? layout::node_read : 0U);
+  }
+  return flags;
+}
+
+/// "8 touched (3 + 5 by region)"
+std::string role_text(const NodeSet& set, std::string_view role) {
+  std::string text = fmt::format("{} {}", set.count(), role);
+  return set.of_region.size() < 2 ? text : text + fmt::format(" ({} by region)", fmt::join(set.of_region, " + "));
 }
 
 /// A surface node that hangs on fixed vertices of the user's volume only does not move either.
@@ -168,33 +152,8 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
 
   progress.begin("surface");
   std::optional<TetrahedralMesh> tetrahedra;
-  std::optional<WrapReport> wrapped;
-  const auto prepared = read_input(scene, tetrahedra, wrapped);
-  const Eigen::AlignedBox3d box = bounding_box(prepared.mesh.vertices);
-  const Eigen::Vector3d sides = box.sizes();
-  progress.end(fmt::format("{} vertices, {} triangles, {:.3g} x {:.3g} x {:.3g} m, {}", prepared.report.vertex_count,
-                           prepared.report.triangle_count, sides.x(), sides.y(), sides.z(),
-                           repairs_text(prepared.repairs)));
-  naming_the_file(scene, [&] { require_near_origin(box); });
-
-  progress.begin("remesh");
-  RemeshOptions options;
-  options.base_vertices = scene.remesh.base_vertices;
-  options.levels = scene.remesh.levels;
-  auto remeshed = naming_the_file(scene, [&] {
-    return offering_a_wrap(scene, "An evenly meshed surface around it may do", [&] {
-      return remesh(prepared.mesh, options,
-                    [&](double fraction, std::string_view stage) { progress.update(fraction, stage); });
-    });
-  });
+  auto [prepared, wrapped, remeshed] = read_and_remesh(scene, tetrahedra, progress);
   body.report = {scene.mesh.name, prepared.report, prepared.repairs, wrapped, remeshed.quality};
-  progress.end(fmt::format(
-      "{} vertices on {} levels over {}, smallest angle {:.1f} degrees, Hausdorff {:.2f} % of the diagonal, "
-      "{:.3g} mm off the surface, the surface {:.3g} mm off it, volume {:+.2f} %",
-      remeshed.mesh.positions.size(), remeshed.quality.levels + 1, remeshed.quality.base_vertices,
-      remeshed.quality.smallest_angle_degrees, 100 * remeshed.quality.hausdorff_relative,
-      1e3 * remeshed.quality.farthest_of_mesh, 1e3 * remeshed.quality.farthest_of_input,
-      100 * remeshed.quality.volume_change));
 
   progress.begin("nodes");
   const auto sets = select_nodes(scene, remeshed.mesh.positions, bounding_box(remeshed.mesh.positions));

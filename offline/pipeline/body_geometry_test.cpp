@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -14,9 +15,10 @@
 namespace greenloop::offline {
 namespace {
 
-BodyGeometry geometry(const std::filesystem::path& folder, const std::string& of_surface) {
+BodyGeometry geometry(const std::filesystem::path& folder, const std::string& of_surface,
+                      const std::string& of_remesh = "") {
   const auto scene = parse_scene("[surface]\nfile = \"body.off\"\nunit = \"cm\"\n" + of_surface +
-                                     "[remesh]\nlevels = 1\n"
+                                     "[remesh]\nlevels = 1\n" + of_remesh +
                                      "[material]\nyoung = \"20 kPa\"\npoisson = 0.4\n"
                                      "[[fixed]]\nbelow = 0.2\naxis = \"z\"\n",
                                  folder / "body.toml");
@@ -58,6 +60,64 @@ TEST_CASE("what a wrap refuses names the file and offers no other wrap") {
   const std::string refused = refusal(folder, "wrap = \"auto\"\n");
   CHECK(refused.find("body.off: wrap: 2 separate pieces") != std::string::npos);
   CHECK(refused.find("set [surface] wrap") == std::string::npos);
+}
+
+/// A cube with needles that stick out of it and cross each other.
+TriangleMesh hedgehog() {
+  TriangleMesh mesh = cube();
+  for (int k = 0; k < 6; ++k) {
+    const int axis = k / 2;
+    const double side = k % 2 == 0 ? -1 : 1;
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (int c = 0; c < 4; ++c) {
+      Eigen::Vector3d place = Eigen::Vector3d::Constant(0.5);
+      place[axis] += c == 3 ? 1.5 * side : 0;
+      place[(axis + 1) % 3] += c == 1 ? 0.15 : 0;
+      place[(axis + 2) % 3] += c == 2 ? 0.15 : 0;
+      mesh.vertices.push_back(place);
+    }
+    for (const auto& [a, b, c] : {std::array{0, 2, 1}, std::array{0, 1, 3}, std::array{1, 2, 3}, std::array{2, 0, 3}}) {
+      mesh.triangles.push_back({first + a, first + b, first + c});
+    }
+  }
+  return mesh;
+}
+
+TEST_CASE("an automatic wrap that the levels do not resolve is rounded, and says why") {
+  const auto folder = scratch_folder("body_geometry_rounding_test");
+  write_surface(folder / "body.off", hedgehog());
+  const BodyGeometry body = geometry(folder, "wrap = \"auto\"\n", "base_vertices = 12\n");
+  REQUIRE(body.report.wrap);
+  CHECK(body.report.wrap->rounding > 0);
+  CHECK(body.report.repairs.back().find("rounded") != std::string::npos);
+  CHECK(body.report.repairs.back().find("refused: ") != std::string::npos);
+  CHECK(body.report.remesh.smallest_angle_degrees >= 8);
+  CHECK(geometry_record(body.report)["surface"]["wrap"]["rounding"] == body.report.wrap->rounding);
+}
+
+TEST_CASE("a surface may be the boundary of tetrahedra; what a volume's boundary lacks names the way out") {
+  const auto folder = scratch_folder("body_geometry_tetrahedra_test");
+  const std::string two_that_touch =
+      "MeshVersionFormatted 1\nDimension 3\nVertices\n7\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n-1 0 0 0\n0 -1 0 0\n"
+      "0 0 -1 0\nTetrahedra\n2\n1 2 3 4 0\n1 5 7 6 0\nEnd\n";
+  write_file(folder / "body.mesh", two_that_touch);
+  const auto scene = [&](const std::string& kind, const std::string& keys) {
+    return parse_scene("[" + kind + "]\nfile = \"body.mesh\"\nunit = \"cm\"\n" + keys +
+                           "[remesh]\nlevels = 1\n[material]\nyoung = \"20 kPa\"\npoisson = 0.4\n"
+                           "[[fixed]]\nbelow = 0.2\naxis = \"z\"\n",
+                       folder / "body.toml");
+  };
+  ProgressBar quiet(true);
+  std::string refused;
+  try {
+    static_cast<void>(make_body_geometry(scene("volume", ""), quiet));
+  } catch (const std::runtime_error& error) {
+    refused = error.what();
+  }
+  CHECK(refused.find("name the file in [surface] and set wrap = \"auto\"") != std::string::npos);
+  const BodyGeometry body = make_body_geometry(scene("surface", "wrap = \"auto\"\npieces = \"largest\"\n"), quiet);
+  CHECK(!body.volume);
+  CHECK(body.report.repairs.front() == "the boundary of 2 tetrahedra taken");
 }
 
 }  // namespace

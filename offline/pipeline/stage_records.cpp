@@ -46,6 +46,7 @@ json wrap_record(const WrapReport& report) {
                  {"volume", report.volume}};
   if (report.crossing_pairs) record["crossing_pairs"] = *report.crossing_pairs;
   if (report.volume_before) record["volume_before"] = *report.volume_before;
+  if (report.rounding > 0) record["rounding"] = report.rounding;
   if (report.plate_thickness) record["plate_thickness"] = *report.plate_thickness;
   return record;
 }

@@ -11,6 +11,7 @@
 
 #include "offline/remesh/triangle_fans.hpp"
 #include "offline/remesh/triangle_tree.hpp"
+#include "offline/surface/area_and_volume.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -20,8 +21,16 @@ constexpr double kFlat = 0.97, kBent = 0.5;
 /// Of the length wanted, what each round splits down to: short edges of needles go before their long ones multiply.
 constexpr std::array kRounds{16.0, 8.0, 4.0, 2.0, 1.0, 1.0, 1.0, 1.0};
 constexpr double kLongest = 4.0 / 3, kShortest = 4.0 / 5;  ///< edges, of the length wanted
-constexpr double kNeedle = 1e-3;  ///< sine of an angle below which a triangle's own normal is not believed
-constexpr double kStep = 0.7;     ///< of the way to the centre of the neighbours
+constexpr double kNeedle = 1e-3;       ///< sine of an angle below which a triangle's own normal is not believed
+constexpr double kStep = 0.7;          ///< of the way to the centre of the neighbours
+constexpr double kShorter = 0.99;      ///< of an edge, at most, that its halves may be
+constexpr double kMostTriangles = 16;  ///< times those wanted, beside four times those given
+
+/// A bound that no surface whose splits shorten edges comes near to.
+std::size_t most_triangles(const TriangleMesh& mesh, double edge_length) {
+  const double wanted = surface_area(mesh) * 4 / std::sqrt(3.0) / (edge_length * edge_length);
+  return 4 * mesh.triangles.size() + static_cast<std::size_t>(kMostTriangles * wanted);
+}
 
 class Evening {
  public:
@@ -30,6 +39,7 @@ class Evening {
         curves_(curves),
         tree_(original.mesh()),
         length_(edge_length),
+        most_triangles_(most_triangles(original.mesh(), edge_length)),
         positions_(original.mesh().vertices),
         fans_(original.mesh().triangles, positions_.size()),
         places_(positions_.size()),
@@ -120,7 +130,7 @@ class Evening {
           const bool bare_chain = links_.is_corner(v) && links_.is_corner(w) && links_.chain(v, w) >= 0;
           if (!bare_chain && distance(v, w) <= longest) continue;
           if (!is_longest(t, e) && !bare_chain) continue;
-          split(v, w);
+          if (!split(v, w)) continue;
           any = true;
           break;
         }
@@ -134,13 +144,18 @@ class Evening {
     return here >= distance(c[(e + 1) % 3], c[(e + 2) % 3]) && here >= distance(c[(e + 2) % 3], c[e]);
   }
 
-  void split(int v, int w) {
+  /// False, and nothing changed, where the surface between the ends is too far away for shorter edges.
+  bool split(int v, int w) {
     const auto at = halfway(v, w);
+    const Eigen::Vector3d middle_place = original_.position(at.point);
+    const double farther = std::max((middle_place - positions_[v]).norm(), (middle_place - positions_[w]).norm());
+    if (farther > kShorter * distance(v, w) || fans_.triangles() > most_triangles_) return false;
     const int middle = fans_.split(v, w);
     links_.split(v, w, middle);
     positions_.emplace_back();
     places_.emplace_back();
     place(middle, at);
+    return true;
   }
 
   void collapse_short_edges() {
@@ -267,6 +282,7 @@ class Evening {
   const FeatureCurves& curves_;
   TriangleTree tree_;
   double length_;
+  std::size_t most_triangles_;
   double flattest_ = kFlat;
   std::vector<Eigen::Vector3d> positions_;
   TriangleFans fans_;

@@ -39,9 +39,8 @@ constexpr double kFeatureGrowth = 1.4;
 /// Edges that need more than this many times the base asked for, and than a base without them that will do, are left.
 constexpr int kFeatureBase = 2;
 
-/// All attempts together, in attempts at the base asked for over an even ground. An attempt's work is counted in
-/// vertices moved; a vertex of the ground is worth kGroundWork of them.
-constexpr double kMostWork = 9, kSweeps = 60, kGroundWork = 15;
+/// An attempt's work is counted in vertices moved; a vertex of the ground is worth kGroundWork of them.
+constexpr double kSweeps = 60, kGroundWork = 15;
 
 /// Turn of the surface at an edge of the drawing, degrees; and the least length of a line of them, in diagonals.
 constexpr double kSharp = 40, kShortestLine = 0.1;
@@ -160,8 +159,11 @@ double even_triangles(const RemeshOptions& options) {
   return std::clamp(kFiner * 2 * finest_vertices(options.base_vertices, options.levels), kFewest, kMost);
 }
 
+/// The edge of equilateral triangles, so many of which have an area together.
+double equilateral_edge(double area, double triangles) { return std::sqrt(4 / std::sqrt(3.0) * area / triangles); }
+
 double even_edge(const TriangleMesh& normalized, const RemeshOptions& options) {
-  return std::sqrt(4 / std::sqrt(3.0) * surface_area(normalized) / even_triangles(options));
+  return equilateral_edge(surface_area(normalized), even_triangles(options));
 }
 
 double work_of_attempt(double base_vertices, int levels, double ground_vertices) {
@@ -170,7 +172,7 @@ double work_of_attempt(double base_vertices, int levels, double ground_vertices)
 
 double most_work(const TriangleMesh& input, const RemeshOptions& options) {
   const double ground = std::max(even_triangles(options) / 2, static_cast<double>(input.vertices.size()));
-  return kMostWork * work_of_attempt(options.base_vertices, options.levels, ground);
+  return options.most_work * work_of_attempt(options.base_vertices, options.levels, ground);
 }
 
 /// Whether the surface is made of faces that meet in edges, as drawings are.
@@ -364,6 +366,10 @@ bool serves(const SemiRegularMesh& found, const RemeshOptions& options) {
 
 }  // namespace
 
+double finest_edge(double area, const RemeshOptions& options) {
+  return equilateral_edge(area, 2 * std::ldexp(options.base_vertices, 2 * options.levels));
+}
+
 Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress) {
   check(input, options);
   Search search(input, options, progress);
@@ -379,7 +385,7 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const P
     }
   }
   if (auto found = search.run()) return *std::move(found);
-  throw std::runtime_error(failure(search.best(), search.largest_base(), options));
+  throw RemeshError(failure(search.best(), search.largest_base(), options), search.best());
 }
 
 }  // namespace greenloop::offline

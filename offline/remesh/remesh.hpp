@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/mesh/triangle_mesh.hpp"
@@ -20,12 +22,29 @@ struct RemeshOptions {
   std::optional<double> accuracy;
   double smallest_angle = 8;      ///< degrees, on the finest level
   bool keep_connectivity = true;  ///< keep a surface that has subdivision connectivity as it is
+  /// Bound on the work of all attempts, in attempts at base_vertices over even triangles, or over the input if it is
+  /// finer.
+  double most_work = 9;
 };
+
+/// The edge of even triangles that the finest level over base_vertices makes of so much area, in its unit.
+[[nodiscard]] double finest_edge(double area, const RemeshOptions& options);
 
 /// A surface with subdivision connectivity and what it is worth.
 struct Remeshed {
   SemiRegularMesh mesh;
   RemeshQuality quality;
+};
+
+/// No base will do. what() says what was reached and what to change.
+class RemeshError : public std::runtime_error {
+ public:
+  RemeshError(const std::string& what, const RemeshQuality& best) : std::runtime_error(what), best_(best) {}
+
+  [[nodiscard]] const RemeshQuality& best() const { return best_; }
+
+ private:
+  RemeshQuality best_;
 };
 
 /// Gives a closed, connected, manifold, outward oriented surface of any genus subdivision connectivity.
@@ -37,7 +56,7 @@ struct Remeshed {
 /// by step until accuracy and smallest angle hold and nothing is flipped or self-intersecting; the fraction told to
 /// `progress` does not go back. The same input and options give the same bits. Needs memory and time linear in input
 /// plus result. Throws std::invalid_argument on impossible options or an input that is not closed and manifold, and
-/// std::runtime_error, naming what was reached and what to change, if no base of at most most_base_vertices will do.
+/// RemeshError, naming what was reached and what to change, if no base of at most most_base_vertices will do.
 [[nodiscard]] Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress = {});
 
 }  // namespace greenloop::offline

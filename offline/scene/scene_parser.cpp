@@ -49,7 +49,9 @@ void read_wrap(const Table& table, MeshSource& mesh) {
   }
   for (const std::string_view key : {"wrap", "pieces"}) {
     if (mesh.tetrahedra && table.has(key)) {
-      table.refuse(key, "does not go with [volume], whose tetrahedra are used as they are; remove it");
+      table.refuse(key,
+                   "does not go with [volume], whose tetrahedra are used as they are; remove it, or name the file in "
+                   "[surface], which takes their boundary");
     }
   }
 }

@@ -46,11 +46,8 @@ class LineTransform {
   std::vector<double> bounds_;
 };
 
-}  // namespace
-
-std::vector<float> far_distance(const std::vector<float>& distance, const Lattice& lattice) {
-  std::vector<float> squared(distance.size());
-  std::transform(distance.begin(), distance.end(), squared.begin(), [](float d) { return d <= 1 ? d * d : unknown; });
+/// Squared distances continued from where they are known.
+void transform_all(std::vector<float>& squared, const Lattice& lattice) {
   for (int axis = 0; axis < 3; ++axis) {
     LineTransform transform(static_cast<std::size_t>(lattice.size[axis]));
     const std::size_t stride = lattice.stride(axis);
@@ -59,9 +56,25 @@ std::vector<float> far_distance(const std::vector<float>& distance, const Lattic
       for (std::size_t i = 0; i < stride; ++i) transform.apply(squared.data() + start + i, stride);
     }
   }
+}
+
+}  // namespace
+
+std::vector<float> far_distance(const std::vector<float>& distance, const Lattice& lattice) {
+  std::vector<float> squared(distance.size());
+  std::transform(distance.begin(), distance.end(), squared.begin(), [](float d) { return d <= 1 ? d * d : unknown; });
+  transform_all(squared, lattice);
   for (std::size_t i = 0; i < squared.size(); ++i) {
     squared[i] = distance[i] < band ? distance[i] : std::max(band, std::sqrt(squared[i]));
   }
+  return squared;
+}
+
+std::vector<float> distance_to(const std::vector<std::uint8_t>& set, const Lattice& lattice) {
+  std::vector<float> squared(set.size());
+  std::transform(set.begin(), set.end(), squared.begin(), [](auto belongs) { return belongs != 0 ? 0 : unknown; });
+  transform_all(squared, lattice);
+  for (float& value : squared) value = std::sqrt(value);
   return squared;
 }
 

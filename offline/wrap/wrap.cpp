@@ -20,6 +20,7 @@
 #include "offline/wrap/lattice.hpp"
 #include "offline/wrap/level_set.hpp"
 #include "offline/wrap/rooms.hpp"
+#include "offline/wrap/rounding.hpp"
 #include "offline/wrap/sharp_surface.hpp"
 #include "offline/wrap/solid.hpp"
 
@@ -107,10 +108,10 @@ double shortest_length(const Vector3d& sides) {
   return length;
 }
 
-Frame place_lattice(const TriangleMesh& mesh, const std::optional<double>& asked) {
-  const auto box = box_of(mesh);
-  const Vector3d sides = box.sizes();
-  const double length = asked.value_or(automatic_length(mesh, sides));
+Frame place_lattice(const TriangleMesh& mesh, const std::optional<double>& asked, double rounding) {
+  auto box = box_of(mesh);
+  Vector3d sides = box.sizes();
+  double length = asked.value_or(automatic_length(mesh, sides));
   if (length > sides.maxCoeff() / 8) {
     throw std::runtime_error(fmt::format(
         "wrap: a length of {:.3g} is too long for a body of {:.3g}; it may be {:.3g}, an eighth of that, at most",
@@ -122,6 +123,10 @@ Frame place_lattice(const TriangleMesh& mesh, const std::optional<double>& asked
                     "{:.3g} takes",
                     length, points_at(sides, length), most_lattice_points, shortest_length(sides)));
   }
+  box.min().array() -= rounding;
+  box.max().array() += rounding;
+  sides = box.sizes();
+  if (rounding > 0 && !asked) length = std::max(std::min(length, rounding / 2), shortest_length(sides));
   // off round numbers, where faces of CAD bodies lie
   const Vector3d shift(0.3819660113, 0.2360679775, 0.5278640450);
   Lattice lattice{};
@@ -206,9 +211,20 @@ Sides measure_sides(const std::vector<float>& field, const TriangleMesh& mesh, c
   return sides;
 }
 
+/// Parts that the lattice does not tell get a point inside.
+void keep_thin_parts(std::vector<float>& field, const std::vector<Crossing>& crossings, const Lattice& lattice) {
+  constexpr float just_inside = -0.05F;
+  std::vector<std::size_t> points;
+  for (const auto& crossing : crossings) {
+    const bool outside = field[crossing.point] >= 0 && field[crossing.next_point(lattice)] >= 0;
+    if (outside && !crossing.alone) points.push_back(crossing.point);
+  }
+  for (const std::size_t point : points) field[point] = just_inside;
+}
+
 void require_one_piece(const Pieces& pieces, bool largest_piece, double length) {
   if (pieces.empty()) {
-    throw std::runtime_error(fmt::format(
+    throw NothingLeft(fmt::format(
         "wrap: the body is thinner than a length of {:.3g} everywhere, so that nothing is left; choose a shorter one",
         length));
   }
@@ -231,7 +247,7 @@ Wrapped wrap(const TriangleMesh& input, const WrapOptions& options) {
   auto& report = result.report;
   TriangleMesh mesh = usable_faces(input);
   report.useless_faces = input.triangles.size() - mesh.triangles.size();
-  const Frame frame = place_lattice(mesh, options.length);
+  const Frame frame = place_lattice(mesh, options.length, options.rounding);
   const Lattice& lattice = frame.lattice;
   report.length = frame.length;
   report.lattice_points = lattice.count();
@@ -247,12 +263,18 @@ Wrapped wrap(const TriangleMesh& input, const WrapOptions& options) {
   report.thin_share = sides.thin;
   report.filled_shells = sides.filled_shells;
   const bool plate = sides.sheet > 0.5;
-  if (plate) {
-    thicken(field);
-    report.plate_thickness = 2 * plate_offset * frame.length;
+  if (plate) thicken(field);
+  double plate_half = plate_offset;
+  const bool rounded = options.rounding > 0;
+  if (rounded) {
+    const double radius = options.rounding / frame.length;
+    keep_thin_parts(field, crossings, lattice);
+    round_solid(field, lattice, radius);
+    report.rounding = options.rounding;
+    plate_half = std::max(plate_half, radius);
   }
   const Pieces pieces = keep_largest_piece(field, lattice);
-  require_one_piece(pieces, options.largest_piece, frame.length);
+  require_one_piece(pieces, options.largest_piece || rounded, frame.length);
   std::size_t dropped = 0;
   for (std::size_t i = 1; i < pieces.size(); ++i) dropped += pieces[i];
   report.pieces_dropped = pieces.size() - 1;
@@ -261,11 +283,12 @@ Wrapped wrap(const TriangleMesh& input, const WrapOptions& options) {
 
   const QuadSurface zero = zero_surface(field, lattice);
   const TriangleTree tree(mesh);
-  SharpSurface sharp = plate ? split_quads(zero) : sharpen(zero, mesh, tree);
+  SharpSurface sharp = plate || rounded ? split_quads(zero) : sharpen(zero, mesh, tree);
   result.mesh = std::move(sharp.mesh);
   report.held_back = sharp.held_back;
   report.triangles = result.mesh.triangles.size();
-  const double offset = plate ? plate_offset : 0;
+  const double offset = plate ? plate_half : 0;
+  if (plate) report.plate_thickness = 2 * plate_half * frame.length;
   const TriangleTree wrapped(result.mesh);
   const auto in_unit = [&](Deviation d) { return Deviation{d.greatest * frame.length, d.rms * frame.length}; };
   report.from_original = in_unit(deviation(places_on_skin(mesh, crossings, field, lattice), wrapped, offset));

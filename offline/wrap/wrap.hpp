@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace greenloop::offline {
 struct WrapOptions {
   std::optional<double> length;  ///< spacing of the lattice, in the mesh's unit; none: chosen, see wrap
   bool largest_piece = false;    ///< keep the largest of several pieces, however large the others are
+  double rounding = 0;           ///< radius, in the mesh's unit, of what is told apart (see round_solid); 0: none
 };
 
 /// As many lattice points, at most; 40 bytes each, 700 MB together.
@@ -36,6 +38,7 @@ struct WrapReport {
   // what came of it
   std::size_t triangles = 0;
   double volume = 0;
+  double rounding = 0;                    ///< radius, if it was rounded
   std::optional<double> plate_thickness;  ///< if it was an open sheet
   std::size_t pieces_dropped = 0;         ///< beside the one that was kept
   double dropped_share = 0;               ///< of the volume of all pieces
@@ -52,6 +55,12 @@ struct Wrapped {
   WrapReport report;
 };
 
+/// The body is thinner than the length everywhere.
+class NothingLeft : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A closed, evenly meshed, outward oriented surface in one piece around the body that any faces stand for: they may
 /// have holes, cross each other, look anywhere. Inside is what cannot be reached from outside but through holes half
 /// as wide as what is behind them (see find_rooms). If more than half of the area has nothing behind it, it is a sheet
@@ -61,10 +70,14 @@ struct Wrapped {
 /// a quarter of the shortest side if that is less, between 1/160 and 1/64 of the longest side, and no less than what
 /// makes some 70,000 triangles.
 ///
+/// With `rounding`, parts thinner than twice its radius are thickened to it, even those that the length does not tell,
+/// narrower gaps closed, edges rounded, and the largest piece kept of what is left; the length is half of it at most,
+/// if none is given.
+///
 /// Throws std::runtime_error, naming the number, if the length is too short for most_lattice_points or too long, if no
-/// face has an area, if the length resolves nothing, and if there is more than one piece of at least a twentieth of the
-/// largest one's volume. The same bits on any number of processors. Work: linear in lattice points and n log n in
-/// faces.
+/// face has an area, NothingLeft if the length resolves nothing, and std::runtime_error if there is more than one piece
+/// of at least a twentieth of the largest one's volume. The same bits on any number of processors. Work: linear in
+/// lattice points and n log n in faces.
 [[nodiscard]] Wrapped wrap(const TriangleMesh& mesh, const WrapOptions& options = {});
 
 /// What was found and changed, one sentence each.

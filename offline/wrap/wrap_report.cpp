@@ -22,6 +22,10 @@ std::vector<std::string> describe_wrap(const WrapReport& report, const std::stri
   };
   const bool sheet = report.plate_thickness.has_value();
   text.push_back(fmt::format("wrapped at {:.3g} {} in {} triangles", report.length, unit, report.triangles));
+  note(report.rounding > 0,
+       fmt::format("rounded: parts thinner than {0:.2g} {1} thickened to it, gaps narrower than that closed, edges "
+                   "rounded",
+                   2 * report.rounding, unit));
   note(sheet, fmt::format("an open sheet ({:.0f} % of its area has nothing behind it) made a plate {:.3g} {} thick",
                           100 * report.sheet_share, report.plate_thickness.value_or(0), unit));
   note(!sheet && report.boundary_loops > 0,

@@ -213,6 +213,43 @@ TEST_CASE("faces without an area, doubled faces, needles and a vertex in an edge
   CHECK(report.useless_faces == 2);
 }
 
+/// A box from the origin.
+TriangleMesh box(const Vector3d& sides) {
+  auto mesh = cube();
+  for (auto& v : mesh.vertices) v = v.cwiseProduct(sides);
+  return mesh;
+}
+
+TEST_CASE("rounding leaves what is thick where it is, but for edges") {
+  const auto [wrapped, report] = wrap(cube(), {.length = 0.03, .rounding = 0.1});
+  const auto found = prepared(wrapped);
+  CHECK(report.rounding == 0.1);
+  for (int axis = 0; axis < 3; ++axis) CHECK(found.box.sizes()[axis] == doctest::Approx(1).epsilon(0.03));
+  CHECK(found.volume < 1);
+  CHECK(found.volume > 0.95);
+  CHECK(report.from_original.greatest < 0.1);
+  CHECK(tells(report, "rounded"));
+}
+
+TEST_CASE("rounding thickens a needle and a sheet, thinner than the lattice tells, too") {
+  const auto needle = prepared(wrap(box({1, 0.02, 0.02}), {.length = 0.02, .rounding = 0.08}).mesh);
+  CHECK(needle.box.sizes().y() == doctest::Approx(0.16).epsilon(0.25));
+  CHECK(needle.box.sizes().x() < 1.2);
+
+  const auto sheet = box({1, 1, 0.004});
+  CHECK_THROWS_AS(static_cast<void>(wrap(sheet, {.length = 0.04})), NothingLeft);
+  const auto plate = prepared(wrap(sheet, {.length = 0.04, .rounding = 0.1}).mesh);
+  CHECK(plate.genus() == 0);
+  CHECK(plate.box.sizes().z() == doctest::Approx(0.2).epsilon(0.25));
+}
+
+TEST_CASE("rounding closes a gap") {
+  const auto slit = blocks(8, [](int x, int, int z) { return z == 0 || x != 4; });
+  CHECK(prepared(wrap(slit, {.length = 0.25}).mesh).volume == doctest::Approx(512 - 56).epsilon(0.01));
+  const double rounded = prepared(wrap(solid_block(), {.length = 0.25, .rounding = 1}).mesh).volume;
+  CHECK(prepared(wrap(slit, {.length = 0.25, .rounding = 1}).mesh).volume == doctest::Approx(rounded).epsilon(0.02));
+}
+
 TEST_CASE("the same faces give the same bits") {
   const auto mesh = together(cube(), cube({0.5, 0.4, 0.3}));
   const auto first = wrap(mesh).mesh, second = wrap(mesh).mesh;

@@ -13,7 +13,7 @@ namespace greenloop {
 namespace {
 
 using SurfaceReader = PolygonMesh (*)(const std::filesystem::path&, std::string, MeshNotes&);
-using VolumeReader = TetrahedralMesh (*)(const std::filesystem::path&, std::string, MeshNotes&);
+using VolumeReader = VolumeBuilder (*)(const std::filesystem::path&, std::string, MeshNotes&);
 
 // a right file, and who reads it
 struct Seed {
@@ -190,7 +190,9 @@ class MeshDoor final : public Door {
       if (seed.surface != nullptr) {
         (void)triangulate(seed.name, seed.surface(seed.name, std::move(content), notes), notes);
       } else {
-        (void)seed.volume(seed.name, std::move(content), notes);
+        auto cells = seed.volume(seed.name, std::move(content), notes);
+        (void)VolumeBuilder(cells).skin(notes);
+        (void)cells.finish();
       }
       return true;
     } catch (const MeshFileError&) {
@@ -218,7 +220,7 @@ class MeshDoor final : public Door {
     if (seed.surface != nullptr) {
       (void)triangulate(seed.name, seed.surface(seed.name, seed.content, notes), notes);
     } else {
-      (void)seed.volume(seed.name, seed.content, notes);
+      (void)seed.volume(seed.name, seed.content, notes).finish();
     }
     seeds_.push_back(std::move(seed));
   }

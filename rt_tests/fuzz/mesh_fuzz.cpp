@@ -21,7 +21,9 @@ void read(std::size_t reader, std::string content) {
   if (reader < surfaces.size()) {
     static_cast<void>(triangulate("m", surfaces[reader]("m", std::move(content), notes), notes));
   } else {
-    static_cast<void>(volumes[reader - surfaces.size()]("m", std::move(content), notes));
+    auto cells = volumes[reader - surfaces.size()]("m", std::move(content), notes);
+    static_cast<void>(VolumeBuilder(cells).skin(notes));
+    static_cast<void>(cells.finish());
   }
 }
 
