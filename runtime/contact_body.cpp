@@ -4,7 +4,6 @@
 #include <limits>
 #include <new>
 
-#include "runtime/contact_body/energy_account.hpp"
 #include "runtime/contact_body/touched_body.hpp"
 #include "runtime/memory/arena.hpp"
 
@@ -52,7 +51,8 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.contact = arena.take<UnilateralContact>(body.max_contacts);
   body.stick_place = arena.take<Double3>(body.max_contacts);
   body.rest_place = arena.take<Double3>(body.max_contacts);
-  body.felt = arena.take<FeltTool>(limits.max_tools);
+  body.force_before = arena.take<Vec3>(body.max_contacts);
+  body.energy_contact = arena.take<EnergyContact>(std::uint64_t{2} * body.max_contacts);
   body.force = arena.take<Vec3>(body.max_contacts);
   body.gap = arena.take<Vec4>(body.max_contacts);
   body.state = arena.take<ContactState>(body.max_contacts);
@@ -217,6 +217,8 @@ std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, Contac
   return count;
 }
 
+Vec4 narrow(const Double3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0}; }
+
 Double3 double3(const Vec3& v) { return {v.x, v.y, v.z}; }
 
 // where a contact's point has come to: from where it would stick, if it has slipped or the tool has left it
@@ -230,7 +232,13 @@ void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Gr
   if (body.state[i] == ContactState::open) return;
   const bool sticks = grip != nullptr && body.state[i] == ContactState::stick;
   const Double3 anchor = sticks ? grip->anchor : body.placement[candidate.tool].to_tool(place);
-  Grip made{grip_key(candidate), anchor, body.force[i], body.state[i] == ContactState::stick};
+  const Vec4 shift = narrow(place - body.rest_place[i]);
+  Grip made;
+  made.key = grip_key(candidate);
+  made.anchor = anchor;
+  made.force = body.force[i];
+  made.sticks = body.state[i] == ContactState::stick;
+  made.shift = {shift.x, shift.y, shift.z};
   for (int k = 0; k < 3; ++k) {
     made.node[k] = candidate.node[k];
     made.weight[k] = candidate.weight[k];
@@ -293,23 +301,46 @@ std::span<const Tool> put_tools(std::span<const ContactBody::ToolInput> tools, T
   return {body.tool, count};
 }
 
-void account_energy(TouchedBody& body, std::span<const ContactBody::ToolInput> tools) {
-  ContactBody::Energy& energy = body.energy;
-  for (std::uint32_t t = 0; t < body.max_tools; ++t) {
-    FeltTool felt;
-    if (t < tools.size() && body.tool_answer[t].fault == ToolFault::none) {
-      felt = {body.placement[t], body.tool_answer[t].force, body.tool_answer[t].torque, true};
-    }
-    energy.in += tool_work(body.felt[t], felt);
-    body.felt[t] = felt;
+// of a grip's point, as the body is displaced
+Vec4 shift_of(const TouchedBody& body, const Grip& grip) {
+  Vec4 shift;
+  for (int k = 0; k < 3 && grip.node[k] != layout::none; ++k) {
+    const Vec4& u = body.displacement[grip.node[k]];
+    const auto weight = static_cast<float>(grip.weight[k]);
+    shift.x += weight * u.x;
+    shift.y += weight * u.y;
+    shift.z += weight * u.z;
   }
-  energy.stored = 0;
-  for (std::uint32_t i = 0; i < body.answered_count; ++i) {
-    const ContactBody::Contact& contact = body.answered[i];
-    energy.stored += 0.5 * dot(contact.force, contact.position - body.rest_place[i]);
-    energy.dissipated += slip_work(contact.force, contact.slip);
+  return shift;
+}
+
+// what the contacts of this step did, and those of the last that are none now; before these are forgotten
+void account_energy(TouchedBody& body, std::uint32_t count) {
+  std::uint32_t last = 0;
+  for (const Grip& grip : body.grips.all()) {
+    if (grip.is_candidate) continue;
+    EnergyContact& contact = body.energy_contact[last++];
+    contact = {};
+    contact.last_force = {grip.force.x, grip.force.y, grip.force.z, 0};
+    contact.last_shift = {grip.shift.x, grip.shift.y, grip.shift.z, 0};
+    contact.shift = shift_of(body, grip);
   }
-  energy.generated = std::fmax(energy.generated, energy.stored + energy.dissipated - energy.in);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Candidate& candidate = body.candidate[i];
+    const Vec3& force = body.force[i];
+    const Vec3& before = body.force_before[i];
+    EnergyContact& contact = body.energy_contact[last++];
+    contact.normal = narrow(candidate.normal);
+    contact.force = {force.x, force.y, force.z, 0};
+    contact.last_force = {before.x, before.y, before.z, 0};
+    contact.shift = narrow(place_after(body, i) - body.rest_place[i]);
+    contact.last_shift = narrow(candidate.position - body.rest_place[i]);
+    contact.way = narrow(body.stick_place[i] - candidate.position);
+  }
+  EnergyAccount& account = body.account;
+  account.add({body.energy_contact, last});
+  const double generated = std::fmax(body.energy.generated, account.generated());
+  body.energy = {account.in, account.stored, account.dissipated, account.lost, generated};
 }
 
 // what choose takes, if every pass leaves one out
@@ -379,7 +410,6 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
     return created;
   }
   body.rigid_softness = rigid_softness(model, limits);
-  for (std::uint32_t t = 0; t < body.max_tools; ++t) body.felt[t] = {};
   created.body.body_ = &body;
   return created;
 }
@@ -400,7 +430,9 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   body.grips.begin();
   for (std::uint32_t i = 0; i < count; ++i) {
     Candidate& candidate = body.candidate[i];
-    const Grip* const grip = body.grips.find(grip_key(candidate));
+    Grip* const grip = body.grips.find(grip_key(candidate));
+    body.force_before[i] = grip == nullptr ? Vec3{} : grip->force;
+    if (grip != nullptr) grip->is_candidate = true;
     hold_place(body, grip, candidate);
     body.rest_place[i] = rest_place(body, candidate);
     body.contact[i] = contact_of(body, candidate, grip, tools[candidate.tool].friction, body.stick_place[i]);
@@ -415,8 +447,8 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
       body.elastostatic.step(std::span<const UnilateralContact>(body.contact, count), loads, budget, response);
   report.touching_work = work;
   if (answered(report.status)) {
+    account_energy(body, count);
     write_answer(body, count, tools);
-    account_energy(body, tools);
   }
   return report;
 }

@@ -59,14 +59,14 @@ class ContactBody {
     Double3 slip;      ///< m, along the tool's surface in this step
   };
 
-  /// J, of all steps so far. The tools' work is that of the mean of what they feel at both ends of a step, the elastic
-  /// energy that of the contacts' forces; what a quasi-static step leaves out is the gap that opens or closes in it.
+  /// J, of all steps so far, by the forces at the end of each: in = stored + dissipated + lost, but for what is
+  /// generated.
   struct Energy {
-    double in = 0;          ///< work of the tools on the body
-    double stored = 0;      ///< in the body
+    double in = 0;          ///< work of the tools on the body while they touch
+    double stored = 0;      ///< what the contacts' forces strain the body with
     double dissipated = 0;  ///< by friction
-    /// The most that stored and dissipated energy were ever above the work.
-    double generated = 0;
+    double lost = 0;        ///< by going in steps: never negative where the laws of contact hold
+    double generated = 0;   ///< the most that did not add up: rounding, and answers short of budget
   };
 
   /// What Limits cost. least_work and worst_work: of the elastic body alone, coarsest and finest; finding contacts

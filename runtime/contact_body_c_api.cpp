@@ -220,6 +220,11 @@ const greenloop_touch* greenloop_contact_body_contacts(const greenloop_contact_b
   return reinterpret_cast<const greenloop_touch*>(contacts.data());
 }
 
+greenloop_contact_energy greenloop_contact_body_energy(const greenloop_contact_body* body) {
+  const ContactBody::Energy& energy = touched_in(body).energy();
+  return {energy.in, energy.stored, energy.dissipated, energy.lost, energy.generated};
+}
+
 const float* greenloop_contact_body_displacement(const greenloop_contact_body* body, size_t* nodes) {
   const auto field = touched_in(body).displacement();
   *nodes = field.size();

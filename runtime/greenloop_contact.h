@@ -118,6 +118,7 @@ typedef struct greenloop_tool_answer {
   uint32_t first_contact; /* among greenloop_contact_body_contacts */
   uint32_t contacts;      /* places that may touch, of which those with a force do */
   double depth;           /* m, how far the tool was inside of the surface before this step's answer */
+  uint8_t is_behind;      /* a point of it that is followed is behind the surface */
 } greenloop_tool_answer;
 
 /* A place of the surface that may touch a tool. */
@@ -130,7 +131,17 @@ typedef struct greenloop_touch {
   double normal[3];   /* unit, out of the tool */
   double force[3];    /* N, on the body */
   double gap;         /* m, from the tool along the normal */
+  double slip[3];     /* m, along the tool's surface in this step */
 } greenloop_touch;
+
+/* J, of all steps so far: in = stored + dissipated + lost, but for what is generated. */
+typedef struct greenloop_contact_energy {
+  double in;         /* work of the tools on the body while they touch */
+  double stored;     /* what the contacts' forces strain the body with */
+  double dissipated; /* by friction */
+  double lost;       /* by going in steps */
+  double generated;  /* the most that did not add up */
+} greenloop_contact_energy;
 
 /* An elastic body that tools touch; it lives in the caller's memory. */
 typedef struct greenloop_contact_body greenloop_contact_body;
@@ -157,7 +168,7 @@ typedef struct greenloop_contact_body_created {
 
 typedef struct greenloop_contact_body_report {
   greenloop_unilateral_report contact;
-  uint64_t touching_work;  /* part of the work: what finding contacts took */
+  uint64_t touching_work;  /* what finding contacts took, which is not in the work */
   uint32_t left_out;       /* places that may touch, but for which there was no room: the deepest were kept */
   double deepest_left_out; /* m, depth of the deepest of these */
 } greenloop_contact_body_report;
@@ -183,6 +194,7 @@ greenloop_contact_body_report greenloop_contact_body_step(greenloop_contact_body
 /* The last answer, in the body's memory, until the next step. displacement: 4 floats per node [m], x y z 0. */
 const greenloop_tool_answer* greenloop_contact_body_tools(const greenloop_contact_body* body, size_t* count);
 const greenloop_touch* greenloop_contact_body_contacts(const greenloop_contact_body* body, size_t* count);
+greenloop_contact_energy greenloop_contact_body_energy(const greenloop_contact_body* body);
 const float* greenloop_contact_body_displacement(const greenloop_contact_body* body, size_t* nodes);
 
 /* The tool is somewhere else without having been between. For the loop. */

@@ -7,7 +7,7 @@ void Grips::carve(Arena& arena, std::uint32_t contacts) noexcept {
   made_ = arena.take<Grip>(contacts);
 }
 
-const Grip* Grips::find(std::uint64_t key) noexcept {
+Grip* Grips::find(std::uint64_t key) noexcept {
   while (next_ < count_ && grip_[next_].key < key) ++next_;
   return next_ < count_ && grip_[next_].key == key ? grip_ + next_ : nullptr;
 }

@@ -16,6 +16,8 @@ struct Grip {
   Double3 anchor;         ///< m, where it touches the tool, in the tool's frame
   Vec3 force;             ///< N, on the body
   bool sticks = false;
+  bool is_candidate = false;  ///< of the present step again
+  Vec3 shift;                 ///< m, of the body's point by all that acts
   // of the body's point
   std::uint32_t node[3] = {layout::none, layout::none, layout::none};
   double weight[3] = {};
@@ -40,7 +42,7 @@ class Grips {
   /// The grip of a candidate, or null; asked in the order of their keys since `begin`. For the loop; work: linear in
   /// both over a step.
   void begin() noexcept { next_ = 0; }
-  [[nodiscard]] const Grip* find(std::uint64_t key) noexcept;
+  [[nodiscard]] Grip* find(std::uint64_t key) noexcept;
 
   /// Takes the next step's in, in the order of their keys, then puts them in the place of the last one's.
   void add(const Grip& grip) noexcept { made_[made_count_++] = grip; }

@@ -5,9 +5,9 @@
 #include "runtime/contact/candidate_search.hpp"
 #include "runtime/contact/deformed_surface.hpp"
 #include "runtime/contact_body.hpp"
-#include "runtime/contact_body/energy_account.hpp"
 #include "runtime/contact_body/grip.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/friction/energy.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/surface.hpp"
 
@@ -23,12 +23,14 @@ struct TouchedBody {
   double mean_edge = 0;      ///< m
   float rigid_softness = 0;  ///< m/N
 
-  Tool* tool = nullptr;                  ///< [max_tools] of this step
-  Placement* placement = nullptr;        ///< [max_tools] the same
-  Candidate* candidate = nullptr;        ///< [max_contacts] of this step, by their keys
-  UnilateralContact* contact = nullptr;  ///< [max_contacts] the same
-  Double3* rest_place = nullptr;         ///< [max_contacts] m, where each stands at rest
-  FeltTool* felt = nullptr;              ///< [max_tools] of the last answer
+  Tool* tool = nullptr;                     ///< [max_tools] of this step
+  Placement* placement = nullptr;           ///< [max_tools] the same
+  Candidate* candidate = nullptr;           ///< [max_contacts] of this step, by their keys
+  UnilateralContact* contact = nullptr;     ///< [max_contacts] the same
+  Double3* rest_place = nullptr;            ///< [max_contacts] m, where each stands at rest
+  Vec3* force_before = nullptr;             ///< [max_contacts] N, in the last answer
+  EnergyContact* energy_contact = nullptr;  ///< [2 * max_contacts] of this step and the last
+  EnergyAccount account;
   ContactBody::Energy energy;
   Double3* stick_place = nullptr;            ///< [max_contacts] m, where each stands if it does not slip
   Vec3* force = nullptr;                     ///< [max_contacts]

@@ -123,6 +123,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
        {{"in", verdict.energy.in},
         {"stored", verdict.energy.stored},
         {"dissipated", verdict.energy.dissipated},
+        {"lost", verdict.energy.lost},
         {"generated", verdict.energy.generated}}},
       {"residual_max", verdict.residual_max},
       {"force_step_max", verdict.force_step_max},
