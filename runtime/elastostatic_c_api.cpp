@@ -17,13 +17,13 @@ static_assert(sizeof(Constraint) == sizeof(greenloop_constraint) &&
               offsetof(Constraint, node) == offsetof(greenloop_constraint, node) &&
               offsetof(Constraint, value) == offsetof(greenloop_constraint, value) &&
               offsetof(Constraint, kind) == offsetof(greenloop_constraint, kind));
-// NOLINTEND(misc-redundant-expression)
 static_assert(sizeof(Prices) == sizeof(greenloop_prices) && std::is_trivially_copyable_v<Prices>);
 // a span is a pointer and a size
 static_assert(sizeof(Mask) == sizeof(greenloop_mask) && alignof(Mask) == alignof(greenloop_mask) &&
               offsetof(Mask, weight) == offsetof(greenloop_mask, weight) && std::is_trivially_copyable_v<Mask>);
 static_assert(sizeof(MeshPoint) == sizeof(greenloop_vertex) &&
               offsetof(MeshPoint, weight) == offsetof(greenloop_vertex, weight));
+// NOLINTEND(misc-redundant-expression)
 static_assert(sizeof(Elastostatic) == sizeof(void*) && std::is_trivially_copyable_v<Elastostatic>);
 
 }  // namespace

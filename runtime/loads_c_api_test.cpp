@@ -1,5 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <vector>
 
@@ -42,8 +45,8 @@ struct Both {
 
 template <class A, class B>
 bool same_bytes(const A& a, const B& b) {
-  static_assert(sizeof a == sizeof b);
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Words = std::array<std::uint32_t, sizeof(A) / sizeof(std::uint32_t)>;
+  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
 }
 
 TEST_CASE("a loaded step, and what is asked after it, are the same through C, bit for bit") {
@@ -66,8 +69,8 @@ TEST_CASE("a loaded step, and what is asked after it, are the same through C, bi
   const MeshPoint same_point{{nodes[3], nodes[8], nodes[9]}, {0.5F, 0.25F, 0.25F}};
   const Mask same_mask = make_mask(both.model.model(), area, same_point, 0.06F, cpp_masked, cpp_weight);
   REQUIRE(same_mask.node.size() == mask.nodes);
-  CHECK(std::memcmp(same_mask.node.data(), mask.node, sizeof *masked * mask.nodes) == 0);
-  CHECK(std::memcmp(same_mask.weight.data(), mask.weight, sizeof *weight * mask.weights) == 0);
+  CHECK(std::equal(same_mask.node.begin(), same_mask.node.end(), mask.node));
+  CHECK(std::equal(same_mask.weight.begin(), same_mask.weight.end(), mask.weight));
 
   const greenloop_constraint constraints[] = {{nodes[20], {1e-3F, 0, 0}, GREENLOOP_HOLD},
                                               {0, {0, 1, 0}, GREENLOOP_PATTERN}};
@@ -81,7 +84,7 @@ TEST_CASE("a loaded step, and what is asked after it, are the same through C, bi
       both.cpp.step(same, {std::span(&same_mask, 1), {0, 0, -9.81F}, pressure, 2}, any_budget, true);
   CHECK(report.status == GREENLOOP_OK);
   CHECK(report.work == expected.work);
-  CHECK(std::memcmp(force, both.cpp.force().data(), sizeof force) == 0);
+  CHECK(std::equal(both.cpp.force().begin(), both.cpp.force().end(), force));
   CHECK(std::memcmp(both.field.data(), both.cpp.field().data(), both.field.size()) == 0);
 
   Vec3 moved;

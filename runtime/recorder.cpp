@@ -35,7 +35,7 @@ void carve(Arena& arena, const Elastostatic::Limits& limits, const Recorder::Opt
     return offset;
   };
   take(sizeof(Record));
-  record.slot_bytes = sizeof(RecordedStep) + sizeof(Constraint) * std::uint64_t{limits.max_contacts};
+  record.slot_bytes = sizeof(RecordedStep) + sizeof(Constraint) * most_constraints(limits);
   record.slot_bytes = (record.slot_bytes + 7) / 8 * 8;
   record.steps_offset = take(record.slot_bytes * options.steps);
   for (Checkpoint& checkpoint : record.checkpoint) checkpoint = {no_step, take(record.arena_bytes)};
@@ -66,17 +66,17 @@ RecordedStep* begin_step(Record& record, std::span<const Constraint> contacts, B
                          const Elastostatic::Response& response) {
   std::byte* const slot = at(record, record.steps_offset + record.slot_bytes * (record.begun % record.steps));
   const bool aligned = address(response.displacement.data()) % 16 == 0;
-  auto* const step = new (slot)
-      RecordedStep{.number = record.begun,
-                   .budget = budget.work,
-                   .contacts = std::min<std::uint64_t>(contacts.size(), record.limits.max_contacts + std::uint64_t{1}),
-                   .forces = std::min<std::uint64_t>(response.force.size(), most_forces),
-                   .displaced_nodes = response.displacement.size(),
-                   .displacement_aligned = aligned ? 1U : 0U,
-                   .finished = 0,
-                   .status = 0,
-                   .digest = 0};
-  const std::size_t kept = std::min<std::size_t>(contacts.size(), record.limits.max_contacts);
+  auto* const step =
+      new (slot) RecordedStep{.number = record.begun,
+                              .budget = budget.work,
+                              .contacts = std::min<std::uint64_t>(contacts.size(), most_constraints(record.limits) + 1),
+                              .forces = std::min<std::uint64_t>(response.force.size(), most_forces),
+                              .displaced_nodes = response.displacement.size(),
+                              .displacement_aligned = aligned ? 1U : 0U,
+                              .finished = 0,
+                              .status = 0,
+                              .digest = 0};
+  const std::size_t kept = std::min<std::size_t>(contacts.size(), most_constraints(record.limits));
   if (kept > 0) std::memcpy(slot + sizeof(RecordedStep), contacts.data(), kept * sizeof(Constraint));
   ++record.begun;
   return step;

@@ -31,7 +31,7 @@ class RecordView {
     require(facts.version == record_version && facts.pointer_bytes == sizeof(void*),
             "the record is of another version of greenloop or another kind of machine");
     require(facts.bytes == bytes.size(), "the record was cut or extended: copy it again");
-    const std::uint64_t slot = sizeof(RecordedStep) + sizeof(Constraint) * std::uint64_t{facts.limits.max_contacts};
+    const std::uint64_t slot = sizeof(RecordedStep) + sizeof(Constraint) * most_constraints(facts.limits);
     require(facts.steps > 0 && facts.slot_bytes >= slot && facts.slot_bytes <= facts.bytes / facts.steps &&
                 holds(facts.steps_offset, facts.slot_bytes * facts.steps),
             "the record is damaged: its steps do not fit");
@@ -68,7 +68,7 @@ class RecordView {
   /// Those beyond what is kept are zero.
   [[nodiscard]] std::vector<Constraint> contacts(const RecordedStep& step) const {
     std::vector<Constraint> contacts(static_cast<std::size_t>(step.contacts));
-    const std::size_t kept = std::min<std::size_t>(contacts.size(), facts.limits.max_contacts);
+    const std::size_t kept = std::min<std::size_t>(contacts.size(), most_constraints(facts.limits));
     if (kept > 0) std::memcpy(contacts.data(), slot(step.number) + sizeof step, kept * sizeof(Constraint));
     return contacts;
   }

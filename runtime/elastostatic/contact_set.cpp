@@ -51,8 +51,7 @@ Status check_pattern(const Constraint& constraint, std::uint32_t node_count, con
   return finite(constraint) ? check_mask(mask, node_count, facts) : Status::held_not_finite;
 }
 
-Status check_contact(const Constraint& contact, std::uint32_t node_count, const NodeFacts* facts,
-                     ConstraintBounds& left) {
+Status check_contact(const Constraint& contact, std::uint32_t node_count, const NodeFacts* facts) {
   const Status node = check_node(contact.node, node_count, facts);
   if (node != Status::ok) {
     return node;
@@ -60,26 +59,44 @@ Status check_contact(const Constraint& contact, std::uint32_t node_count, const 
   if (!finite(contact)) {
     return Status::held_not_finite;
   }
-  if (facts[contact.node].marked) {
-    return Status::held_duplicate;
-  }
-  const bool room = take(1, contact.kind == Constraint::Kind::hold ? left.contacts : left.forces);
-  return room ? Status::ok : Status::held_out_of_range;
+  return facts[contact.node].marked ? Status::held_duplicate : Status::ok;
 }
 
-// what `node` and `value` are follows from the kind
-Status check_constraint(const Constraint& constraint, std::uint32_t node_count, const NodeFacts* facts, bool forces,
+// where forces are known; what `node` and `value` are follows from the kind
+Status check_constraint(const Constraint& constraint, std::uint32_t node_count, const NodeFacts* facts,
                         ConstraintBounds& left) {
-  switch (constraint.kind) {
-    case Constraint::Kind::hold:
-      return check_contact(constraint, node_count, facts, left);
-    case Constraint::Kind::force:
-      return forces ? check_contact(constraint, node_count, facts, left) : Status::held_unsupported;
-    case Constraint::Kind::pattern:
-      return forces ? check_pattern(constraint, node_count, facts, left) : Status::held_unsupported;
-    default:
-      return Status::held_unsupported;
+  if (constraint.kind == Constraint::Kind::pattern) {
+    return check_pattern(constraint, node_count, facts, left);
   }
+  const bool holds = constraint.kind == Constraint::Kind::hold;
+  if (!holds && constraint.kind != Constraint::Kind::force) {
+    return Status::held_unsupported;
+  }
+  const Status status = check_contact(constraint, node_count, facts);
+  const bool room = status != Status::ok || take(1, holds ? left.contacts : left.forces);
+  return room ? status : Status::held_out_of_range;
+}
+
+CheckedContacts check_all(std::span<const Constraint> constraints, std::uint32_t node_count, NodeFacts* facts,
+                          ConstraintBounds bounds) {
+  CheckedContacts result;
+  std::size_t checked = 0;
+  for (; checked < constraints.size(); ++checked) {
+    result.status = check_constraint(constraints[checked], node_count, facts, bounds);
+    if (result.status != Status::ok) {
+      result.refused = static_cast<std::uint32_t>(checked);
+      break;
+    }
+    if (names_node(constraints[checked])) {
+      facts[constraints[checked].node].marked = true;
+    }
+  }
+  for (std::size_t i = 0; i < checked; ++i) {
+    if (names_node(constraints[i])) {
+      facts[constraints[i].node].marked = false;
+    }
+  }
+  return result;
 }
 
 }  // namespace
@@ -96,23 +113,25 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
 
 CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
                                ConstraintBounds bounds) noexcept {
+  if (bounds.forces > 0) {
+    return check_all(contacts, node_count, facts, bounds);
+  }
   CheckedContacts result;
-  const bool forces = bounds.forces > 0;
   std::size_t checked = 0;
   for (; checked < contacts.size(); ++checked) {
-    result.status = check_constraint(contacts[checked], node_count, facts, forces, bounds);
+    const bool holds = contacts[checked].kind == Constraint::Kind::hold;
+    const bool room = checked < bounds.contacts;
+    result.status = !holds  ? Status::held_unsupported
+                    : !room ? Status::held_out_of_range
+                            : check_contact(contacts[checked], node_count, facts);
     if (result.status != Status::ok) {
       result.refused = static_cast<std::uint32_t>(checked);
       break;
     }
-    if (names_node(contacts[checked])) {
-      facts[contacts[checked].node].marked = true;
-    }
+    facts[contacts[checked].node].marked = true;
   }
   for (std::size_t i = 0; i < checked; ++i) {
-    if (names_node(contacts[i])) {
-      facts[contacts[i].node].marked = false;
-    }
+    facts[contacts[i].node].marked = false;
   }
   return result;
 }

@@ -158,6 +158,26 @@ TEST_CASE("the stiffness of a point is the mean of its corners', rigid where the
   CHECK(stiffness_norm(k) == doctest::Approx(std::sqrt(3.0F) * soft));
 }
 
+TEST_CASE("a point takes a fraction of the field, and less than twice as much with four times the nodes") {
+  std::uint64_t points[2] = {}, fields[2] = {};
+  for (const std::uint32_t finer : {0U, 1U}) {
+    const TestModel model({.levels = 4 + finer});
+    TestBody body(model, limits);
+    const std::uint32_t node = model.touchable().front();
+    const std::vector<Constraint> held = {{node, {1e-3F, 0, 0}}};
+    fields[finer] = body.step(held).work;
+    fields[finer] -= body.step(held, any_budget, false).work;
+    Vec3 moved;
+    const MeshPoint point = at_node(node);
+    points[finer] = body.body().displacements({&point, 1}, {&moved, 1});
+    CHECK(moved.x == doctest::Approx(1e-3));
+    MESSAGE(model.view().node_count, " nodes: units of a point ", points[finer], ", of the field ", fields[finer]);
+  }
+  CHECK(points[1] < 2 * points[0]);
+  CHECK(4 * points[0] < fields[0]);
+  CHECK(4 * points[1] < fields[1]);
+}
+
 TEST_CASE("what cannot be answered is refused, and nothing is written") {
   const TestModel model(loaded(layout::Wavelet::linear));
   TestBody body(model, limits);

@@ -17,7 +17,7 @@
 namespace greenloop {
 
 inline constexpr char record_magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'R', '\n'};
-inline constexpr std::uint32_t record_version = 2;
+inline constexpr std::uint32_t record_version = 3;
 inline constexpr std::uint64_t no_step = ~std::uint64_t{0};
 
 struct Checkpoint {
@@ -50,7 +50,8 @@ struct Record {
 struct RecordedStep {
   std::uint64_t number;
   std::uint64_t budget;
-  std::uint64_t contacts;  ///< as many as were given, or max_contacts + 1 where more were, which are refused alike
+  std::uint64_t
+      contacts;  ///< as many as were given, or one more than most_constraints where more were, which are refused alike
   std::uint64_t forces;
   std::uint64_t displaced_nodes;
   std::uint32_t displacement_aligned;  ///< 1: at a multiple of 16 bytes
@@ -59,6 +60,11 @@ struct RecordedStep {
   std::uint32_t digest;  ///< outcome_digest
 };
 static_assert(std::is_trivially_copyable_v<Record> && sizeof(RecordedStep) == 56);
+
+/// Constraints that a step takes, of all kinds.
+constexpr std::uint64_t most_constraints(const Elastostatic::Limits& limits) noexcept {
+  return std::uint64_t{limits.max_contacts} + limits.max_forces;
+}
 
 /// CRC-32C of what a step reported and, if it answered, of its forces and of the first `field_nodes` nodes'
 /// displacement. For the loop; work: linear in these.

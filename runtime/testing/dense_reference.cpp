@@ -111,7 +111,7 @@ MatrixXd DenseReference::load_field(const ModelView& view, std::uint32_t q) cons
   for (std::uint32_t l = 0; l <= q; ++l) {
     const LevelView& level = view.level[l];
     for (std::uint32_t load = 0; load < view.loads.size(); ++load) {
-      for (Index i = 0; i < 3 * level.counts->domain_count; ++i) {
+      for (Index i = 0; i < Index{3} * level.counts->domain_count; ++i) {
         x(Index{3} * level.domain_begin + i, load) = double{level.load_column(load)[i]};
       }
     }
@@ -214,7 +214,7 @@ DenseAnswer solve_dense(const ModelView& view, const DenseReference& reference, 
   }
   const Eigen::VectorXd displacement = softness * (reference.field(level) * known) + by_loads;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const Index count = 3 * view.level[q].counts->domain_count;
+    const Index count = Index{3} * view.level[q].counts->domain_count;
     answer.displacement.segment(Index{3} * view.level[q].node_begin, count) =
         displacement.segment(Index{3} * view.level[q].domain_begin, count);
   }
