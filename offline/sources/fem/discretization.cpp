@@ -35,6 +35,7 @@ Interpolation vertices_from_points(const TetrahedralMesh& mesh, const MeshEdges&
     for (const int v : triangle.vertices) weight[v] += triangle.area / 3;
   }
   std::vector<Triplet<double>> entries;
+  entries.reserve(mesh.vertices.size() + 9 * boundary.size());
   for (int v = 0; v < vertices; ++v) entries.emplace_back(v, v, 1.0);
   for (const auto& triangle : boundary) {
     for (int k = 0; k < 3; ++k) {
