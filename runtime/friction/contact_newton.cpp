@@ -1,5 +1,6 @@
 #include "runtime/friction/contact_newton.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace greenloop {
@@ -31,9 +32,9 @@ FrozenContact frozen(const FrictionContact& contact, float scale, Float4 displac
   const Float4 along = splat(1 / size) * tangent;
   const Float4 push = contact.normal + splat(contact.friction) * along;
   const Float4 across = cross(contact.normal, along);
-  const float pressed = std::fmax(dot3(contact.normal, force), 0.0F);
+  const float pressed = std::max(dot3(contact.normal, force), 0.0F);
   force = splat(pressed) * push + splat(dot3(across, force)) * across;
-  const float sliding = std::fmin(contact.friction * pressed / size, 1.0F);
+  const float sliding = std::min(contact.friction * pressed / size, 1.0F);
   return {ContactState::slip, push, across, sliding, (1 - sliding) / scale};
 }
 

@@ -109,7 +109,7 @@ bool ContactProblem::newton(float accuracy, std::uint64_t work, ContactAnswer& a
     const std::uint64_t vectors = work > needed ? (work - needed) / vector_work(count) : 0;
     if (vectors == 0 || (steps > 0 && here <= 0.9F * accuracy)) break;
     last = steps++ == 0 ? FLT_MAX : here;
-    terms.reduction = std::fmin(std::fmax(0.1F * accuracy / here, 0.01F), 0.1F);
+    terms.reduction = std::min(std::max(0.1F * accuracy / here, 0.01F), 0.1F);
     terms.vectors = static_cast<std::uint32_t>(std::min<std::uint64_t>(vectors, ContactNewton::most_vectors));
     answer.work += newton_work(count, newton_.step(points_, terms, force_, displacement_));
   }

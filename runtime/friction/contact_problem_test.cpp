@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "runtime/algebra/fnv1a.hpp"
 #include "runtime/testing/half_space.hpp"
 
 namespace greenloop {
@@ -426,6 +427,48 @@ TEST_CASE("what is not finite, and points without a compliance, are refused") {
     CHECK(forces(bench).norm() == 0);
     for (const ContactState state : bench.state) CHECK(state == ContactState::open);
   }
+}
+
+TEST_CASE("forces and displacements have the same bits on every compiler and processor") {
+  constexpr std::uint32_t count = 40;
+  std::uint32_t state = 1;
+  const auto drawn = [&state] {
+    state = state * 1664525U + 1013904223U;
+    return static_cast<double>(state >> 8) / (1 << 23) - 1;
+  };
+  Fnv1a digest;
+  for (int k = 0; k < 40; ++k) {
+    ContactBench bench(count);
+    std::vector<Vector3d> place(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (double& x : place[i]) x = drawn();
+      place[i].z() *= 0.1;
+      const double gap = 0.05 * (place[i].x() * place[i].x() + place[i].y() * place[i].y()) - 0.04;
+      bench.candidates[i] = {
+          stored({0.01 * drawn(), 0.01 * drawn(), gap}), {0, 0, 1, 0}, 0.3F * static_cast<float>(k % 4)};
+    }
+    for (std::uint32_t j = 0; j < count; ++j) {
+      for (std::uint32_t i = 0; i <= j; ++i) {
+        const Vector3d d = place[i] - place[j];
+        const double r = std::sqrt(d.x() * d.x() + d.y() * d.y() + d.z() * d.z() + 0.01);
+        Eigen::Matrix3d block;
+        for (int c = 0; c < 3; ++c) {
+          for (int q = 0; q < 3; ++q)
+            block(q, c) = (q == c ? 1 / r : 0) + 0.5 * d[q] * d[c] / (r * r * r) + (q == c ? k % 3 : 0);
+        }
+        bench.set_block(i, j, block);
+      }
+    }
+    for (int step = 0; step < 3; ++step) {
+      for (ContactCandidate& candidate : bench.candidates) candidate.gap.x += 0.001F;
+      const ContactAnswer answer = bench.solve({.residual = 1e-4F, .iterations = 20});
+      digest.add_words({&answer.residual, 1});
+      digest.add_word(answer.work);
+      digest.add_words(as_floats(std::span(bench.force)));
+      digest.add_words(as_floats(std::span(bench.displacement)));
+    }
+  }
+  CHECK(digest.value() == 9811307219884749668U);
 }
 
 }  // namespace

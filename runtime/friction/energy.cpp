@@ -1,5 +1,6 @@
 #include "runtime/friction/energy.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -43,11 +44,11 @@ Vec3 EnergyTank::step(const Vec3& position, const Vec3& force, double stored) no
   const double out = dot(wide(force_), moved);
   delivered_ += out;
   drained_ -= dot(wide(braking_), moved);
-  level_ = std::fmin(level_ - out, std::fmax(stored, 0.0) + settings_.reserve);
+  level_ = std::min(level_ - out, std::max(stored, 0.0) + settings_.reserve);
   // the next motion will be about the last
   const double excess = dot(wide(force), moved) - level_;
   const double square = dot(moved, moved);
-  const double damping = square > 0 ? std::fmin(excess / square, settings_.most_damping / settings_.period) : 0;
+  const double damping = square > 0 ? std::min(excess / square, settings_.most_damping / settings_.period) : 0;
   const bool brakes = settings_.enabled && damping > 0;
   begun_ = true;
   position_ = position;

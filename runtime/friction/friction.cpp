@@ -1,5 +1,6 @@
 #include "runtime/friction/friction.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -56,7 +57,7 @@ Float4 combined(const FrictionContact& contact, const Components& force, float s
 }
 
 // of a friction coefficient: in space a friction force is rounded, and not quite perpendicular to the normal
-float slack(float mu) { return rounding + std::fmin(rounding * mu * mu, mu / 8); }
+float slack(float mu) { return rounding + std::min(rounding * mu * mu, mu / 8); }
 
 // the part of a friction force that is left when it is shortened so that rounding does not lead out of the cone
 float share_in_cone(const FrictionContact& contact, float normal, float friction) {

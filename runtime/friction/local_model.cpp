@@ -1,5 +1,6 @@
 #include "runtime/friction/local_model.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 
@@ -30,7 +31,7 @@ float tangential(Float4 normal, Float4 v) {
 }
 
 // how far a margin lasts that shrinks by at most `slope` per metre
-float lasting(float margin, float slope) { return slope > 0 ? std::fmax(margin, 0.0F) / slope : FLT_MAX; }
+float lasting(float margin, float slope) { return slope > 0 ? std::max(margin, 0.0F) / slope : FLT_MAX; }
 
 }  // namespace
 
@@ -44,13 +45,13 @@ float LocalModelBuilder::state_range(const ContactProblem::Contact& contact, con
       return lasting(dot3(normal, contact.displacement), std::sqrt(of.separated));
     case ContactState::stick: {
       const float left = mu * pressed - std::sqrt(tangential(normal, contact.force));
-      return std::fmin(until_open, lasting(left, mu * std::sqrt(of.pressed) + std::sqrt(of.dragged)));
+      return std::min(until_open, lasting(left, mu * std::sqrt(of.pressed) + std::sqrt(of.dragged)));
     }
     case ContactState::slip:
       break;
   }
   const float slipped = std::sqrt(tangential(normal, contact.displacement));
-  return mu > 0 ? std::fmin(until_open, lasting(slipped, std::sqrt(of.slipped))) : until_open;
+  return mu > 0 ? std::min(until_open, lasting(slipped, std::sqrt(of.slipped))) : until_open;
 }
 
 float LocalModel::motion_length(std::span<const float> motion) const noexcept {
@@ -114,7 +115,7 @@ LocalModel LocalModelBuilder::build(ContactProblem& problem, std::span<const Too
     }
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    model.range = std::fmin(model.range, state_range(problem.contact(i), gradients_[i]));
+    model.range = std::min(model.range, state_range(problem.contact(i), gradients_[i]));
   }
   return model;
 }
