@@ -21,7 +21,8 @@ Packet sent(const Packet& packet) {
 }
 
 DeviceState state_of(std::uint32_t tools) {
-  DeviceState state{.cycle = 77, .resolution = 1e-5, .origin = {1, -2, 3}, .gravity = {0.5, 0, -9.81}, .num_tools = tools};
+  DeviceState state{
+      .cycle = 77, .resolution = 1e-5, .origin = {1, -2, 3}, .gravity = {0.5, 0, -9.81}, .num_tools = tools};
   for (std::uint32_t t = 0; t < tools; ++t) {
     const auto number = static_cast<std::int16_t>(t);
     state.tools[t] = {{100 + number, -number, INT32_MAX}, {ToolState::unit, number, INT16_MIN, 3}};
@@ -53,7 +54,8 @@ TEST_CASE("a command of any number of tools and contacts arrives as it was sent"
     command.tools[2].force[1] = -0.25;
     command.tools[1].torque[2] = 0.5;
     command.num_contacts = contacts;
-    for (std::uint32_t i = 0; i < contacts; ++i) command.contacts[i] = {1000 + i, 2, 1, {0.5F, static_cast<float>(i), -1}};
+    for (std::uint32_t i = 0; i < contacts; ++i)
+      command.contacts[i] = {1000 + i, 2, 1, {0.5F, static_cast<float>(i), -1}};
     const auto arrived = from_packet(sent(to_packet(command)));
     REQUIRE(arrived);
     CHECK(arrived->cycle == 5);
