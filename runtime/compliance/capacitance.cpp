@@ -176,8 +176,7 @@ std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitan
     added = refinement.prediction.blocks ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
   }
   const Prices& prices = *scratch.prices;
-  return priced(1, slot_part_price(prices, refinement.prediction)) +
-         priced(column_length(couplings, column), prices.stored_block) + priced(loaded.count, prices.scaled_block) +
+  return priced(column_length(couplings, column), prices.stored_block) + priced(loaded.count, prices.scaled_block) +
          priced(added, meeting_price(prices, refinement.prediction));
 }
 
@@ -190,8 +189,7 @@ std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCap
   const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
   const Prices& prices = *scratch.prices;
   const std::uint64_t meetings = partial.panel ? 0 : 2 * length * partial.computed;
-  return priced(1, slot_part_price(prices, refinement.prediction)) +
-         priced(length, prices.stored_block + prices.scaled_block) +
+  return priced(length, prices.stored_block + prices.scaled_block) +
          priced(meetings, meeting_price(prices, refinement.prediction));
 }
 
@@ -341,16 +339,13 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
   std::uint64_t work = 0;
   while (partial.next < partial.slots) {
     const bool has_blocks = scratch.coefficient[partial.next] != layout::none;
-    const bool last = partial.next + 1 == partial.slots && partial.layer + 1 == layout::layers;
-    const std::uint64_t diagonal =
-        last ? priced(partial.own, slot_part_price(*scratch.prices, refinement.prediction)) : 0;
-    if (diagonal + (has_blocks ? most_couplings_work(refinement, partial, scratch) : 0) > allowance - work) {
+    if (has_blocks && most_couplings_work(refinement, partial, scratch) > allowance - work) {
       return work;
     }
-    work += diagonal + (has_blocks ? add_couplings(refinement, partial, scratch) : 0);
+    work += has_blocks ? add_couplings(refinement, partial, scratch) : 0;
     partial.layer = (partial.layer + 1) % layout::layers;
     partial.next += partial.layer == 0 ? 1 : 0;
-    if (last) {
+    if (partial.next == partial.slots) {
       set_diagonal(refinement, partial, scratch);  // the largest last
     }
   }

@@ -10,12 +10,6 @@ namespace {
 std::uint64_t smaller(std::uint64_t a, std::uint64_t b) { return a < b ? a : b; }
 std::uint64_t larger(std::uint64_t a, std::uint64_t b) { return a > b ? a : b; }
 
-// of slots, besides what adding their blocks and their diagonal ones takes
-std::uint64_t found_slots_work(const CapacitanceCounts& counts) {
-  const std::uint32_t later = (layout::layers + 1) * slot_part_price(*counts.prices, counts.prediction);
-  return priced(counts.slots, counts.prices->slot - later);
-}
-
 // of touching the computed rows alone; the steps of T^-1 have no more terms
 std::uint64_t own_visits(const CapacitanceCounts& counts) { return smaller(counts.set_visits, counts.visits); }
 
@@ -34,7 +28,7 @@ std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
 std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
   return priced(1, prices.batch) + priced(own_visits(counts), prices.listed_visit) +
-         priced(counts.set_visits, prices.set_visit) + found_slots_work(counts) +
+         priced(counts.set_visits, prices.set_visit) + priced(counts.slots, prices.slot) +
          priced(merge_sort_steps(counts.rows), prices.sorted);
 }
 
@@ -47,12 +41,11 @@ std::uint64_t functionals_work(const CapacitanceCounts& counts) {
          priced(counts.rows * counts.slots, prices.cleared);
 }
 
-// of the slots and the blocks in their columns, at most one of each two; those that no functional meets are passed over
+// of the blocks in the columns of the slots, at most one of each two; those that no functional meets are passed over
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
   const std::uint64_t between = smaller(counts.stored, counts.slots * (counts.slots + 1) / 2);
-  return priced(counts.slots, prices.slot) - found_slots_work(counts) + priced(counts.stored, prices.stored_block) +
-         priced(smaller(between, counts.meetings), prices.scaled_block);
+  return priced(counts.stored, prices.stored_block) + priced(smaller(between, counts.meetings), prices.scaled_block);
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {

@@ -128,12 +128,6 @@ constexpr std::uint64_t sum_pair_work(const Prices& prices, const Prediction& pr
   return priced(set_visits, pair_visit_price(prices, prediction));
 }
 
-/// The part of a slot's price that adding its blocks of a layer takes, besides these, and its diagonal one; where
-/// weights are blocks listing them takes all of it.
-constexpr std::uint32_t slot_part_price(const Prices& prices, const Prediction& prediction) {
-  return prediction.blocks ? 0 : prices.slot / 16;
-}
-
 /// Work units of begin_capacitance.
 [[nodiscard]] std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept;
 

@@ -322,10 +322,10 @@ template <unsigned N>
 FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
                                const Slice& slice) noexcept {
   FactorProgress progress;
+  progress.pending = pending_work(tools.counts, whole);
   const std::uint64_t compare =
       compare_factors_work(tools.counts, whole.columns) + drop_batch_work(tools.counts.prices, job);
   if (compare > slice.allowance) {
-    progress.pending = pending_work(tools.counts, whole);
     return progress;
   }
   progress.work = compare;
@@ -334,6 +334,7 @@ FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, Colu
   }
   job.singular = is_singular(job, set);
   if (job.singular) {
+    progress.pending = 0;
     return progress;
   }
   const FactorChanges& changes = job.changes;
