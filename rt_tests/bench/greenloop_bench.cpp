@@ -12,6 +12,7 @@
 #include "formats/output/program.hpp"
 #include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
+#include "rt_tests/bench/contact_benchmark.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
 #include "rt_tests/bench/kernel_benchmark.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 using greenloop::bench::BackSubstitution;
 using greenloop::bench::CapacitanceFigures;
+using greenloop::bench::ContactFigures;
 using greenloop::bench::CreationFigures;
 using greenloop::bench::FieldFigures;
 using greenloop::bench::ForceFigures;
@@ -94,6 +96,19 @@ json as_json(const CapacitanceFigures& figures) {
           {"drift", figures.drift}};
 }
 
+json as_json(const ContactFigures& figures) {
+  json result{{"contacts", figures.contacts}, {"friction", figures.friction},
+              {"residual", figures.residual}, {"us", figures.us},
+              {"worst_us", figures.worst_us}, {"cold_us", figures.cold_us},
+              {"work", figures.work},         {"unfinished", figures.unfinished}};
+  if (figures.siconos) {
+    result["siconos_us"] = figures.siconos->us;
+    result["siconos_solver"] = figures.siconos->solver;
+    result["siconos_failed"] = figures.siconos->failed;
+  }
+  return result;
+}
+
 json as_json(const ForceFigures& figures) { return {{"contacts", figures.contacts}, {"us", figures.us}}; }
 
 json as_json(const RooflinePoint& point) {
@@ -131,6 +146,27 @@ void print_kernels(const KernelFigures& kernels) {
   }
   for (const auto& f : kernels.forces) {
     fmt::print("forces of {} contacts alone, factor cached: {:.2f} us\n", f.contacts, f.us);
+  }
+}
+
+std::vector<ContactFigures> measure_contacts(const greenloop::Model& model, const Arguments& arguments) {
+  std::vector<ContactFigures> all;
+  for (const std::size_t contacts : {16, 64}) {
+    for (const float friction : {0.0F, 0.3F, 0.8F}) {
+      all.push_back(greenloop::bench::measure_contacts(model, contacts, friction, arguments.rounds / 4 + 1));
+    }
+  }
+  return all;
+}
+
+void print_contacts(const std::vector<ContactFigures>& all) {
+  fmt::print("\nUnilateral contact with Coulomb friction, each step from the one before, thread CPU time:\n");
+  fmt::print("{:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>10} {:>11}\n", "contacts", "friction", "residual", "us",
+             "worst us", "cold us", "work", "unfinished", "Siconos us");
+  for (const auto& f : all) {
+    fmt::print("{:>8} {:>9.2f} {:>9.1e} {:>9.1f} {:>9.1f} {:>9.1f} {:>9} {:>10} {:>11}\n", f.contacts, f.friction,
+               f.residual, f.us, f.worst_us, f.cold_us, f.work, f.unfinished,
+               f.siconos ? fmt::format("{:.0f} {}", f.siconos->us, f.siconos->solver) : "-");
   }
 }
 
@@ -194,12 +230,14 @@ int run(const Arguments& arguments) {
   }
   const KernelFigures kernels = measure_kernels(opened.model, store, arguments);
   const Roofline roofline = greenloop::bench::measure_roofline(opened.model, arguments.contacts, arguments.rounds);
+  const std::vector<ContactFigures> contact = measure_contacts(opened.model, arguments);
   const CreationFigures creation =
       greenloop::bench::measure_creation(opened.model, {.max_contacts = opened.model.view().info->max_contacts});
   if (!arguments.json) {
     print_table(all, back);
     print_kernels(kernels);
     print_roofline(roofline);
+    print_contacts(contact);
     fmt::print("\na body of {} contacts and {} cached factors: arena {} bytes, created in {:.1f} ms\n",
                creation.limits.max_contacts, creation.limits.cached_factors, creation.arena_bytes, creation.create_ms);
     return 0;
@@ -215,6 +253,7 @@ int run(const Arguments& arguments) {
                                 {"extract_ns_per_block", kernels.capacitance.back().extract_ns_per_block},
                                 {"capacitance", list_of(kernels.capacitance)},
                                 {"force_only", list_of(kernels.forces)},
+                                {"contact", list_of(contact)},
                                 {"create_ms", creation.create_ms},
                                 {"arena_bytes", creation.arena_bytes},
                                 {"streams", streams_of(roofline)},

@@ -6,8 +6,6 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint32_t most = ContactNewton::most_vectors;
-
 float dot(const Float4* a, const Float4* b, std::uint32_t count) {
   Float4 sum{};
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -72,8 +70,11 @@ Float4 local_solution(const FrictionContact& contact, const FrozenContact& of, c
   return splat((n * aa - na * a) * inverse) * of.push + splat((nn * a - an * n) * inverse) * of.across;
 }
 
-// The least-squares problem of GMRES, kept triangular by Givens' rotations.
-struct Triangle {
+}  // namespace
+
+/// The least-squares problem of GMRES, kept triangular by Givens' rotations.
+struct ContactNewton::Triangle {
+  static constexpr std::uint32_t most = most_vectors;
   float column[most][most + 1];
   float right[most + 1];
   float cosine[most], sine[most];
@@ -109,8 +110,6 @@ struct Triangle {
   }
 };
 
-}  // namespace
-
 void displace(const ContactPoints& points, const Float4* force, Float4* displacement) noexcept {
   multiply(points.compliance, points.count, force, displacement);
   for (std::uint32_t i = 0; i < points.count; ++i) {
@@ -120,6 +119,7 @@ void displace(const ContactPoints& points, const Float4* force, Float4* displace
 
 void ContactNewton::carve(Arena& arena, std::uint32_t candidates) noexcept {
   frozen_ = arena.take<FrozenContact>(candidates);
+  triangle_ = arena.take<Triangle>(1);
   start_force_ = arena.take<Float4>(candidates);
   start_displacement_ = arena.take<Float4>(candidates);
   direction_ = arena.take<Float4>(candidates);
@@ -149,7 +149,7 @@ float ContactNewton::expand(const ContactPoints& points, std::uint32_t k, float*
 
 // of the frozen system whose right side is the first vector
 std::uint32_t ContactNewton::add_solution(const ContactPoints& points, const Terms& terms, Float4* force) noexcept {
-  Triangle triangle;
+  Triangle& triangle = *triangle_;
   const float begun = std::sqrt(dot(vector_[0], vector_[0], points.count));
   triangle.right[0] = begun;
   std::uint32_t used = 0;

@@ -59,6 +59,7 @@ class ContactNewton {
   void respond(const ContactPoints& points, const Terms& terms, Float4* displacement, Float4* force) noexcept;
 
  private:
+  struct Triangle;
   [[nodiscard]] std::uint32_t add_solution(const ContactPoints& points, const Terms& terms, Float4* force) noexcept;
   [[nodiscard]] float expand(const ContactPoints& points, std::uint32_t k, float* products) noexcept;
   [[nodiscard]] float squared_residual(const ContactPoints& points, float part, const Float4* force,
@@ -66,6 +67,7 @@ class ContactNewton {
   void search(const ContactPoints& points, Float4* force, Float4* displacement) noexcept;
 
   FrozenContact* frozen_ = nullptr;
+  Triangle* triangle_ = nullptr;
   Float4* start_force_ = nullptr;
   Float4* start_displacement_ = nullptr;
   Float4* direction_ = nullptr;            ///< a vector of the subspace, preconditioned
