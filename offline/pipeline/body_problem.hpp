@@ -13,7 +13,7 @@
 namespace greenloop::offline {
 
 /// Part of every fingerprint: raised when a stage starts to give other results for the same scene.
-inline constexpr std::string_view pipeline_version = "pipeline 3";
+inline constexpr std::string_view pipeline_version = "pipeline 4";
 
 /// The whole file. Throws std::runtime_error if it cannot be opened.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
