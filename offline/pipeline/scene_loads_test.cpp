@@ -41,7 +41,7 @@ class Block {
            "[compression]\nwavelet = \"equilibrated\"\n"
         << more;
     ProgressBar quiet(true);
-    const auto model = folder_.path() / name;
+    auto model = folder_.path() / name;
     record_ = build_model_file(
                   {.scene = folder_.path() / "block.toml", .model = model, .store = folder_.path() / "block.h5"}, quiet)
                   .record;
