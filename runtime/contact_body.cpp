@@ -186,6 +186,16 @@ void hold_place(const TouchedBody& body, const Grip* grip, Candidate& candidate)
   candidate.position = place;
 }
 
+// takes the candidates in, where their places stick
+std::span<Candidate> take_candidates(TouchedBody& body, std::span<const Candidate> found) {
+  body.grips.begin();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    body.candidate[i] = found[i];
+    hold_place(body, body.grips.find(grip_key(found[i])), body.candidate[i]);
+  }
+  return {body.candidate, found.size()};
+}
+
 // the candidates that there is room for, by their corners: while there is none, those of triangles farthest from the
 // tool are left out, which hang on nodes that may be candidates themselves
 std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, ContactBody::StepReport& report) {
@@ -426,14 +436,13 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   StepReport report;
   report.left_out = found.left_out;
   report.deepest_left_out = found.left_out > 0 ? -found.deepest_left_out.gap : 0;
-  const std::uint32_t count = choose(body, found.candidates, report);
+  const std::uint32_t count = choose(body, take_candidates(body, found.candidates), report);
   body.grips.begin();
   for (std::uint32_t i = 0; i < count; ++i) {
-    Candidate& candidate = body.candidate[i];
+    const Candidate& candidate = body.candidate[i];
     Grip* const grip = body.grips.find(grip_key(candidate));
     body.force_before[i] = grip == nullptr ? Vec3{} : grip->force;
     if (grip != nullptr) grip->is_candidate = true;
-    hold_place(body, grip, candidate);
     body.rest_place[i] = rest_place(body, candidate);
     body.contact[i] = contact_of(body, candidate, grip, tools[candidate.tool].friction, body.stick_place[i]);
   }

@@ -17,7 +17,7 @@ namespace greenloop {
 namespace {
 
 constexpr std::size_t promised = 1536;
-constexpr std::size_t promised_of_tools = 3072;
+constexpr std::size_t promised_of_tools = 6144;
 constexpr std::size_t stack_bytes = 1 << 18;
 constexpr unsigned char paint = 0xa5;
 
