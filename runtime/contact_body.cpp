@@ -14,6 +14,8 @@ namespace {
 constexpr std::uint64_t contact_price = 400;
 constexpr std::uint64_t tool_price = 300;
 
+double larger(double a, double b) { return a > b ? a : b; }
+
 bool in_range(const ContactBody::Limits& limits) {
   const Elastostatic::Limits& body = limits.elastostatic;
   return limits.max_tools >= 1 && limits.max_tools <= 16 && limits.max_points >= 1 &&
@@ -211,7 +213,7 @@ std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, Contac
     for (const Candidate& candidate : found) {
       if (is_left_out(candidate, least)) continue;
       corners += corners_of(body, candidate);
-      if (candidate.triangle != layout::none) farthest = std::fmax(farthest, candidate.gap);
+      if (candidate.triangle != layout::none) farthest = larger(farthest, candidate.gap);
     }
     if (corners > body.max_contacts) least = farthest;
   }
@@ -221,7 +223,7 @@ std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, Contac
       body.candidate[count++] = candidate;
     } else if (!is_said_by_nodes(body, candidate)) {
       ++report.left_out;
-      report.deepest_left_out = std::fmax(report.deepest_left_out, -candidate.gap);
+      report.deepest_left_out = larger(report.deepest_left_out, -candidate.gap);
     }
   }
   return count;
@@ -297,7 +299,7 @@ void write_answer(TouchedBody& body, std::uint32_t count, std::span<const Contac
     ContactBody::ToolAnswer& answer = body.tool_answer[candidate.tool];
     answer.first_contact = i < answer.first_contact ? i : answer.first_contact;
     ++answer.contacts;
-    answer.depth = std::fmax(answer.depth, -candidate.gap);
+    answer.depth = larger(answer.depth, -candidate.gap);
     answer.force += -contact.force;
     answer.torque += cross(place - body.placement[candidate.tool].origin, -contact.force);
   }
@@ -349,7 +351,7 @@ void account_energy(TouchedBody& body, std::uint32_t count) {
   }
   EnergyAccount& account = body.account;
   account.add({body.energy_contact, last});
-  const double generated = std::fmax(body.energy.generated, account.generated());
+  const double generated = larger(body.energy.generated, account.generated());
   body.energy = {account.in, account.stored, account.dissipated, account.lost, generated};
 }
 
@@ -420,6 +422,7 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
     return created;
   }
   body.rigid_softness = rigid_softness(model, limits);
+  body.least_work = Elastostatic::required(model, limits.elastostatic).least_work;
   created.body.body_ = &body;
   return created;
 }
@@ -428,6 +431,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
                                           Budget budget) noexcept {
   TouchedBody& body = *body_;
   if (tools.size() > body.max_tools) return held(Status::held_out_of_range);
+  if (budget.work < body.least_work) return held(Status::held_over_budget);
   const std::span<const Tool> shapes = put_tools(tools, body);
   std::uint64_t work = tools.size() * tool_price;
   body.deformed.update({body.displacement, body.nodes}, work);

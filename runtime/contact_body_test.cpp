@@ -156,8 +156,8 @@ TEST_CASE("whatever the budget, the answer obeys the laws and the budget; too sm
   const TestModel model(sphere);
   TouchableBody touched(model);
   const double body_radius = radius_of(model), radius = 0.3 * body_radius;
-  const std::uint64_t enough =
-      touched.requirement().least_work + touched.body.touching_work(std::vector{ball(radius, {}, 0.3)});
+  const std::uint64_t enough = touched.requirement().least_work;
+  const std::uint64_t touching = touched.body.touching_work(std::vector{ball(radius, {}, 0.3)});
   std::uint64_t least = 0;
   for (std::uint64_t budget = 1; budget < (std::uint64_t{1} << 40); budget += budget / 8 + 1) {
     const std::vector tools{ball(radius, {0, 0, 1.25 * body_radius}, 0.3)};
@@ -171,6 +171,8 @@ TEST_CASE("whatever the budget, the answer obeys the laws and the budget; too sm
     least = least == 0 ? budget : least;
     REQUIRE(answered(report.status));
     CHECK(report.work <= budget);
+    CHECK(report.touching_work > 0);
+    CHECK(report.touching_work <= touching);
     check_laws(touched.body, tools);
   }
   CHECK(least > 0);

@@ -156,7 +156,7 @@ typedef struct greenloop_contact_body_limits {
 
 typedef struct greenloop_contact_body_requirement {
   size_t bytes;        /* 0: greenloop_contact_body_create would refuse */
-  uint64_t least_work; /* of the elastic body alone, coarsest; greenloop_contact_body_touching_work comes to it */
+  uint64_t least_work; /* of the answer, coarsest; finding contacts is beside it */
   uint64_t worst_work; /* the same at the finest level */
 } greenloop_contact_body_requirement;
 
@@ -182,7 +182,8 @@ greenloop_contact_body_created greenloop_contact_body_create(const greenloop_mod
                                                              greenloop_contact_body_limits limits, void* memory,
                                                              size_t bytes);
 
-/* Units that finding what may touch these tools takes at most, wherever they are. For the loop. */
+/* Units that finding what may touch these tools takes at most, wherever they are, beside a step's work. For the loop.
+ */
 uint64_t greenloop_contact_body_touching_work(const greenloop_contact_body* body, const greenloop_tool* tools,
                                               size_t count);
 

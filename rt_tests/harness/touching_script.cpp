@@ -50,7 +50,7 @@ TouchingScript::Cycle TouchingScript::next(ContactBody& body) noexcept {
     if (below(60) == 0) cycle.is_sound = !spoil(tool) && cycle.is_sound;
   }
   cycle.tools = {tool_, count};
-  cycle.budget = draw_budget(body, count);
+  cycle.budget = draw_budget();
   return cycle;
 }
 
@@ -132,9 +132,9 @@ bool TouchingScript::spoil(ContactBody::ToolInput& tool) noexcept {
   return true;
 }
 
-Budget TouchingScript::draw_budget(const ContactBody& body, std::uint32_t tools) noexcept {
-  const std::uint64_t least_work = need_.least_work + body.touching_work({tool_, tools});
-  const std::uint64_t most = need_.worst_work + least_work;
+Budget TouchingScript::draw_budget() noexcept {
+  const std::uint64_t least_work = need_.least_work;
+  const std::uint64_t most = need_.worst_work;
   switch (below(8)) {
     case 0:
       return {random() % least_work};

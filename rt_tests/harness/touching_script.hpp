@@ -53,7 +53,7 @@ class TouchingScript {
   void wander(Path& path) noexcept;
   void turn(Path& path, double much) noexcept;
   [[nodiscard]] bool spoil(ContactBody::ToolInput& tool) noexcept;
-  [[nodiscard]] Budget draw_budget(const ContactBody& body, std::uint32_t tools) noexcept;
+  [[nodiscard]] Budget draw_budget() noexcept;
   [[nodiscard]] std::uint64_t random() noexcept;
   [[nodiscard]] std::uint32_t below(std::uint32_t bound) noexcept;
   [[nodiscard]] double uniform() noexcept;  ///< -1..1

@@ -37,8 +37,8 @@ int run(const char* file, std::uint64_t cycles, std::uint64_t seed) {
   }
   const auto count = [&](Status status) { return ran.by_status[static_cast<std::size_t>(status)]; };
   const bool has_tried = ran.contacts > cycles && ran.slipping > cycles / 10 && count(Status::ok) > 0 &&
-                         count(Status::held_over_budget) > 0 && count(Status::held_out_of_range) > 0 &&
-                         count(Status::held_not_finite) > 0;
+                         count(Status::coarser) > 0 && count(Status::held_over_budget) > 0 &&
+                         count(Status::held_out_of_range) > 0 && count(Status::held_not_finite) > 0;
   if (!has_tried) std::printf("the script did not meet all it is meant to meet\n");
   return has_tried ? 0 : 1;
 }
