@@ -228,7 +228,7 @@ bool is_finest(const Body& body, const Plan& plan) {
 // no contacts, but known forces
 void answer_loads(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work,
                   const Elastostatic::Response& response, Elastostatic::StepReport& report) {
-  report.work = report.details.needed_work = work + force_work(body.counts.prices, plan.counts) + plan.field;
+  report.work = report.details.needed_work = work + plan.forces + plan.field;
   report.constraint_level = plan.level;
   report.field_level = plan.field_levels.details;
   if (!response.displacement.empty()) {
@@ -292,7 +292,7 @@ Status find_forces(Body& body, const Contacts& contacts, const Plan& plan, std::
   if (!contacts.are_held()) {
     return push_planned(body, contacts, plan, *factor, displaced, spare, work) ? Status::ok : Status::held_overflow;
   }
-  work += force_work(body.counts.prices, plan.counts);
+  work += plan.forces;
   if (!solve_forces(body, contacts.held, body.planned, *factor, displaced, body.column_force)) {
     return Status::held_overflow;
   }
@@ -303,8 +303,7 @@ Status find_forces(Body& body, const Contacts& contacts, const Plan& plan, std::
 void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_t work, std::uint64_t budget,
             const Elastostatic::Response& response, Elastostatic::StepReport& report) {
   const ContactSet& set = body.planned;
-  report.details.needed_work =
-      work + plan.displaced + plan.factor + force_work(body.counts.prices, plan.counts) + plan.field;
+  report.details.needed_work = work + plan.displaced + plan.factor + plan.forces + plan.field;
   Factor* factor = nullptr;
   const Status held = find_forces(body, contacts, plan, budget - report.details.needed_work, factor, work);
   if (held != Status::ok) {

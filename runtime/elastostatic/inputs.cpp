@@ -49,7 +49,8 @@ void accept_contacts(Body& body, std::span<const Constraint> contacts, std::span
   body.is_loaded = false;
   accepted.work = check_contacts_work(body.counts.prices, contacts.size());
   accepted.checked = check_contacts(contacts, body.view->node_count, body.facts, {body.counts.max_contacts, 0, {}});
-  accepted.contacts = {contacts, contacts, as_floats(force).data()};
+  accepted.contacts.all = accepted.contacts.held = contacts;
+  accepted.contacts.force = as_floats(force).data();
 }
 
 void accept_loaded(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads& loads,

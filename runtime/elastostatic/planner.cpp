@@ -68,6 +68,7 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
   plan.counts.columns = body.planned.columns;
   plan.counts.corners = task.contacts.empty() ? 0 : task.corners;
   plan.counts.iterations = task.iterations;
+  plan.forces = force_work(body.counts.prices, plan.counts);
   plan.cached = body.planned.columns > 0 ? body.cache.find(body.planned.all()) : nullptr;
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;
@@ -83,8 +84,8 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
 }
 
 // whether the answer fits, given the factor
-bool holds_answer(const Body& body, const Task& task, const Plan& plan) {
-  return plan.work + plan.displaced + force_work(body.counts.prices, plan.counts) + plan.field <= task.budget;
+bool holds_answer(const Task& task, const Plan& plan) {
+  return plan.work + plan.displaced + plan.forces + plan.field <= task.budget;
 }
 
 // chooses how to make the factor of the set
@@ -107,17 +108,17 @@ void choose_factor(Body& body, Plan& plan) {
 }
 
 // work of the answer that is planned, deciding included
-std::uint64_t planned_work(const Body& body, const Plan& plan) {
-  return plan.work + plan.displaced + force_work(body.counts.prices, plan.counts) + plan.factor + plan.field;
+std::uint64_t planned_work(const Plan& plan) {
+  return plan.work + plan.displaced + plan.forces + plan.factor + plan.field;
 }
 
 // decides where the factor comes from; whether all fits, or else whether the level is wanted
 void plan_factor(Body& body, const Task& task, Plan& plan) {
-  const bool holds = holds_answer(body, task, plan);
+  const bool holds = holds_answer(task, plan);
   if (plan.cached == nullptr && plan.counts.columns > 0) {
     choose_factor(body, plan);
   }
-  plan.fits = planned_work(body, plan) <= task.budget;
+  plan.fits = planned_work(plan) <= task.budget;
   if (!plan.fits && holds && !plan.wanted.exists) {
     plan.wanted = {true, plan.level, plan.counts};
   }
@@ -157,6 +158,7 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   leave_out({changes.added, changes.in}, task.contacts.size(), body.resolution, body.planned);
   changes.added = changes.missing = 0;
   plan.counts.columns = body.planned.columns;
+  plan.forces = force_work(body.counts.prices, plan.counts);
   plan.cached = changes.removed == 0 ? changes.base : nullptr;
   plan.update = plan.cached == nullptr;
   const ChangeCounts leaving{0, changes.removed, {}};
@@ -172,7 +174,7 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   const std::uint64_t preparing = resolve_contacts_work(body.counts.prices, plan.counts.contacts) +
                                   compare_factors_work(body.counts, plan.counts.columns);
   const std::uint64_t limit = task.budget < body.counts.refining_work ? task.budget : body.counts.refining_work;
-  plan.fits = plan.factor <= whole && planned_work(body, plan) + preparing <= limit;
+  plan.fits = plan.factor <= whole && planned_work(plan) + preparing <= limit;
 }
 
 }  // namespace
@@ -196,7 +198,7 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wa
   plan.field_levels = {wants.finest_displaced, wants.finest_displaced};
   for (std::uint32_t c = finest + 1; !plan.fits && c-- > coarsest;) {
     plan_set(body, task, c, plan);
-    if (holds_answer(body, task, plan) || c == coarsest) {
+    if (holds_answer(task, plan) || c == coarsest) {
       plan_factor(body, task, plan);
     }
     if (!plan.fits && c > coarsest && plan.wanted.exists && plan.wanted.level == c) {
@@ -208,7 +210,7 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wa
     plan.work += count_field_work(body.counts.prices, plan.counts) +
                  (body.is_loaded ? count_field_work(body.counts.prices, body.loads->counts.forces) : 0);
     plan.field = planned_field_work(body, plan);
-    plan.fits = planned_work(body, plan) <= wants.budget;
+    plan.fits = planned_work(plan) <= wants.budget;
   }
   return plan;
 }

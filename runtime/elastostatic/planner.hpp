@@ -24,6 +24,7 @@ struct Plan {
   SetCounts counts;
   Factor* cached = nullptr;
   bool update = false;          ///< of another factor, by body.changes; else a fresh one is made
+  std::uint64_t forces = 0;     ///< work of the forces, given the factor
   std::uint64_t factor = 0;     ///< bound of the work of the factor, unless it is cached
   std::uint64_t bounded = 0;    ///< the part of it that is not known before, but counted where it is done
   std::uint64_t displaced = 0;  ///< bound of the work of what the loads displace of the contacts

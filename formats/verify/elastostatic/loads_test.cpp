@@ -75,7 +75,8 @@ TEST_CASE("the columns of the accelerations are the displacements under each nod
     for (std::uint32_t q = 0; q < 3; ++q) {
       for (std::uint32_t i = 0; i < view.level[q].counts->domain_count; ++i) {
         const Eigen::Index row = 3 * (Eigen::Index{view.level[q].domain_begin} + i);
-        for (Eigen::Index k = 0; k < 3; ++k) column(row + k, 0) = view.level[q].load_column(load)[Eigen::Index{3} * i + k];
+        for (Eigen::Index k = 0; k < 3; ++k)
+          column(row + k, 0) = view.level[q].load_column(load)[Eigen::Index{3} * i + k];
         forces(row + load, 0) = 100.0 * view.level[q].nodes[i].area;
       }
     }
