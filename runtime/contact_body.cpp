@@ -441,6 +441,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   report.left_out = found.left_out;
   report.deepest_left_out = found.left_out > 0 ? -found.deepest_left_out.gap : 0;
   const std::uint32_t count = choose(body, take_candidates(body, found.candidates), report);
+  body.grips.begin_step();  // the last step may have been refused
   body.grips.begin();
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate& candidate = body.candidate[i];

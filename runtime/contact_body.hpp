@@ -96,8 +96,8 @@ class ContactBody {
   /// held_out_of_range. No heap, lock, system call, exception or clock; the same model, limits, tools, history and
   /// budget give the same bits. Budgets from Requirement::least_work on are enough: what they do not hold is answered
   /// coarser, each force pushing and within its cone of friction. On a `held_` status the last answer stands;
-  /// held_not_finite and held_bad_surface are said of a tool's friction, held_over_budget at no more than
-  /// touching_work. Work: at most budget.work for the answer, and touching_work before it.
+  /// held_not_finite and held_bad_surface are said of a tool's friction, held_over_budget at zero work.
+  /// Work: at most budget.work for the answer, and touching_work before it.
   StepReport step(std::span<const ToolInput> tools, const Elastostatic::Loads& loads, Budget budget) noexcept;
 
   /// Units that finding what may touch these tools takes at most, wherever they are: beside the budget. For the loop;

@@ -198,6 +198,27 @@ TEST_CASE("what a body cannot be made with is refused by name") {
   CHECK(small.missing == small.requested);
 }
 
+TEST_CASE("energy adds up when a tool goes right after a step that was refused") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  std::vector tools{ball(radius, {0, 0, 1.3 * body_radius}, 0.3)};
+  for (int k = 0; k < 10; ++k) {
+    tools[0].tool.pose.position.z = (1.3 - 0.004 * k) * body_radius;
+    REQUIRE(answered(touched.step(tools).status));
+  }
+  CHECK(touched.body.energy().stored > 0);
+  tools[0].friction = std::numeric_limits<double>::quiet_NaN();
+  CHECK(touched.step(tools).status == Status::held_not_finite);
+  tools[0].friction = 0.3;
+  tools[0].tool.pose.position.z = 2 * body_radius;
+  REQUIRE(answered(touched.step(tools).status));
+  REQUIRE(touched.body.contacts().empty());
+  const ContactBody::Energy& energy = touched.body.energy();
+  CHECK(energy.stored == 0);
+  CHECK(energy.in == doctest::Approx(energy.dissipated + energy.lost).epsilon(1e-3));
+}
+
 TEST_CASE("a tool that is put elsewhere drags nothing along, one that moves there does") {
   const TestModel model(sphere);
   const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;

@@ -7,6 +7,10 @@ void Grips::carve(Arena& arena, std::uint32_t contacts) noexcept {
   made_ = arena.take<Grip>(contacts);
 }
 
+void Grips::begin_step() noexcept {
+  for (std::uint32_t i = 0; i < count_; ++i) grip_[i].is_candidate = false;
+}
+
 Grip* Grips::find(std::uint64_t key) noexcept {
   while (next_ < count_ && grip_[next_].key < key) ++next_;
   return next_ < count_ && grip_[next_].key == key ? grip_ + next_ : nullptr;

@@ -39,6 +39,9 @@ class Grips {
   /// Room for so many; null while `arena` counts.
   void carve(Arena& arena, std::uint32_t contacts) noexcept;
 
+  /// None is a candidate of the present step so far. Linear.
+  void begin_step() noexcept;
+
   /// The grip of a candidate, or null; asked in the order of their keys since `begin`. For the loop; work: linear in
   /// both over a step.
   void begin() noexcept { next_ = 0; }
