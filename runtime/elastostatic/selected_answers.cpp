@@ -125,14 +125,9 @@ bool Elastostatic::compliance(std::uint32_t i, std::uint32_t j, std::span<float,
   if (factor == nullptr || factor->capacitance == nullptr) {
     return false;
   }
-  const std::size_t row = std::size_t{3} * factor->position[set.place[i]];
-  const std::size_t column = std::size_t{3} * factor->position[set.place[j]];
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t r = 0; r < 3; ++r) {
-      const std::size_t a = row + r, b = column + c;
-      block[3 * c + r] =
-          factor->capacitance[a > b ? b * body.cache.stride() + a : a * body.cache.stride() + b] / body.stiffness;
-    }
+  kept_block<3>(*factor, body.cache.stride(), set.place[i], set.place[j], block.data());
+  for (float& entry : block) {
+    entry /= body.stiffness;
   }
   return true;
 }

@@ -40,22 +40,6 @@ Status check_unilateral(const UnilateralContact& c, std::uint32_t node_count, st
                                                                                            : Status::held_bad_surface;
 }
 
-// a column's block of the compliance with another, out of what a factor keeps: its lower triangle by columns
-Block<3> kept_block(const Factor& factor, std::uint32_t stride, std::uint32_t row, std::uint32_t column) {
-  const std::size_t i = std::size_t{3} * factor.position[row];
-  const std::size_t j = std::size_t{3} * factor.position[column];
-  Block<3> block;
-  for (std::size_t c = 0; c < 3; ++c) {
-    float lane[3];
-    for (std::size_t r = 0; r < 3; ++r) {
-      const std::size_t a = i + r, b = j + c;
-      lane[r] = factor.capacitance[a > b ? b * stride + a : a * stride + b];
-    }
-    block.column[c] = load_vector<3>(lane);
-  }
-  return block;
-}
-
 std::span<const UnilateralCorner> corners_of(const UnilateralScratch& scratch, std::uint32_t contact) {
   return {scratch.corner + scratch.begin[contact], scratch.corner + scratch.begin[contact + 1]};
 }
@@ -66,10 +50,11 @@ Block<3> block_between(const UnilateralSet& all, const Factor& factor, std::uint
   Block<3> sum{};
   for (const UnilateralCorner& row : corners_of(scratch, i)) {
     for (const UnilateralCorner& column : corners_of(scratch, j)) {
-      const Block<3> block = kept_block(factor, stride, all.set.place[row.hold], all.set.place[column.hold]);
+      float block[9];
+      kept_block<3>(factor, stride, all.set.place[row.hold], all.set.place[column.hold], block);
       const Float4 weight = splat(row.weight * column.weight);
       for (int c = 0; c < 3; ++c) {
-        sum.column[c] += weight * block.column[c];
+        sum.column[c] += weight * load_vector<3>(block + 3 * c);
       }
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "runtime/algebra/float4.hpp"
@@ -28,6 +29,21 @@ struct Factor {
 /// Keeps what `matrix` holds before it is factored. For the loop; work: half the square of its order.
 template <unsigned N>
 void keep_capacitance(std::uint32_t columns, std::uint32_t stride, Factor& factor) noexcept;
+
+/// The block of a kept capacitance between two columns, by their places in the set: entry (r, c) at N c + r of
+/// `block`, [N * N]. For the loop; constant work.
+template <unsigned N>
+inline void kept_block(const Factor& factor, std::uint32_t stride, std::uint32_t row, std::uint32_t column,
+                       float* block) noexcept {
+  const std::size_t i = std::size_t{N} * factor.position[row];
+  const std::size_t j = std::size_t{N} * factor.position[column];
+  for (std::size_t c = 0; c < N; ++c) {
+    for (std::size_t r = 0; r < N; ++r) {
+      const std::size_t a = i + r, b = j + c;
+      block[N * c + r] = factor.capacitance[a > b ? b * stride + a : a * stride + b];
+    }
+  }
+}
 
 /// Copies what a factor holds into another with room for it. For the loop; work: half the square of its order,
 /// twice that where the capacitance is kept.
