@@ -64,10 +64,12 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.grips.carve(arena, body.max_contacts);
 }
 
-bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& limits, TouchedBody& body) {
+// elastostatic_bytes: of the elastic body
+bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& limits, std::size_t elastostatic_bytes,
+                 TouchedBody& body) {
   const std::uint32_t finest = model.level_count() - 1;
   const auto surface = piece(arena, Surface::required(model, finest).bytes);
-  const auto elastostatic = piece(arena, Elastostatic::required(model, limits.elastostatic).bytes);
+  const auto elastostatic = piece(arena, elastostatic_bytes);
   const auto deformed = piece(arena, DeformedSurface::required(model, finest));
   const auto search = piece(arena, CandidateSearch::required(search_limits(limits, 0)));
   if (surface.data() == nullptr) return true;  // it only counts
@@ -371,6 +373,16 @@ CreateError refusal(const Model& model, const ContactBody::Limits& limits) {
   return error == CreateError::bad_limits ? error : CreateError::unsupported_model;
 }
 
+// bytes of all, given what the elastic body needs
+std::size_t bytes_of(const Model& model, const ContactBody::Limits& limits, std::size_t elastostatic_bytes) {
+  Arena counting;
+  TouchedBody body;
+  static_cast<void>(counting.take<TouchedBody>(1));
+  carve_arrays(counting, model, limits, body);
+  place_parts(counting, model, limits, elastostatic_bytes, body);
+  return static_cast<std::size_t>(counting.bytes());
+}
+
 ContactBody::StepReport held(Status status) {
   ContactBody::StepReport report;
   report.status = status;
@@ -384,13 +396,8 @@ ContactBody::Requirement ContactBody::required(const Model& model, const Limits&
   if (!in_range(limits)) return {};
   const Elastostatic::Requirement elastostatic = Elastostatic::required(model, limits.elastostatic);
   if (elastostatic.bytes == 0) return {};
-  Arena counting;
-  TouchedBody body;
-  static_cast<void>(counting.take<TouchedBody>(1));
-  carve_arrays(counting, model, limits, body);
-  place_parts(counting, model, limits, body);
   Requirement requirement;
-  requirement.bytes = static_cast<std::size_t>(counting.bytes());
+  requirement.bytes = bytes_of(model, limits, elastostatic.bytes);
   requirement.least_work = elastostatic.least_work;
   requirement.worst_work = elastostatic.worst_work[model.level_count() - 1];
   return requirement;
@@ -400,7 +407,9 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
                                          std::span<std::byte> memory) noexcept {
   Created created;
   created.available = memory.size();
-  created.requested = required(model, limits).bytes;
+  const Elastostatic::Requirement elastostatic =
+      in_range(limits) ? Elastostatic::required(model, limits.elastostatic) : Elastostatic::Requirement{};
+  created.requested = elastostatic.bytes > 0 ? bytes_of(model, limits, elastostatic.bytes) : 0;
   if (created.requested == 0) {
     created.error = refusal(model, limits);
     return created;
@@ -417,12 +426,12 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
   Arena arena(memory.data());
   auto& body = *new (arena.take<TouchedBody>(1)) TouchedBody;
   carve_arrays(arena, model, limits, body);
-  if (!place_parts(arena, model, limits, body)) {
+  if (!place_parts(arena, model, limits, elastostatic.bytes, body)) {
     created.error = CreateError::unsupported_model;
     return created;
   }
   body.rigid_softness = rigid_softness(model, limits);
-  body.least_work = Elastostatic::required(model, limits.elastostatic).least_work;
+  body.least_work = elastostatic.least_work;
   created.body.body_ = &body;
   return created;
 }
