@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <new>
 
 #include "runtime/elastostatic.hpp"
@@ -14,6 +15,12 @@ namespace greenloop {
 template <class C, class Cpp>
 constexpr bool same(C c, Cpp cpp) {
   return static_cast<int>(c) == static_cast<int>(cpp);
+}
+
+/// The text of an enumerator.
+template <std::size_t count>
+const char* text_at(const char* const (&texts)[count], unsigned index) {
+  return index < count ? texts[index] : "unknown";
 }
 
 inline const Model& model_in(const greenloop_model* model) {

@@ -137,11 +137,6 @@ constexpr const char* tool_fault_texts[] = {
     "left out: its quaternion is not of unit length",
 };
 
-template <std::size_t count>
-const char* text_at(const char* const (&texts)[count], unsigned index) {
-  return index < count ? texts[index] : "unknown";
-}
-
 }  // namespace
 }  // namespace greenloop
 

@@ -80,13 +80,9 @@ constexpr const char* status_texts[] = {
     "held: the capacitance matrix is not positive definite to working precision",
     "held: the forces are too large for a finite field",
     "held: a constraint is of a kind that the solver does not know",
-    "held: the normal of a unilateral contact is not of unit length, or its friction is negative",
+    "held: a unilateral contact's normal is not of unit length, its weights sum to more than 1, or a number is "
+    "negative",
 };
-
-template <std::size_t count>
-const char* text_at(const char* const (&texts)[count], unsigned index) {
-  return index < count ? texts[index] : "unknown";
-}
 
 }  // namespace
 }  // namespace greenloop
