@@ -44,14 +44,6 @@ void measure(BodySurface& surface) {
 
 }  // namespace
 
-std::vector<std::uint32_t> BodySurface::touchable_nodes() const {
-  std::vector<std::uint32_t> nodes;
-  for (std::uint32_t i = 0; i < touchable.size(); ++i) {
-    if (touchable[i]) nodes.push_back(i);
-  }
-  return nodes;
-}
-
 BodySurface body_surface(const Model& model) {
   BodySurface surface;
   read_nodes(model.view(), surface);

@@ -18,9 +18,6 @@ struct BodySurface {
   Double3 centre;                            ///< m, of the bounding box
   double diagonal = 0;                       ///< m, of the bounding box
   double spacing = 0;                        ///< m, mean length of the triangles' edges
-
-  /// Those that are touchable, increasing.
-  [[nodiscard]] std::vector<std::uint32_t> touchable_nodes() const;
 };
 
 /// The surface of a model at its finest level. Throws std::runtime_error if its refinement is not that of a subdivided
