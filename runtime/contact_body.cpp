@@ -107,13 +107,14 @@ Double3 pushed_displacement(const TouchedBody& body, const Candidate& candidate)
   return sum;
 }
 
-Double3 rest_place(const TouchedBody& body, const Candidate& candidate) {
-  Double3 place = candidate.position;
-  for (int k = 0; k < 3 && candidate.node[k] != layout::none; ++k) {
-    const Vec4& u = body.displacement[candidate.node[k]];
-    place = place - candidate.weight[k] * Double3{u.x, u.y, u.z};
+// of a point by its nodes; those after the last are layout::none
+Double3 displacement_of(const TouchedBody& body, const std::uint32_t (&node)[3], const double (&weight)[3]) {
+  Double3 sum;
+  for (int k = 0; k < 3 && node[k] != layout::none; ++k) {
+    const Vec4& u = body.displacement[node[k]];
+    sum += weight[k] * Double3{u.x, u.y, u.z};
   }
-  return place;
+  return sum;
 }
 
 void put(float (&to)[3], const Double3& from) {
@@ -315,19 +316,6 @@ std::span<const Tool> put_tools(std::span<const ContactBody::ToolInput> tools, T
   return {body.tool, count};
 }
 
-// of a grip's point, as the body is displaced
-Vec4 shift_of(const TouchedBody& body, const Grip& grip) {
-  Vec4 shift;
-  for (int k = 0; k < 3 && grip.node[k] != layout::none; ++k) {
-    const Vec4& u = body.displacement[grip.node[k]];
-    const auto weight = static_cast<float>(grip.weight[k]);
-    shift.x += weight * u.x;
-    shift.y += weight * u.y;
-    shift.z += weight * u.z;
-  }
-  return shift;
-}
-
 // what the contacts of this step did, and those of the last that are none now; before these are forgotten
 void account_energy(TouchedBody& body, std::uint32_t count) {
   std::uint32_t last = 0;
@@ -337,7 +325,7 @@ void account_energy(TouchedBody& body, std::uint32_t count) {
     contact = {};
     contact.last_force = {grip.force.x, grip.force.y, grip.force.z, 0};
     contact.last_shift = {grip.shift.x, grip.shift.y, grip.shift.z, 0};
-    contact.shift = shift_of(body, grip);
+    contact.shift = narrow(displacement_of(body, grip.node, grip.weight));
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate& candidate = body.candidate[i];
@@ -457,7 +445,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
     Grip* const grip = body.grips.find(grip_key(candidate));
     body.force_before[i] = grip == nullptr ? Vec3{} : grip->force;
     if (grip != nullptr) grip->is_candidate = true;
-    body.rest_place[i] = rest_place(body, candidate);
+    body.rest_place[i] = candidate.position - displacement_of(body, candidate.node, candidate.weight);
     body.contact[i] = contact_of(body, candidate, grip, tools[candidate.tool].friction, body.stick_place[i]);
   }
   work += count * contact_price;
