@@ -13,7 +13,7 @@ namespace {
 
 DeviceSetup still_device(std::int64_t cycles) {
   DeviceSetup setup;
-  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Double3{0, 0, 0.01}}, Double3{0, 0, -1}}}, 1.0);
+  setup.motion.emplace_back(std::vector<MotionSegment>{{1, {Double3{0, 0, 0.01}}, {}, {}}}, 1.0);
   setup.cycles = cycles;
   return setup;
 }
