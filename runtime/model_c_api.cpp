@@ -80,8 +80,7 @@ constexpr const char* status_texts[] = {
     "held: the capacitance matrix is not positive definite to working precision",
     "held: the forces are too large for a finite field",
     "held: a constraint is of a kind that the solver does not know",
-    "held: a unilateral contact's normal is not of unit length, its weights sum to more than 1, or a number is "
-    "negative",
+    "held: a unilateral contact has no unit normal, weights of more than 1 in all, or a negative number",
 };
 
 }  // namespace

@@ -53,7 +53,7 @@ Block<3> block_between(const UnilateralSet& all, const Factor& factor, std::uint
       float block[9];
       kept_block<3>(factor, stride, all.set.place[row.hold], all.set.place[column.hold], block);
       const Float4 weight = splat(row.weight * column.weight);
-      for (int c = 0; c < 3; ++c) {
+      for (std::size_t c = 0; c < 3; ++c) {
         sum.column[c] += weight * load_vector<3>(block + 3 * c);
       }
     }
