@@ -22,7 +22,7 @@ namespace greenloop::layout {
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
 inline constexpr std::uint16_t version_major = 4;
-inline constexpr std::uint16_t version_minor = 6;
+inline constexpr std::uint16_t version_minor = 7;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
 inline constexpr std::uint32_t none = 0xffffffff;  ///< no node
@@ -59,13 +59,19 @@ static_assert(sizeof(SectionEntry) == 32);
 enum class Problem : std::uint32_t {
   elastostatic = 1,
   scalar = 2,  ///< a quantity of one number a node, as a temperature or a potential
+  impulse_response = 3,  ///< motions of a scene that was simulated, played and blended
 };
 
 /// The minor version that brought a problem.
-constexpr std::uint16_t first_minor(Problem problem) { return problem == Problem::scalar ? 3 : 0; }
+constexpr std::uint16_t first_minor(Problem problem) {
+  return problem == Problem::impulse_response ? 7 : problem == Problem::scalar ? 3 : 0;
+}
 
 /// How many problems, numbered from 1, a minor version has.
-constexpr std::uint32_t problems_of(std::uint16_t minor) { return minor < first_minor(Problem::scalar) ? 1 : 2; }
+constexpr std::uint32_t problems_of(std::uint16_t minor) {
+  if (minor < first_minor(Problem::scalar)) return 1;
+  return minor < first_minor(Problem::impulse_response) ? 2 : 3;
+}
 
 /// Numbers at a node, N: a load and what it causes there are vectors of so many.
 constexpr std::uint32_t components_of(Problem problem) { return problem == Problem::scalar ? 1 : 3; }

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/layout.hpp"
+#include "formats/write/model_file.hpp"
+
+namespace greenloop {
+
+/// One group of modes of an impulse response model before encoding.
+struct ModeGroupData {
+  layout::ImpulseLevel counts{};                ///< its errors; counts of modes are filled in
+  std::vector<layout::ModeRecord> amplitudes;   ///< [modes of the group], an even number
+  std::vector<std::int16_t> values;             ///< [vertices][3][modes], in quanta of the vertex's block
+  std::vector<std::int16_t> coordinates;        ///< [rows][modes], -32767..32767
+};
+
+/// A whole impulse response model before encoding. Offline only.
+struct ImpulseResponseData {
+  layout::ImpulseInfo info{};  ///< counts are filled in
+  std::string provenance;
+  std::vector<float> shape;              ///< m, [vertices][3]
+  std::vector<std::uint32_t> triangles;  ///< [triangles][3]
+  std::vector<float> quanta;             ///< m, [blocks of 16 vertices]: see layout/impulse_response.hpp
+  std::vector<layout::ImpulseRecord> impulses;
+  std::vector<std::uint8_t> successions;  ///< [impulses + 1][impulses]
+  std::vector<layout::OrbitRecord> orbits;
+  std::vector<layout::ReferenceRecord> references;  ///< [rows][impulses]
+  std::vector<ModeGroupData> groups;                ///< coarse to fine: the levels of the file
+};
+
+/// The file of such a model: deterministic, complete, checksummed, verified. ImpulseInfo::planes says whether values
+/// are of 8 bits (-127..127) or of 16 (-32767..32767). Throws std::invalid_argument naming the field that does not fit.
+/// Filled in from the vectors: the counts of ImpulseInfo and ImpulseLevel, and `problem`.
+[[nodiscard]] ModelFile encoded_file(const ImpulseResponseData& model);
+
+}  // namespace greenloop
