@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+
+#include "runtime/impulse_response.hpp"
+#include "runtime/impulse_response/orbit_player.hpp"
+#include "runtime/memory/arena.hpp"
+
+namespace greenloop {
+
+/// What a body of an impulse response model keeps in its arena.
+struct MovingBody {
+  ImpulseResponseView view;
+  OrbitPlayer player;
+  std::int16_t* whole = nullptr;  ///< [modes] coordinates as sums take them
+  bool avx2 = false;              ///< whether the processor has it
+  std::uint64_t state_work = 0;   ///< units of a step without displacements
+};
+
+/// The body in an arena; null while that counts. Start-up.
+[[nodiscard]] MovingBody* place_body(Arena& arena, const ImpulseResponseView& view) noexcept;
+
+/// How finely modes are summed.
+struct Fineness {
+  std::uint32_t pairs = 0;   ///< of modes
+  std::uint32_t planes = 0;  ///< of their values
+};
+
+// Work units: instructions of x86-64 with AVX2.
+
+/// Of a step but for displacements. Constant.
+[[nodiscard]] std::uint64_t state_work(const ImpulseResponseView& view) noexcept;
+/// Of `fields` fields, displacements or their rates, of the first `vertices` vertices. Constant.
+[[nodiscard]] std::uint64_t field_work(std::uint32_t vertices, std::uint32_t fields, Fineness fineness) noexcept;
+/// The same of as many chosen vertices. Constant.
+[[nodiscard]] std::uint64_t chosen_work(std::uint32_t vertices, std::uint32_t fields, Fineness fineness) noexcept;
+
+}  // namespace greenloop
