@@ -59,8 +59,9 @@ struct Wanted {
   std::uint32_t vertices = 0;
   bool chosen = false;
 
-  [[nodiscard]] std::uint64_t work(Fineness fineness) const {
-    return fields == 0 ? 0 : chosen ? chosen_work(vertices, fields, fineness) : field_work(vertices, fields, fineness);
+  [[nodiscard]] std::uint64_t work(const ImpulseResponseView& view, Fineness fineness) const {
+    if (fields == 0) return 0;
+    return chosen ? chosen_work(view, vertices, fields, fineness) : field_work(view, vertices, fields, fineness);
   }
 };
 
@@ -85,12 +86,13 @@ Status check_response(const MovingBody& body, const ImpulseResponse::Response& r
 
 // all modes with all planes, or with one, or as many as fit; no pair: not even one does
 Fineness choose_fineness(const MovingBody& body, const Wanted& wanted, std::uint64_t work) {
-  const std::uint32_t pairs = body.view.modes / 2, planes = body.view.info->planes;
-  if (wanted.fields == 0 || wanted.work({pairs, planes}) <= work) return {pairs, planes};
-  if (planes > 1 && wanted.work({pairs, 1}) <= work) return {pairs, 1};
-  const std::uint64_t least = wanted.work({1, 1});
+  const ImpulseResponseView& view = body.view;
+  const std::uint32_t pairs = view.modes / 2, planes = view.info->planes;
+  if (wanted.work(view, {pairs, planes}) <= work) return {pairs, planes};
+  if (wanted.work(view, {pairs, 1}) <= work) return {pairs, 1};
+  const std::uint64_t least = wanted.work(view, {1, 1});
   if (least > work) return {};
-  const std::uint64_t another = wanted.work({2, 1}) - least;
+  const std::uint64_t another = wanted.work(view, {2, 1}) - least;
   return {static_cast<std::uint32_t>(1 + (work - least) / another), 1};
 }
 
@@ -158,11 +160,11 @@ ImpulseResponse::Requirement ImpulseResponse::required(const Model& model, const
   static_cast<void>(place_body(counting, view));
   Requirement requirement;
   requirement.bytes = static_cast<std::size_t>(counting.bytes());
-  requirement.least_work = state_work(view);
+  requirement.least_work = state_work(view, 1, most_continuations(view, timing.ticks));
   const Fineness all = {view.modes / 2, view.info->planes};
-  requirement.least_frame_work = requirement.least_work + field_work(view.info->vertices, 1, {1, 1});
-  requirement.frame_work = requirement.least_work + field_work(view.info->vertices, 1, all);
-  requirement.worst_work = requirement.least_work + field_work(view.info->vertices, 2, all);
+  requirement.least_frame_work = requirement.least_work + field_work(view, view.info->vertices, 1, {1, 1});
+  requirement.frame_work = requirement.least_work + field_work(view, view.info->vertices, 1, all);
+  requirement.worst_work = requirement.least_work + field_work(view, view.info->vertices, 2, all);
   return requirement;
 }
 
@@ -180,7 +182,8 @@ ImpulseResponse::Created ImpulseResponse::create(const Model& model, const Limit
     created.error = CreateError::bad_limits;
     return created;
   }
-  created.requested = required(model, limits).bytes;
+  const Requirement requirement = required(model, limits);
+  created.requested = requirement.bytes;
   if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
     created.error = CreateError::arena_misaligned;
     return created;
@@ -195,7 +198,7 @@ ImpulseResponse::Created ImpulseResponse::create(const Model& model, const Limit
 #if defined(__x86_64__)
   body.avx2 = has_avx2();
 #endif
-  body.state_work = state_work(view);
+  body.least_work = requirement.least_work;
   body.player.begin(timing.ticks, timing.decay, static_cast<float>(view.info->time_step));
   created.body.body_ = &body;
   return created;
@@ -212,9 +215,9 @@ ImpulseResponse::StepReport ImpulseResponse::step(std::uint32_t impulse, Budget 
   Wanted wanted;
   report.status = check_impulse(body, impulse);
   if (report.status == Status::ok) report.status = check_response(body, response, wanted);
-  const std::uint64_t left = budget.work > body.state_work ? budget.work - body.state_work : 0;
+  const std::uint64_t left = budget.work > body.least_work ? budget.work - body.least_work : 0;
   const Fineness fineness = choose_fineness(body, wanted, left);
-  if (report.status == Status::ok && (budget.work < body.state_work || fineness.pairs == 0)) {
+  if (report.status == Status::ok && (budget.work < body.least_work || fineness.pairs == 0)) {
     report.status = Status::held_over_budget;
   }
   if (!answered(report.status)) return report;
@@ -224,8 +227,8 @@ ImpulseResponse::StepReport ImpulseResponse::step(std::uint32_t impulse, Budget 
     body.player.enter(reference.orbit);
     report.distance = reference.distance;
   }
-  const float passed = body.player.pass();
-  report.distance = passed > report.distance ? passed : report.distance;
+  const Continuations passed = body.player.pass();
+  report.distance = passed.distance > report.distance ? passed.distance : report.distance;
   copy_amplitudes(body.view, body.player.position(), response.coordinate);
   copy_amplitudes(body.view, body.player.velocity(), response.velocity);
   sum_field(body, body.player.position(), fineness, response.chosen, response.displacement);
@@ -233,7 +236,7 @@ ImpulseResponse::StepReport ImpulseResponse::step(std::uint32_t impulse, Budget 
 
   report.status =
       fineness.pairs < body.view.modes / 2 || fineness.planes < body.view.info->planes ? Status::coarser : Status::ok;
-  report.work = body.state_work + wanted.work(fineness);
+  report.work = state_work(body.view, impulse != no_impulse ? 1 : 0, passed.count) + wanted.work(body.view, fineness);
   report.orbit = body.player.place().orbit;
   report.row = body.player.place().row;
   report.impulse = body.player.orbit().impulse;

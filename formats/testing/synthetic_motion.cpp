@@ -16,12 +16,12 @@ struct State {
   std::vector<double> position, velocity;  // of each mode; a step is the unit of time
 };
 
-double frequency(std::uint32_t mode) { return 0.2 * (mode + 1); }
+double frequency(std::uint32_t mode) { return 0.2 * std::sqrt(mode + 1.0); }
 
 void advance(State& state) {
   constexpr double damping = 0.05;
   for (std::uint32_t m = 0; m < state.position.size(); ++m) {
-    const double w = frequency(m) / (1 + 0.02 * m);
+    const double w = frequency(m);
     state.velocity[m] -= w * w * state.position[m] + damping * state.velocity[m];
     state.position[m] += state.velocity[m];
   }

@@ -66,43 +66,51 @@ void sum_block(const ImpulseResponseView& view, const WholeCoordinates& c, std::
 #if defined(__x86_64__)
 constexpr std::uint32_t vectors = block_values / 8;
 
-[[gnu::target("avx2")]] inline void add_pairs_avx2(const std::int8_t* values, const std::int16_t* c,
-                                                   std::uint32_t pairs, __m256i (&sums)[vectors]) noexcept {
+/// The sums of a block and a plane, in registers.
+struct PlaneSums {
+  __m256i of[vectors];
+};
+
+[[gnu::target("avx2")]] inline PlaneSums add_pairs_avx2(const std::int8_t* values, const std::int16_t* c,
+                                                        std::uint32_t pairs, PlaneSums sums) noexcept {
   for (std::uint32_t p = 0; p < pairs; ++p, values += pair_bytes) {
     std::int32_t both;
     __builtin_memcpy(&both, c + 2 * p, sizeof both);
     const __m256i factor = _mm256_set1_epi32(both);
+#pragma GCC unroll 6
     for (std::uint32_t k = 0; k < vectors; ++k) {
       const __m128i bytes = _mm_loadu_si128(reinterpret_cast<const __m128i*>(values + 16 * k));
-      sums[k] = _mm256_add_epi32(sums[k], _mm256_madd_epi16(_mm256_cvtepi8_epi16(bytes), factor));
+      sums.of[k] = _mm256_add_epi32(sums.of[k], _mm256_madd_epi16(_mm256_cvtepi8_epi16(bytes), factor));
     }
   }
+  return sums;
 }
 
-[[gnu::target("avx2")]] void sum_plane_avx2(const ImpulseResponseView& view, const WholeCoordinates& c,
-                                            std::uint32_t plane, std::uint32_t block, __m256i (&sums)[vectors]) {
-  for (auto& sum : sums) sum = _mm256_setzero_si256();
+[[gnu::target("avx2")]] inline PlaneSums sum_plane_avx2(const ImpulseResponseView& view, const WholeCoordinates& c,
+                                                        std::uint32_t plane, std::uint32_t block) {
+  PlaneSums sums;
+  for (auto& sum : sums.of) sum = _mm256_setzero_si256();
   std::uint32_t left = c.pairs;
   const std::int16_t* at = c.of;
   for (std::uint32_t q = 0; left > 0; ++q) {
     const std::uint32_t pairs = view.group[q].counts->modes / 2;
     const std::uint32_t summed = pairs < left ? pairs : left;
-    add_pairs_avx2(view.group[q].plane[plane] + pair_bytes * pairs * block, at, summed, sums);
+    sums = add_pairs_avx2(view.group[q].plane[plane] + pair_bytes * pairs * block, at, summed, sums);
     at += std::size_t{2} * summed;
     left -= summed;
   }
+  return sums;
 }
 
 [[gnu::target("avx2")]] void sum_block_avx2(const ImpulseResponseView& view, const WholeCoordinates& c,
                                             std::uint32_t block, float* values) {
-  __m256i high[vectors], low[vectors];
-  sum_plane_avx2(view, c, 0, block, high);
-  if (c.planes == 2) sum_plane_avx2(view, c, 1, block, low);
+  const PlaneSums high = sum_plane_avx2(view, c, 0, block);
+  const PlaneSums low = c.planes == 2 ? sum_plane_avx2(view, c, 1, block) : high;
   const __m256 scale = _mm256_set1_ps(scale_of(view, c, block));
   for (std::uint32_t k = 0; k < vectors; ++k) {
-    __m256 value = _mm256_cvtepi32_ps(high[k]);
+    __m256 value = _mm256_cvtepi32_ps(high.of[k]);
     if (c.planes == 2) {
-      value = _mm256_add_ps(_mm256_mul_ps(value, _mm256_set1_ps(plane_weight)), _mm256_cvtepi32_ps(low[k]));
+      value = _mm256_add_ps(_mm256_mul_ps(value, _mm256_set1_ps(plane_weight)), _mm256_cvtepi32_ps(low.of[k]));
     }
     _mm256_storeu_ps(values + 8 * k, _mm256_mul_ps(value, scale));
   }

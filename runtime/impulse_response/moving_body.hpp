@@ -14,7 +14,7 @@ struct MovingBody {
   OrbitPlayer player;
   std::int16_t* whole = nullptr;  ///< [modes] coordinates as sums take them
   bool avx2 = false;              ///< whether the processor has it
-  std::uint64_t state_work = 0;   ///< units of a step without displacements
+  std::uint64_t least_work = 0;   ///< units of a step without displacements, at most
 };
 
 /// The body in an arena; null while that counts. Start-up.
@@ -28,11 +28,14 @@ struct Fineness {
 
 // Work units: instructions of x86-64 with AVX2.
 
-/// Of a step but for displacements. Constant.
-[[nodiscard]] std::uint64_t state_work(const ImpulseResponseView& view) noexcept;
+/// Of a step but for displacements, with so many orbits entered and continued. Constant.
+[[nodiscard]] std::uint64_t state_work(const ImpulseResponseView& view, std::uint32_t entered,
+                                       std::uint32_t continued) noexcept;
 /// Of `fields` fields, displacements or their rates, of the first `vertices` vertices. Constant.
-[[nodiscard]] std::uint64_t field_work(std::uint32_t vertices, std::uint32_t fields, Fineness fineness) noexcept;
+[[nodiscard]] std::uint64_t field_work(const ImpulseResponseView& view, std::uint32_t vertices, std::uint32_t fields,
+                                       Fineness fineness) noexcept;
 /// The same of as many chosen vertices. Constant.
-[[nodiscard]] std::uint64_t chosen_work(std::uint32_t vertices, std::uint32_t fields, Fineness fineness) noexcept;
+[[nodiscard]] std::uint64_t chosen_work(const ImpulseResponseView& view, std::uint32_t vertices, std::uint32_t fields,
+                                        Fineness fineness) noexcept;
 
 }  // namespace greenloop

@@ -87,12 +87,12 @@ void OrbitPlayer::enter(std::uint32_t orbit) noexcept {
   });
 }
 
-float OrbitPlayer::pass() noexcept {
+Continuations OrbitPlayer::pass() noexcept {
   for (std::uint32_t m = 0; m < view_->modes; ++m) {
     position_offset_[m] = decayed(position_offset_[m], decay_);
     velocity_offset_[m] = decayed(velocity_offset_[m], decay_);
   }
-  float distance = 0;
+  Continuations made;
   const std::uint64_t ticks = place_.phase + ticks_;
   place_.phase = static_cast<std::uint32_t>(ticks);
   auto left = static_cast<std::uint32_t>(ticks >> 32U);
@@ -103,13 +103,25 @@ float OrbitPlayer::pass() noexcept {
     place_.row += passed;
     left -= passed;
     if (place_.row == last && played.next_orbit != none) {
-      distance = played.next_distance;
+      made = {made.count + 1, played.next_distance};
       go_over({played.next_orbit, played.next_row, place_.phase});
     }
   }
   if (at_rest()) place_.phase = 0;
   evaluate();
-  return distance;
+  return made;
+}
+
+std::uint32_t most_continuations(const ImpulseResponseView& view, std::uint64_t ticks) noexcept {
+  std::uint32_t shortest = 0;  // rows from where an orbit is continued in to its end
+  for (const OrbitRecord& from : view.orbits) {
+    if (from.next_orbit == none) continue;
+    const OrbitRecord& next = view.orbits[from.next_orbit];
+    const std::uint32_t rows = next.first_row + next.rows - 1 - from.next_row;
+    shortest = shortest == 0 || rows < shortest ? rows : shortest;
+  }
+  const auto passed = static_cast<std::uint32_t>(ticks >> 32U) + 1;
+  return shortest == 0 ? 0 : 1 + passed / shortest;
 }
 
 float OrbitPlayer::blend() const noexcept {

@@ -15,6 +15,15 @@ struct OrbitPlace {
   std::uint32_t phase = 0;
 };
 
+/// What a step passed at ends of orbits.
+struct Continuations {
+  std::uint32_t count = 0;
+  float distance = 0;  ///< m, of the states between which the last one led
+};
+
+/// Continuations that a step of so many ticks (OrbitPlayer::begin) may need. Start-up; work: linear in the orbits.
+[[nodiscard]] std::uint32_t most_continuations(const ImpulseResponseView& view, std::uint64_t ticks) noexcept;
+
 /// Plays orbits and blends them (James & Fatahalian 2003, section 5.2). Coordinates are in units of their modes'
 /// amplitudes, velocities in those a second.
 class OrbitPlayer {
@@ -38,9 +47,9 @@ class OrbitPlayer {
   /// Goes over to the start of an orbit: what differs dies out. For the loop; work: linear in the modes.
   void enter(std::uint32_t orbit) noexcept;
 
-  /// Lets a step pass. Returns how far apart, m, the states were between which it went over at an orbit's end; 0 if
-  /// none was passed. For the loop; work: linear in the modes, most_rows continuations.
-  float pass() noexcept;
+  /// Lets a step pass: goes over to others at ends of orbits that have not come to rest. For the loop; work: linear in
+  /// the modes times continuations, at most `most_continuations`.
+  Continuations pass() noexcept;
 
   [[nodiscard]] const OrbitPlace& place() const noexcept { return place_; }
   [[nodiscard]] const layout::OrbitRecord& orbit() const noexcept { return view_->orbits[place_.orbit]; }
