@@ -8,7 +8,10 @@
 #include <memory>
 #include <vector>
 
+#include "formats/testing/synthetic_motion.hpp"
+#include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/touching_script.hpp"
+#include "runtime/impulse_response.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
 #include "runtime/testing/test_body.hpp"
@@ -156,6 +159,30 @@ TEST_CASE("a step of tools keeps below what docs/touching.md promises, whatever 
   MESSAGE("deepest stack of a step of tools: ", deepest, " bytes");
   CHECK(deepest > 1000);
   CHECK(deepest < promised_of_tools);
+}
+
+TEST_CASE("a step of impulses keeps below what docs/impulses.md promises") {
+  const ModelFile file = encoded_file(synthetic_motion({.modes = 16, .groups = 3, .planes = 2, .alternating = true}));
+  const Model model = Model::open(file.bytes.span()).model;
+  const ImpulseResponse::Requirement need = ImpulseResponse::required(model, {});
+  AlignedBytes memory(need.bytes);
+  auto created = ImpulseResponse::create(model, {}, {memory.data(), memory.size()});
+  REQUIRE(created);
+  std::vector<float> coordinate(16), velocity(16);
+  std::vector<Vec3> displacement(101), rate(101);
+  ImpulseScript script(model, need, 3);
+  std::size_t deepest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const ImpulseScript::Cycle cycle = script.next();
+    const std::span<Vec3> moved = std::span(displacement).first(cycle.vertices);
+    deepest =
+        std::max(deepest, depth_of([&] {
+                   static_cast<void>(created.body.step(cycle.impulse, cycle.budget, {coordinate, velocity, moved, {}}));
+                 }));
+  }
+  MESSAGE("deepest stack of a step of impulses: ", deepest, " bytes");
+  CHECK(deepest > 100);
+  CHECK(deepest < 1536);
 }
 
 }  // namespace

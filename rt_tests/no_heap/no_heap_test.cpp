@@ -17,6 +17,8 @@
 #include <shared_mutex>
 #include <vector>
 
+#include "formats/testing/synthetic_motion.hpp"
+#include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/minor_faults.hpp"
 #include "rt_tests/harness/touching_script.hpp"
 #include "runtime/surface.hpp"
@@ -85,6 +87,36 @@ class Touching {
   AlignedBytes memory_;
   ContactBody body_;
   TouchingScript script_;
+};
+
+// impulses on motions, refused ones among them
+class Moving {
+ public:
+  Moving()
+      : file_(encoded_file(synthetic_motion({.planes = 2, .alternating = true}))),
+        model_(Model::open(file_.bytes.span()).model),
+        need_(ImpulseResponse::required(model_, {})),
+        memory_(need_.bytes),
+        body_(ImpulseResponse::create(model_, {}, {memory_.data(), memory_.size()}).body),
+        script_(model_, need_, 3),
+        coordinate_(6),
+        displacement_(101) {}
+
+  ImpulseResponse::StepReport cycle() {
+    const ImpulseScript::Cycle cycle = script_.next();
+    return body_.step(cycle.impulse, cycle.budget,
+                      {coordinate_, {}, std::span(displacement_).first(cycle.vertices), {}});
+  }
+
+ private:
+  ModelFile file_;
+  Model model_;
+  ImpulseResponse::Requirement need_;
+  AlignedBytes memory_;
+  ImpulseResponse body_;
+  ImpulseScript script_;
+  std::vector<float> coordinate_;
+  std::vector<Vec3> displacement_;
 };
 
 TEST_CASE("the allocation guard trips on malloc, new and free") {
@@ -177,6 +209,24 @@ TEST_CASE("no allocation, lock or minor page fault in steps of tools, whatever t
   CHECK(pushed > cycles / 2);
 }
 
+TEST_CASE("no allocation, lock or minor page fault in steps of impulses") {
+  Moving moving;
+  for (int i = 0; i < 100; ++i) moving.cycle();
+  GuardCounts seen;
+  int refused = 0;
+  const std::uint64_t faults = minor_faults();
+  for (int i = 0; i < cycles; ++i) {
+    ImpulseResponse::StepReport report;
+    seen += guarded([&] { report = moving.cycle(); });
+    refused += answered(report.status) ? 0 : 1;
+  }
+  CHECK(minor_faults() == faults);
+  CHECK(seen.allocations == 0);
+  CHECK(seen.locks == 0);
+  CHECK(refused > 0);
+  CHECK(refused < cycles / 2);
+}
+
 TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is made") {
   const TestModel model({.levels = 4});
   AlignedBytes memory(Surface::required(model.model(), 3).bytes);
@@ -267,6 +317,12 @@ TEST_CASE("no system call in the loop, by Syscall User Dispatch") {
     touching.cycle();
     system_call_guard::disarm();
   }
+  Moving moving;
+  for (int i = 0; i < cycles; ++i) {
+    system_call_guard::arm();
+    moving.cycle();
+    system_call_guard::disarm();
+  }
   CHECK(system_call_guard::count() == 1);
 }
 
@@ -290,6 +346,7 @@ int strict_child(Work work) {
 TEST_CASE("no system call in the loop, by strict seccomp") {
   Scripted scripted;
   Touching touching;
+  Moving moving;
   const int caught = strict_child([] { static_cast<void>(syscall(SYS_getppid)); });
   REQUIRE(!(WIFEXITED(caught) && WEXITSTATUS(caught) == 99));
   CHECK(WIFSIGNALED(caught));
@@ -297,6 +354,7 @@ TEST_CASE("no system call in the loop, by strict seccomp") {
     for (int i = 0; i < cycles; ++i) {
       scripted.cycle(i);
       touching.cycle();
+      moving.cycle();
     }
   });
   CHECK(WIFEXITED(clean));
