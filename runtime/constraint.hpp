@@ -25,11 +25,13 @@ struct UnilateralContact {
 
   std::uint32_t node[3] = {none, none, none};  ///< file indices of touchable nodes; none: there are fewer
   float weight[3] = {1, 0, 0};                 ///< of each, above 0; 1 in all, or less where a corner cannot move
-  float value[3] = {};   ///< m, the point's displacement at which it touches the surface and has not slid along it
-  float normal[3] = {};  ///< unit vector out of the surface, to where the point may be
-  float friction = 0;    ///< Coulomb's coefficient, 0 or more
-  float softness = 0;    ///< m/N, of the surface itself, 0 or more; above 0 if no node is named
-  float force[3] = {};   ///< N, a guess to begin with, as from the last step
+  float value[3] = {};     ///< m, the point's displacement at which it touches the surface and has not slid along it
+  float normal[3] = {};    ///< unit vector out of the surface, to where the point may be
+  float friction = 0;      ///< Coulomb's coefficient, 0 or more
+  float softness = 0;      ///< m/N, of the surface itself, 0 or more; above 0 if no node is named
+  float force[3] = {};     ///< N, a guess to begin with, as from the last step
+  std::uint32_t tool = 0;  ///< whose the surface is: contacts of a tool share its mount
+  float mount = 0;  ///< m/N, of a spring that the whole tool hangs on, 0 or more; the same for all of its contacts
 };
 
 /// What a unilateral contact does.

@@ -4,7 +4,7 @@
 #include <limits>
 #include <new>
 
-#include "runtime/contact_body/touched_body.hpp"
+#include "runtime/contact_body/answer.hpp"
 #include "runtime/memory/arena.hpp"
 
 namespace greenloop {
@@ -49,10 +49,13 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.max_tools = limits.max_tools;
   body.tool = arena.take<Tool>(limits.max_tools);
   body.placement = arena.take<Placement>(limits.max_tools);
+  body.sag = arena.take_zeroed<Double3>(limits.max_tools);
+  body.point = arena.take<ToolPoint>(body.max_contacts);
   body.candidate = arena.take<Candidate>(body.max_contacts);
   body.contact = arena.take<UnilateralContact>(body.max_contacts);
   body.stick_place = arena.take<Double3>(body.max_contacts);
   body.rest_place = arena.take<Double3>(body.max_contacts);
+  body.last_place = arena.take<Double3>(body.max_contacts);
   body.force_before = arena.take<Vec3>(body.max_contacts);
   body.energy_contact = arena.take<EnergyContact>(std::uint64_t{2} * body.max_contacts);
   body.force = arena.take<Vec3>(body.max_contacts);
@@ -107,16 +110,6 @@ Double3 pushed_displacement(const TouchedBody& body, const Candidate& candidate)
   return sum;
 }
 
-// of a point by its nodes; those after the last are layout::none
-Double3 displacement_of(const TouchedBody& body, const std::uint32_t (&node)[3], const double (&weight)[3]) {
-  Double3 sum;
-  for (int k = 0; k < 3 && node[k] != layout::none; ++k) {
-    const Vec4& u = body.displacement[node[k]];
-    sum += weight[k] * Double3{u.x, u.y, u.z};
-  }
-  return sum;
-}
-
 void put(float (&to)[3], const Double3& from) {
   to[0] = static_cast<float>(from.x);
   to[1] = static_cast<float>(from.y);
@@ -140,21 +133,33 @@ std::uint32_t put_corners(const TouchedBody& body, const Candidate& candidate, U
 Double3 way_to_stick(const Candidate& candidate, const Placement& placement, const Grip* grip) {
   const Double3& n = candidate.normal;
   const Double3 out = -candidate.gap * n;
-  if (grip == nullptr) return out;
+  if (grip == nullptr || !grip->touches) return out;
   const Double3 way = placement.to_model(grip->anchor) - candidate.position;
   return out + way - dot(n, way) * n;
 }
 
-// stick_place: m, where its point stands if it does not slip
-UnilateralContact contact_of(const TouchedBody& body, const Candidate& candidate, const Grip* grip, double friction,
-                             Double3& stick_place) {
+// of a place of the surface, on the tools' coefficients
+double friction_factor(const TouchedBody& body, const Candidate& candidate) {
+  if (body.factor.empty()) return 1;
+  double sum = 0;
+  for (int k = 0; k < 3 && candidate.node[k] != layout::none; ++k) {
+    sum += candidate.weight[k] * double{body.factor[candidate.node[k]]};
+  }
+  return sum;
+}
+
+// stick_place: m, where its point stands if it does not slip and the tool's spring gives way no further
+UnilateralContact contact_of(const TouchedBody& body, const Candidate& candidate, const Grip* grip,
+                             const ContactBody::ToolInput& tool, Double3& stick_place) {
   UnilateralContact contact;
   const std::uint32_t corners = put_corners(body, candidate, contact);
   const Double3 way = way_to_stick(candidate, body.placement[candidate.tool], grip);
   stick_place = candidate.position + way;
-  put(contact.value, pushed_displacement(body, candidate) + way);
+  put(contact.value, pushed_displacement(body, candidate) + way - body.sag[candidate.tool]);
   put(contact.normal, candidate.normal);
-  contact.friction = static_cast<float>(friction);
+  contact.friction = static_cast<float>(tool.friction * friction_factor(body, candidate));
+  contact.tool = candidate.tool;
+  contact.mount = static_cast<float>(tool.compliance);
   contact.softness = corners > 0 ? 0 : body.rigid_softness;
   if (grip != nullptr) {
     contact.force[0] = grip->force.x;
@@ -232,117 +237,14 @@ std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, Contac
   return count;
 }
 
-Vec4 narrow(const Double3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0}; }
-
-Double3 double3(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-// where a contact's point has come to: from where it would stick, if it has slipped or the tool has left it
-Double3 place_after(const TouchedBody& body, std::uint32_t i) {
-  const Vec4& gap = body.gap[i];
-  return body.stick_place[i] + Double3{gap.x, gap.y, gap.z};
-}
-
-void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Grip* grip) {
-  const Candidate& candidate = body.candidate[i];
-  if (body.state[i] == ContactState::open) return;
-  const bool sticks = grip != nullptr && body.state[i] == ContactState::stick;
-  const Double3 anchor = sticks ? grip->anchor : body.placement[candidate.tool].to_tool(place);
-  const Vec4 shift = narrow(place - body.rest_place[i]);
-  Grip made;
-  made.key = grip_key(candidate);
-  made.anchor = anchor;
-  made.force = body.force[i];
-  made.sticks = body.state[i] == ContactState::stick;
-  made.shift = {shift.x, shift.y, shift.z};
-  for (int k = 0; k < 3; ++k) {
-    made.node[k] = candidate.node[k];
-    made.weight[k] = candidate.weight[k];
-  }
-  body.grips.add(made);
-}
-
-bool is_behind(const TouchedBody& body, std::uint32_t tool) {
-  bool behind = false;
-  const std::uint32_t points = body.tool[tool].shape.point_count();
-  for (std::uint32_t i = 0; i < points && body.search.fault(tool) == ToolFault::none; ++i) {
-    behind = behind || body.search.proxy(tool, i).is_held();
-  }
-  return behind;
-}
-
-void write_answer(TouchedBody& body, std::uint32_t count, std::span<const ContactBody::ToolInput> tools) {
-  for (std::uint32_t t = 0; t < tools.size(); ++t) {
-    body.tool_answer[t] = {};
-    body.tool_answer[t].fault = body.search.fault(t);
-    body.tool_answer[t].first_contact = count;
-    body.tool_answer[t].is_behind = is_behind(body, t);
-  }
-  body.tool_count = static_cast<std::uint32_t>(tools.size());
-  body.answered_count = count;
-  body.grips.begin();
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Candidate& candidate = body.candidate[i];
-    const Double3 place = place_after(body, i);
-    remember(body, i, place, body.grips.find(grip_key(candidate)));
-    ContactBody::Contact& contact = body.answered[i];
-    contact = {};
-    for (int k = 0; k < 3; ++k) {
-      contact.node[k] = candidate.node[k];
-      contact.weight[k] = candidate.weight[k];
-    }
-    contact.tool = candidate.tool;
-    contact.state = body.state[i];
-    contact.position = place;
-    contact.normal = candidate.normal;
-    contact.force = double3(body.force[i]);
-    const Vec4& gap = body.gap[i];
-    const Double3 from_stick{gap.x, gap.y, gap.z};
-    contact.gap = dot(candidate.normal, from_stick);
-    contact.slip = contact.state == ContactState::open ? Double3{} : from_stick - contact.gap * candidate.normal;
-    ContactBody::ToolAnswer& answer = body.tool_answer[candidate.tool];
-    answer.first_contact = i < answer.first_contact ? i : answer.first_contact;
-    ++answer.contacts;
-    answer.depth = larger(answer.depth, -candidate.gap);
-    answer.force += -contact.force;
-    answer.torque += cross(place - body.placement[candidate.tool].origin, -contact.force);
-  }
-  body.grips.turn();
-}
-
-// copies of the tools, without what a solver needs besides
+// copies of the tools, without what a solver needs besides, where their springs let them be
 std::span<const Tool> put_tools(std::span<const ContactBody::ToolInput> tools, TouchedBody& body) {
   const std::size_t count = tools.size() < body.max_tools ? tools.size() : body.max_tools;
-  for (std::size_t t = 0; t < count; ++t) body.tool[t] = tools[t].tool;
+  for (std::size_t t = 0; t < count; ++t) {
+    body.tool[t] = tools[t].tool;
+    body.tool[t].pose.position += body.sag[t];
+  }
   return {body.tool, count};
-}
-
-// what the contacts of this step did, and those of the last that are none now; before these are forgotten
-void account_energy(TouchedBody& body, std::uint32_t count) {
-  std::uint32_t last = 0;
-  for (const Grip& grip : body.grips.all()) {
-    if (grip.is_candidate) continue;
-    EnergyContact& contact = body.energy_contact[last++];
-    contact = {};
-    contact.last_force = {grip.force.x, grip.force.y, grip.force.z, 0};
-    contact.last_shift = {grip.shift.x, grip.shift.y, grip.shift.z, 0};
-    contact.shift = narrow(displacement_of(body, grip.node, grip.weight));
-  }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Candidate& candidate = body.candidate[i];
-    const Vec3& force = body.force[i];
-    const Vec3& before = body.force_before[i];
-    EnergyContact& contact = body.energy_contact[last++];
-    contact.normal = narrow(candidate.normal);
-    contact.force = {force.x, force.y, force.z, 0};
-    contact.last_force = {before.x, before.y, before.z, 0};
-    contact.shift = narrow(place_after(body, i) - body.rest_place[i]);
-    contact.last_shift = narrow(candidate.position - body.rest_place[i]);
-    contact.way = narrow(body.stick_place[i] - candidate.position);
-  }
-  EnergyAccount& account = body.account;
-  account.add({body.energy_contact, last});
-  const double generated = larger(body.energy.generated, account.generated());
-  body.energy = {account.in, account.stored, account.dissipated, account.lost, generated};
 }
 
 // what choose takes, if every pass leaves one out
@@ -433,7 +335,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   std::uint64_t work = tools.size() * tool_price;
   body.deformed.update({body.displacement, body.nodes}, work);
   const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work);
-  for (std::uint32_t t = 0; t < tools.size(); ++t) body.placement[t] = place(tools[t].tool.pose).placement;
+  for (std::uint32_t t = 0; t < tools.size(); ++t) body.placement[t] = place(shapes[t].pose).placement;
   StepReport report;
   report.left_out = found.left_out;
   report.deepest_left_out = found.left_out > 0 ? -found.deepest_left_out.gap : 0;
@@ -443,10 +345,16 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate& candidate = body.candidate[i];
     Grip* const grip = body.grips.find(grip_key(candidate));
-    body.force_before[i] = grip == nullptr ? Vec3{} : grip->force;
-    if (grip != nullptr) grip->is_candidate = true;
     body.rest_place[i] = candidate.position - displacement_of(body, candidate.node, candidate.weight);
-    body.contact[i] = contact_of(body, candidate, grip, tools[candidate.tool].friction, body.stick_place[i]);
+    body.last_place[i] = candidate.position;
+    body.force_before[i] = {};
+    if (grip != nullptr && grip->is_at(candidate)) {
+      // the field is an approximation of it
+      body.last_place[i] = body.rest_place[i] + grip->shift;
+      body.force_before[i] = grip->force;
+      grip->stays = true;
+    }
+    body.contact[i] = contact_of(body, candidate, grip, tools[candidate.tool], body.stick_place[i]);
   }
   work += count * contact_price;
   Elastostatic::UnilateralResponse response;
@@ -458,6 +366,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
       body.elastostatic.step(std::span<const UnilateralContact>(body.contact, count), loads, budget, response);
   report.touching_work = work;
   if (answered(report.status)) {
+    let_sag(body, count, tools);
     account_energy(body, count);
     write_answer(body, count, tools);
   }
@@ -482,6 +391,21 @@ void ContactBody::forget(std::uint32_t tool) noexcept {
   if (tool >= body_->max_tools) return;
   body_->search.forget(tool);
   body_->grips.forget(tool);
+  body_->sag[tool] = {};
+}
+
+void ContactBody::surface_friction(std::span<const float> factor) noexcept {
+  if (factor.empty() || factor.size() == body_->nodes) body_->factor = factor;
+}
+
+std::uint64_t ContactBody::local_model(bool turns, float length, LocalModel& model) noexcept {
+  TouchedBody& body = *body_;
+  return body.elastostatic.local_model({body.point, body.answered_count}, body.tool_count, turns ? 6 : 3, length,
+                                       model);
+}
+
+std::uint64_t ContactBody::local_model_work(std::uint32_t tools, bool turns) const noexcept {
+  return Elastostatic::local_model_work(body_->max_contacts, tools, turns ? 6 : 3);
 }
 
 }  // namespace greenloop

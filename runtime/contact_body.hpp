@@ -7,6 +7,7 @@
 #include "runtime/constraint.hpp"
 #include "runtime/contact/tool.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/local_model.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/model.hpp"
 #include "runtime/vec.hpp"
@@ -33,6 +34,8 @@ class ContactBody {
   struct ToolInput {
     Tool tool;              ///< shape and pose
     double friction = 0.3;  ///< Coulomb's coefficient, 0 or more
+    double compliance = 0;  ///< m/N, of a spring between the pose and the tool, which does not turn, 0 or more: a
+                            ///< virtual coupling (runtime/passivity.hpp); 0: the tool is at its pose
   };
 
   /// What a tool feels.
@@ -44,6 +47,7 @@ class ContactBody {
     std::uint32_t contacts = 0;         ///< places that may touch, of which those with a force do
     double depth = 0;                   ///< m, how far the tool was inside of the surface before this step's answer
     bool is_behind = false;             ///< a point of it that is followed (Shape::point) is behind the surface
+    Double3 sag;                        ///< m, how far its spring (ToolInput::compliance) lets it be from its pose
   };
 
   /// A place of the surface that may touch a tool.
@@ -113,6 +117,22 @@ class ContactBody {
   /// The tool is somewhere else without having been between: in the next step it is placed where it is, and holds on to
   /// nothing. Numbers that no tool has are ignored. For the loop; work: linear in the contacts.
   void forget(std::uint32_t tool) noexcept;
+
+  /// Factors on the tools' coefficients of friction, [nodes], 0 or more: of a place within a triangle by the weights of
+  /// its corners. They are read in every step until the next call; the memory is the caller's, who may change them
+  /// between steps. Empty: 1 everywhere; ignored if there are not as many as nodes. One that is negative or not finite
+  /// is refused by the steps in which a tool may touch there, as a tool's own. For the loop; constant work.
+  void surface_friction(std::span<const float> factor) noexcept;
+
+  /// How the tools' forces and torques follow their poses between this step and the next (docs/touching.md, "A faster
+  /// loop"). turns: false: poses do not turn meanwhile, which is half of the work. length: m, above 0, what a turn
+  /// counts as. Returns the work units that it took, at most local_model_work; 0, and nothing is written: refused,
+  /// before the first answer, after a step that was refused, without a tool or with more than LocalModel::most_tools,
+  /// or if length is not above 0. For the loop.
+  std::uint64_t local_model(bool turns, float length, LocalModel& model) noexcept;
+
+  /// Work units of `local_model` for so many tools. For the loop; constant work.
+  [[nodiscard]] std::uint64_t local_model_work(std::uint32_t tools, bool turns) const noexcept;
 
  private:
   TouchedBody* body_ = nullptr;

@@ -219,6 +219,122 @@ TEST_CASE("energy adds up when a tool goes right after a step that was refused")
   CHECK(energy.in == doctest::Approx(energy.dissipated + energy.lost).epsilon(1e-3));
 }
 
+TEST_CASE("what does not add up of the energy is rounding, while tools press, drag, lift and slide") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  double handled = 0, last = 0;
+  for (int k = 0; k < 600; ++k) {
+    const double angle = 0.4 * std::sin(0.02 * k), depth = 0.02 * body_radius * std::sin(0.05 * k);
+    const double distance = body_radius + radius - depth;
+    const std::vector tools{ball(radius, {distance * std::sin(angle), 0, distance * std::cos(angle)}, 0.3)};
+    REQUIRE(answered(touched.step(tools).status));
+    const ContactBody::Energy& energy = touched.body.energy();
+    handled += std::abs(energy.in - last);
+    last = energy.in;
+  }
+  const ContactBody::Energy& energy = touched.body.energy();
+  MESSAGE("of ", handled, " J handled do not add up ", energy.stored + energy.dissipated + energy.lost - energy.in,
+          " J, at most ", energy.generated);
+  CHECK(energy.dissipated > 0.01 * handled);
+  CHECK(energy.generated <= 1e-5 * handled);
+  CHECK(std::abs(energy.stored + energy.dissipated + energy.lost - energy.in) <= 1e-5 * handled);
+}
+
+TEST_CASE("a tool on a spring sags as far as its force says, and feels body and spring in series") {
+  const TestModel model(sphere);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius;
+  const auto pressed = [&](double compliance, double depth, std::size_t steps) {
+    TouchableBody touched(model);
+    std::vector tools{ball(radius, {0.1 * depth, 0, body_radius + radius - depth}, 0.3)};
+    tools[0].compliance = compliance;
+    for (std::size_t k = 0; k < steps; ++k) REQUIRE(answered(touched.step(tools).status));
+    check_laws(touched.body, tools);
+    return touched.body.tools()[0];
+  };
+  const double depth = 0.02 * body_radius;
+  const ContactBody::ToolAnswer rigid = pressed(0, depth, 3);
+  CHECK(norm(rigid.sag) == 0);
+  const double compliance = depth / rigid.force.z;
+  const ContactBody::ToolAnswer soft = pressed(compliance, depth, 3);
+  CHECK(norm(soft.sag - compliance * soft.force) <= 1e-9 * norm(soft.sag));
+  CHECK(soft.force.z < 0.7 * rigid.force.z);
+  // where the spring lets it be, a rigid tool feels the same
+  const ContactBody::ToolAnswer there = pressed(0, depth - soft.sag.z, 3);
+  CHECK(there.force.z == doctest::Approx(soft.force.z).epsilon(0.02));
+  TouchableBody touched(model);
+  std::vector tools{ball(radius, {0, 0, body_radius + radius - depth}, 0.3)};
+  tools[0].compliance = -1e-3;
+  CHECK(touched.step(tools).status == Status::held_bad_surface);
+  tools[0].compliance = std::numeric_limits<double>::quiet_NaN();
+  CHECK(touched.step(tools).status == Status::held_not_finite);
+}
+
+TEST_CASE("friction of a region is its factor times the tool's, zero too, and may change between steps") {
+  const TestModel model(sphere);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;
+  TouchableBody touched(model);
+  std::vector<float> factor(touched.body.displacement().size(), 1);
+  touched.body.surface_friction(factor);
+  std::vector tools{ball(radius, {0, 0, body_radius + radius - depth}, 0.6)};
+  const auto most_ratio = [&] {
+    double most = 0;
+    for (int k = 0; k < 10; ++k) {
+      tools[0].tool.pose.position.x += 0.001 * body_radius;
+      REQUIRE(answered(touched.step(tools).status));
+      for (const ContactBody::Contact& contact : touched.body.contacts()) {
+        const double pressed = dot(contact.force, contact.normal);
+        if (pressed > 0) most = std::max(most, norm(contact.force - pressed * contact.normal) / pressed);
+      }
+    }
+    return most;
+  };
+  CHECK(most_ratio() == doctest::Approx(0.6).epsilon(0.05));
+  std::fill(factor.begin(), factor.end(), 0.25F);
+  CHECK(most_ratio() == doctest::Approx(0.15).epsilon(0.01));
+  std::fill(factor.begin(), factor.end(), 0.0F);
+  CHECK(most_ratio() <= 1e-6);
+  std::fill(factor.begin(), factor.end(), -1.0F);
+  CHECK(touched.step(tools).status == Status::held_bad_surface);
+  touched.body.surface_friction({factor.data(), 3});  // too few: the old ones stay
+  CHECK(touched.step(tools).status == Status::held_bad_surface);
+  touched.body.surface_friction({});
+  CHECK(answered(touched.step(tools).status));
+}
+
+TEST_CASE("between two steps a local model says what a step would") {
+  const TestModel model(sphere);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;
+  for (const double compliance : {0.0, 1e-4}) {
+    TouchableBody touched(model);
+    LocalModel local;
+    CHECK(touched.body.local_model(false, 1e-3F, local) == 0);
+    std::vector tools{ball(radius, {0, 0, body_radius + radius - depth}, 0.3)};
+    tools[0].compliance = compliance;
+    for (int k = 0; k < 5; ++k) REQUIRE(answered(touched.step(tools).status));
+    const std::uint64_t work = touched.body.local_model(true, static_cast<float>(radius), local);
+    CHECK(work > 0);
+    CHECK(work <= touched.body.local_model_work(1, true));
+    const Double3 before = touched.body.tools()[0].force;
+    REQUIRE(local.tools == 1);
+    REQUIRE(local.components == 6);
+    CHECK(local.wrench[2] == doctest::Approx(before.z).epsilon(1e-5));
+    CHECK(local.change[2][2] < 0);
+    REQUIRE(local.range > 0);
+    const float step = std::min(0.5F * local.range, static_cast<float>(1e-3 * depth));
+    const float motion[6] = {0, 0, -step, 0, 0, 0};
+    float wrench[6];
+    local.evaluate(motion, wrench);
+    tools[0].tool.pose.position.z -= static_cast<double>(step);
+    REQUIRE(answered(touched.step(tools).status));
+    const Double3 after = touched.body.tools()[0].force;
+    CHECK(static_cast<double>(wrench[2]) - before.z == doctest::Approx(after.z - before.z).epsilon(0.2));
+    CHECK(touched.body.local_model(true, 0, local) == 0);
+    REQUIRE(answered(touched.step({}).status));
+    CHECK(touched.body.local_model(true, 1e-3F, local) == 0);
+  }
+}
+
 TEST_CASE("a tool that is put elsewhere drags nothing along, one that moves there does") {
   const TestModel model(sphere);
   const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "runtime/constraint.hpp"
+#include "runtime/local_model.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/mask.hpp"
 #include "runtime/model.hpp"
@@ -164,6 +165,19 @@ class Elastostatic {
   /// masked_compliance is.
   std::uint64_t stiffness(const MeshPoint& point, std::span<const Mask, 3> masks, float rigid, bool capped,
                           std::span<float, 9> stiffness) noexcept;
+
+  /// How the forces of the last answer follow the motions of the rigid surfaces, until the next step (James & Pai 2001,
+  /// section 5; docs/loop.md, "A faster loop"). points: [contacts] of that answer in their order: the tool that each is
+  /// of, and the lever about which its torque is taken and it turns, m. tools: 1 .. LocalModel::most_tools. components:
+  /// 3 or 6. length: m, above 0. Returns the work units that it took; at most local_model_work. For the loop. Refused,
+  /// 0 and nothing is written, unless the last step was one of unilateral contacts and answered, and where a number is
+  /// out of these ranges.
+  std::uint64_t local_model(std::span<const ToolPoint> points, std::uint32_t tools, std::uint32_t components,
+                            float length, LocalModel& model) noexcept;
+
+  /// Work units of `local_model` for so many contacts.
+  [[nodiscard]] static std::uint64_t local_model_work(std::uint32_t contacts, std::uint32_t tools,
+                                                      std::uint32_t components) noexcept;
 
  private:
   Body* body_ = nullptr;

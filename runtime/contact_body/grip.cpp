@@ -8,7 +8,7 @@ void Grips::carve(Arena& arena, std::uint32_t contacts) noexcept {
 }
 
 void Grips::begin_step() noexcept {
-  for (std::uint32_t i = 0; i < count_; ++i) grip_[i].is_candidate = false;
+  for (std::uint32_t i = 0; i < count_; ++i) grip_[i].stays = false;
 }
 
 Grip* Grips::find(std::uint64_t key) noexcept {

@@ -82,8 +82,10 @@ struct Body {
   FactorCache cache;
   FactorJob job;  ///< the factor of a finer level
   LastAnswer last;
-  bool answered = false;   ///< `planned` is the set of the last answer
-  bool is_loaded = false;  ///< something but contacts acts in the step
+  bool answered = false;       ///< `planned` is the set of the last answer
+  bool pushed = false;         ///< the last answer is that of unilateral contacts
+  std::uint32_t surfaces = 0;  ///< how many
+  bool is_loaded = false;      ///< something but contacts acts in the step
   Glide glide;
   UnilateralScratch unilateral;  ///< without room unless unilateral contacts are allowed
   // of a step, kept off the stack

@@ -134,9 +134,9 @@ void ContactProblem::iterate(const ContactAccuracy& accuracy, std::uint64_t work
            answer.work + sweep_work(points_.count) <= work);
 }
 
-void ContactProblem::respond(Float4* displacement, Float4* force) noexcept {
+std::uint64_t ContactProblem::respond(Float4* displacement, Float4* force) noexcept {
   const ContactNewton::Terms terms{.weight = 1, .reduction = 1e-3F, .vectors = ContactNewton::most_vectors};
-  newton_.respond(points_, terms, displacement, force);
+  return newton_work(points_.count, newton_.respond(points_, terms, displacement, force));
 }
 
 ContactAnswer ContactProblem::solve(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,

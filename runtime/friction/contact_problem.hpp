@@ -93,8 +93,8 @@ class ContactProblem {
   void linearise() noexcept { newton_.linearise(points_, best_force_, best_displacement_); }
 
   /// What forces change by when gaps do, to a thousandth. displacement: [candidates] m, the gaps' change, becomes that
-  /// of the displacements. force: [candidates] N. For the loop.
-  void respond(Float4* displacement, Float4* force) noexcept;
+  /// of the displacements. force: [candidates] N. Returns the work units that it took. For the loop.
+  std::uint64_t respond(Float4* displacement, Float4* force) noexcept;
 
  private:
   static constexpr std::uint32_t most_steps = 8;  ///< of Newton between sweeps
