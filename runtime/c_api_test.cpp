@@ -206,7 +206,7 @@ TEST_CASE("no cycles of a glide stand for the default") {
 TEST_CASE("no refining work stands for no bound of it") {
   CBody c;
   const auto worst = [&c](std::uint64_t work) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, work, nullptr, 0, 0, 0}).worst_work[0];
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, work, nullptr, 0, 0, 0, 0, 0}).worst_work[0];
   };
   CHECK(worst(0) == worst(~std::uint64_t{0}));
   CHECK(worst(1) < worst(0));

@@ -4,18 +4,20 @@
 
 namespace greenloop {
 
-/// What is known of a node of a body, or of a pattern of forces on it (James & Pai 2003, section 3).
+/// What is known of a node of a body, or of a mask (James & Pai 2003, section 3; 2001, section 6).
 struct Constraint {
   enum class Kind : std::uint32_t {
-    hold,     ///< all three components of its displacement
-    normal,   ///< its displacement along the normal; it slides freely across it
-    force,    ///< the force on it
-    pattern,  ///< the force of a mask, by its number, as a whole; it is spread by the mask's weights
+    hold,     ///< all three components of a node's displacement
+    normal,   ///< what a directed mask measures, as a node's displacement along its normal; all else slides freely
+    force,    ///< the force on a node
+    pattern,  ///< the force of a mask as a whole; it is spread by the mask's weights
+    mask,     ///< all three components of a mask's mean displacement
+    along,    ///< the force along a directed mask
   };
 
-  std::uint32_t node = 0;  ///< file index of a touchable node; of a pattern the number of its mask
-  float value[3] = {};     ///< m where displacements are known, N where forces are
-  Kind kind = Kind::hold;  ///< Elastostatic refuses `normal`, and knows forces by Limits::max_forces
+  std::uint32_t node = 0;  ///< file index of a touchable node, or the number of a mask or directed mask
+  float value[3] = {};     ///< m where displacements are known, N where forces are; of a directed mask the first alone
+  Kind kind = Kind::hold;  ///< Elastostatic knows forces by Limits::max_forces, `normal` and `mask` by mixed_contacts
 };
 
 /// A rigid surface at a point of a body: it may push the point and rub against it, but not pull it (Signorini's and

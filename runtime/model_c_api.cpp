@@ -54,7 +54,8 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
               same(GREENLOOP_HELD_ILLEGAL_IMPULSE, Status::held_illegal_impulse) &&
               GREENLOOP_HELD_ILLEGAL_IMPULSE + 1 == statuses);
 static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
-              same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
+              same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern) &&
+              same(GREENLOOP_MASK, Constraint::Kind::mask) && same(GREENLOOP_ALONG, Constraint::Kind::along));
 static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic) &&
               same(GREENLOOP_PROBLEM_SCALAR, layout::Problem::scalar) &&
               same(GREENLOOP_PROBLEM_IMPULSE_RESPONSE, layout::Problem::impulse_response));

@@ -12,6 +12,7 @@
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/elastostatic/known_forces.hpp"
 #include "runtime/elastostatic/last_answer.hpp"
+#include "runtime/elastostatic/mixed_contacts.hpp"
 #include "runtime/elastostatic/requirement.hpp"
 #include "runtime/elastostatic/unilateral.hpp"
 #include "runtime/factor/factor_cache.hpp"
@@ -88,6 +89,7 @@ struct Body {
   bool is_loaded = false;      ///< something but contacts acts in the step
   Glide glide;
   UnilateralScratch unilateral;  ///< without room unless unilateral contacts are allowed
+  MixedScratch mixed;            ///< without room unless mixed contacts are
   // of a step, kept off the stack
   Accepted* accepted = nullptr;
   Plan* plan = nullptr;
