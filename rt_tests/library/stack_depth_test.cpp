@@ -11,9 +11,13 @@
 #include "formats/testing/synthetic_motion.hpp"
 #include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/touching_script.hpp"
+#include "runtime/bound_mesh.hpp"
 #include "runtime/impulse_response.hpp"
+#include "runtime/look.hpp"
+#include "runtime/relief.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
+#include "runtime/testing/split_surface.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -120,6 +124,33 @@ TEST_CASE("a query of the surface keeps below 1 kB") {
     CHECK(point.triangle != layout::none);
     CHECK(bytes < 1024);
   }
+}
+
+TEST_CASE("finer pictures and relief keep below 1 kB") {
+  const TestModel model({.levels = 4});
+  const SplitSurface split(model, 3, {2, FinerSurface::Rule::loop});
+  const std::vector<Vec3> vertex(100, Vec3{0.01F, 0.02F, 0.11F});
+  AlignedBytes memory(BoundMesh::required(split.surface, vertex.size()));
+  const auto bound = BoundMesh::create(split.surface, vertex, {memory.data(), memory.size()});
+  REQUIRE(bound);
+  std::vector<Vec4> position(split.finer.vertex_count(2)), normal(position.size()), bound_position(vertex.size());
+  const std::vector<Vec3> slope(position.size());
+  std::vector<std::uint8_t> seen(split.surface.triangle_count(1));
+  ContactBody::Contact contact;
+  contact.node[1] = 1;
+  contact.node[2] = 2;
+  contact.weight[0] = contact.weight[1] = 0.5;
+  contact.normal = contact.force = {0, 0, 1};
+  bool right = false;
+  const std::size_t bytes = depth_of([&] {
+    right = look_at(split.surface, {}, {{0, 0, 1}, {0, 0, -1}}, seen).triangles > 0 &&
+            split.finer.positions(2, {}, seen, position) && split.finer.normals(2, position, normal) &&
+            bound.mesh.positions({}, normal, seen, bound_position) &&
+            relief_friction(split.finer, slope, 0.3, {1e-3, 0, 0}, {&contact, 1}) > 0;
+  });
+  MESSAGE("deepest stack of a finer picture: ", bytes, " bytes");
+  CHECK(right);
+  CHECK(bytes < 1024);
 }
 
 TEST_CASE("a search for candidates keeps below 3 kB") {

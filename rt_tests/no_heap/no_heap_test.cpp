@@ -21,8 +21,12 @@
 #include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/minor_faults.hpp"
 #include "rt_tests/harness/touching_script.hpp"
+#include "runtime/bound_mesh.hpp"
+#include "runtime/look.hpp"
+#include "runtime/relief.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
+#include "runtime/testing/split_surface.hpp"
 #include "runtime/testing/test_body.hpp"
 #include "sim_hw/guard/guarded.hpp"
 
@@ -242,6 +246,44 @@ TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is 
     const Vec3 position{static_cast<float>(i) * 1e-4F - 0.1F, 0.01F, 0.02F};
     right = right && created.surface.nearest_node(position).node != layout::none &&
             created.surface.nearest_point(position).triangle != layout::none;
+  }
+  mutex_guard::disarm();
+  allocation_guard::disarm();
+  CHECK(right);
+  CHECK(allocation_guard::count() == allocations);
+  CHECK(mutex_guard::count() == locks);
+}
+
+TEST_CASE("no allocation and no lock in finer pictures and relief, nor when they are made") {
+  const TestModel model({.levels = 4});
+  const SplitSurface split(model, 3, {2, FinerSurface::Rule::loop});
+  const FinerSurface::Options options{2, FinerSurface::Rule::midpoint};
+  AlignedBytes finer_memory(FinerSurface::required(split.surface, options));
+  const std::vector<Vec3> vertex(100, Vec3{0.01F, 0.02F, 0.11F});
+  AlignedBytes bound_memory(BoundMesh::required(split.surface, vertex.size()));
+  std::vector<Vec4> position(split.finer.vertex_count(2)), normal(position.size()), bound_position(vertex.size());
+  const std::vector<Vec3> detail(position.size(), Vec3{0, 0.3F, 1});
+  std::vector<Vec3> slope(position.size());
+  std::vector<std::uint8_t> seen(split.surface.triangle_count(1));
+  ContactBody::Contact contact;
+  contact.node[1] = 1;
+  contact.node[2] = 2;
+  contact.weight[0] = contact.weight[1] = 0.5;
+  contact.normal = contact.force = {0, 0, 1};
+  const std::uint64_t allocations = allocation_guard::count();
+  const std::uint64_t locks = mutex_guard::count();
+  allocation_guard::arm();
+  mutex_guard::arm();
+  const auto finer = FinerSurface::create(split.surface, options, {finer_memory.data(), finer_memory.size()});
+  const auto bound = BoundMesh::create(split.surface, vertex, {bound_memory.data(), bound_memory.size()});
+  bool right = bool{finer} && bool{bound};
+  for (int i = 0; i < 100; ++i) {
+    const Look look{{0.01F * static_cast<float>(i), 0, 1}, {0, 0, -1}, 0.5F, 1e-3F};
+    right = right && look_at(split.surface, {}, look, seen).triangles > 0 &&
+            split.finer.positions(2, {}, seen, position) && finer.surface.positions(2, {}, {}, position) &&
+            split.finer.normals(2, position, normal) && bound.mesh.positions({}, normal, seen, bound_position) &&
+            relief_slopes(normal, detail, slope) &&
+            relief_friction(split.finer, slope, 0.3, {1e-3, 0, 0}, {&contact, 1}) >= 0;
   }
   mutex_guard::disarm();
   allocation_guard::disarm();
