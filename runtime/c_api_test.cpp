@@ -159,9 +159,8 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(
-      greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 1, 0, nullptr, 0, 0, 0}, arena.data(), c.need.bytes).error ==
-      GREENLOOP_CREATE_BAD_LIMITS);
+  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 1, 0, nullptr, 0, 0, 0, 0, 0}, arena.data(), c.need.bytes)
+            .error == GREENLOOP_CREATE_BAD_LIMITS);
 }
 
 TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps to it") {

@@ -203,8 +203,8 @@ typedef struct greenloop_mask {
   size_t weights;
 } greenloop_mask;
 
-/* A mask whose force has a direction of its own at each node: an amount x of it is the forces x part[k], and it measures
- * the sum of part[k] times the displacement of node[k]. part: 3 floats a node; parts: nodes. */
+/* A mask whose force has a direction of its own at each node: an amount x of it is the forces x part[k], and it
+ * measures the sum of part[k] times the displacement of node[k]. part: 3 floats a node; parts: nodes. */
 typedef struct greenloop_directed_mask {
   const uint32_t* node;
   size_t nodes;
@@ -220,7 +220,8 @@ typedef struct greenloop_loads {
   const float* pressure; /* Pa, of the model's first pressures, in their order */
   size_t pressures;
   float stiffness; /* 2^-20..2^20, Young's modulus over the model's; 0: 1 */
-  const greenloop_directed_mask* directed_mask; /* that constraints of kinds GREENLOOP_NORMAL and GREENLOOP_ALONG name */
+  const greenloop_directed_mask*
+      directed_mask; /* that constraints of kinds GREENLOOP_NORMAL and GREENLOOP_ALONG name */
   size_t directed_masks;
 } greenloop_loads;
 
@@ -323,8 +324,8 @@ greenloop_mask greenloop_make_mask(const greenloop_model* model, const float* ar
                                    const greenloop_vertex* point, float radius, uint32_t* node, float* weight,
                                    size_t capacity);
 
-/* A mask along a unit vector, 3 floats; and the torque of a mask, N m, about a unit vector through its centre, without a
- * force in all. part: room for 3 floats a node, which the directed mask refers to. Of 0 nodes if there are more than
+/* A mask along a unit vector, 3 floats; and the torque of a mask, N m, about a unit vector through its centre, without
+ * a force in all. part: room for 3 floats a node, which the directed mask refers to. Of 0 nodes if there are more than
  * `capacity`, or none is off the axis. For the loop; linear in the nodes. */
 greenloop_directed_mask greenloop_direct_mask(const greenloop_mask* mask, const float* direction, float* part,
                                               size_t capacity);

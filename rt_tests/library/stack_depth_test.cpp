@@ -103,6 +103,32 @@ TEST_CASE("a step keeps below the promised depth, whatever it has to do") {
   }
 }
 
+TEST_CASE("a step of mixed contacts keeps below the same depth") {
+  const TestModel model({.levels = 4});
+  TestBody body(model, {.max_contacts = 20, .cached_factors = 2, .max_forces = 4, .mixed_contacts = true});
+  const auto nodes = model.touchable();
+  const std::vector<float> weight(4, 0.25F);
+  const std::vector<Vec3> normal(4, {0, 0, 1});
+  const Mask mask{std::span(nodes).subspan(30, 4), weight};
+  const DirectedMask directed{std::span(nodes).subspan(8, 4), normal};
+  const std::vector<Constraint> contacts = {{nodes[3], {1e-3F, 0, -1e-3F}},
+                                            {0, {1e-3F, 0, 0}, Constraint::Kind::mask},
+                                            {0, {1e-3F, 0, 0}, Constraint::Kind::normal},
+                                            {nodes[8], {1, 0, 0}, Constraint::Kind::force}};
+  std::vector<float> force(12);
+  Elastostatic::Loads loads;
+  loads.masks = {&mask, 1};
+  loads.directed = {&directed, 1};
+  const Elastostatic::Response response{as_vec3(std::span(force)), as_vec4(body.field())};
+  for (const std::uint64_t work : {body.requirement().least_work, any_budget, any_budget}) {
+    Elastostatic::StepReport report;
+    const std::size_t bytes = depth_of([&] { report = body.body().step(contacts, loads, {work}, response); });
+    MESSAGE("deepest stack of a step of mixed contacts: ", bytes, " bytes");
+    CHECK(answered(report.status));
+    CHECK(bytes < promised);
+  }
+}
+
 TEST_CASE("a query of the surface keeps below 1 kB") {
   const TestModel model({.levels = 4});
   const Surface::Requirement need = Surface::required(model.model(), 3);

@@ -13,6 +13,8 @@ using Kind = Constraint::Kind;
 constexpr float independent = 0x1p-18F;
 constexpr float apart = 0x1p-5F;
 
+constexpr std::uint64_t block_price = 40;  // multiply-adds that reading and weighing a block is worth
+
 // appends corners to contacts
 class Listing {
  public:
@@ -290,8 +292,9 @@ MixedCounts list_mixed(std::span<const Constraint> constraints, const Masks& mas
 }
 
 std::uint64_t mixed_work(const Prices& prices, std::uint64_t corners, std::uint64_t rows) noexcept {
-  return priced(2 * corners, prices.solved_contact) + priced(9 * corners * (corners + 1) / 2, prices.appended) +
-         semidefinite_work(prices, rows) + Glide::blend_work(prices, corners);
+  return priced(2 * corners, prices.solved_contact) +
+         priced(block_price * corners * (corners + 1) / 2, prices.appended) + semidefinite_work(prices, rows) +
+         Glide::blend_work(prices, corners);
 }
 
 std::uint32_t solve_mixed(const MixedSet& all, MixedScratch& scratch, float* column_force) noexcept {
