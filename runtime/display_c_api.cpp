@@ -96,13 +96,10 @@ greenloop_triangle greenloop_finer_surface_triangle(const greenloop_finer_surfac
 }
 
 int greenloop_finer_surface_positions(const greenloop_finer_surface* surface, uint32_t k, const float* displacement,
-                                      uint32_t nodes, const uint8_t* seen, uint32_t triangles, float* position,
-                                      uint32_t count) {
+                                      uint32_t nodes, float* position, uint32_t count) {
   if (!is_aligned(displacement) || !is_aligned(position)) return 0;
-  return finer_of(surface).positions(k, vectors<const Vec4>(displacement, nodes), flags(seen, triangles),
-                                     vectors<Vec4>(position, count))
-             ? 1
-             : 0;
+  return finer_of(surface).positions(k, vectors<const Vec4>(displacement, nodes), vectors<Vec4>(position, count)) ? 1
+                                                                                                                  : 0;
 }
 
 int greenloop_finer_surface_normals(const greenloop_finer_surface* surface, uint32_t k, const float* position,

@@ -64,9 +64,8 @@ TEST_CASE("display: C and C++ give the same pictures") {
   CHECK(found.halvings == same.halvings);
   CHECK(seen == same_seen);
   std::vector<Vec4> position(vertices), same_position(vertices), normal(vertices), same_normal(vertices);
-  REQUIRE(greenloop_finer_surface_positions(c.finer, 1, &field[0].x, nodes, seen.data(), flags, &position[0].x,
-                                            vertices) == 1);
-  REQUIRE(cpp.finer.positions(1, field, seen, same_position));
+  REQUIRE(greenloop_finer_surface_positions(c.finer, 1, &field[0].x, nodes, &position[0].x, vertices) == 1);
+  REQUIRE(cpp.finer.positions(1, field, same_position));
   CHECK(equal(position, same_position));
   REQUIRE(greenloop_finer_surface_normals(c.finer, 1, &position[0].x, &normal[0].x, vertices) == 1);
   REQUIRE(cpp.finer.normals(1, position, same_normal));
@@ -128,8 +127,8 @@ TEST_CASE("display: what does not fit is refused in C too") {
   const std::uint32_t vertices = greenloop_finer_surface_vertex_count(c.finer, 1);
   std::vector<Vec4> position(vertices + 1);
   float* const misaligned = &position[0].y;
-  CHECK(greenloop_finer_surface_positions(c.finer, 1, nullptr, 0, nullptr, 0, misaligned, vertices) == 0);
-  CHECK(greenloop_finer_surface_positions(c.finer, 1, nullptr, 0, nullptr, 0, &position[0].x, 3) == 0);
+  CHECK(greenloop_finer_surface_positions(c.finer, 1, nullptr, 0, misaligned, vertices) == 0);
+  CHECK(greenloop_finer_surface_positions(c.finer, 1, nullptr, 0, &position[0].x, 3) == 0);
   CHECK(greenloop_finer_surface_normals(c.finer, 1, misaligned, &position[0].x, vertices) == 0);
   const float nowhere[3] = {INFINITY, 0, 0};
   AlignedBytes memory(greenloop_bound_mesh_required(c.surface, 1));

@@ -10,8 +10,6 @@
 namespace greenloop {
 namespace {
 
-constexpr std::uint8_t bit(std::uint32_t k) { return static_cast<std::uint8_t>(1U << k); }
-
 Vec4 sum_of(const Vec4& a, const Vec4& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, 0}; }
 Vec4 weighted(float a, const Vec4& x, float b, const Vec4& y) {
   return {a * x.x + b * y.x, a * x.y + b * y.y, a * x.z + b * y.z, 0};
@@ -37,83 +35,30 @@ void place_nodes(const FinerSurfaceParts& parts, std::span<const Vec4> displacem
   }
 }
 
-void mark_seen(const FinerSurfaceParts& parts, std::uint32_t k, std::span<const std::uint8_t> seen) {
-  for (std::uint32_t v = 0; v < parts.vertex_count[k]; ++v) parts.needed[v] = 0;
-  const auto each = static_cast<std::uint32_t>(parts.triangle_count[k] / seen.size());
-  for (std::uint32_t patch = 0; patch < seen.size(); ++patch) {
-    if (seen[patch] == 0) continue;
-    for (std::uint32_t t = patch * each; t < (patch + 1) * each; ++t) {
-      for (const std::uint32_t vertex : parts.triangle_at(k, t).node) parts.needed[vertex] |= bit(k);
-    }
-  }
-}
-
-// what level k needs of the one before
-void mark_before(const FinerSurfaceParts& parts, std::uint32_t k) {
-  std::uint8_t* const needed = parts.needed;
-  const std::uint8_t here = bit(k), before = bit(k - 1);
-  for (std::uint32_t v = 0; v < parts.vertex_count[k - 1]; ++v) {
-    if ((needed[v] & here) != 0) needed[v] |= before;
-  }
-  const bool smooths = parts.options.rule == FinerSurface::Rule::loop;
-  for (std::uint32_t v = parts.vertex_count[k - 1]; v < parts.vertex_count[k]; ++v) {
-    const auto& [end, wing] = parts.halved[v - parts.vertex_count[0]];
-    const bool is_needed = (needed[v] & here) != 0;
-    for (int i = 0; i < 2; ++i) {
-      if (is_needed || (smooths && (needed[end[1 - i]] & here) != 0)) needed[end[i]] |= before;
-      if (is_needed && smooths) needed[wing[i]] |= before;
-    }
-  }
-}
-
-// The positions of level k from those of the one before, in place. marked: only what is needed.
-template <bool marked>
+// The positions of level k from those of the one before, in place.
 void halve_edges(const FinerSurfaceParts& parts, std::uint32_t k, Vec4* position) {
   for (std::uint32_t v = parts.vertex_count[k - 1]; v < parts.vertex_count[k]; ++v) {
-    if (marked && (parts.needed[v] & bit(k)) == 0) continue;
     const HalvedEdge& edge = parts.halved[v - parts.vertex_count[0]];
     position[v] = weighted(0.5F, position[edge.end[0]], 0.5F, position[edge.end[1]]);
   }
 }
 
-template <bool marked>
 void apply_loop(const FinerSurfaceParts& parts, std::uint32_t k, Vec4* position) {
   const std::uint32_t first = parts.vertex_count[k - 1];
-  const auto is_needed = [&](std::uint32_t v) { return !marked || (parts.needed[v] & bit(k)) != 0; };
   for (std::uint32_t v = 0; v < first; ++v) parts.sum[v] = {};
   for (std::uint32_t v = first; v < parts.vertex_count[k]; ++v) {
     const auto& [end, wing] = parts.halved[v - parts.vertex_count[0]];
     const auto [a, b] = end;
-    if (is_needed(a)) parts.sum[a] = sum_of(parts.sum[a], position[b]);
-    if (is_needed(b)) parts.sum[b] = sum_of(parts.sum[b], position[a]);
-    if (!is_needed(v)) continue;
+    parts.sum[a] = sum_of(parts.sum[a], position[b]);
+    parts.sum[b] = sum_of(parts.sum[b], position[a]);
     position[v] =
         weighted(0.375F, sum_of(position[a], position[b]), 0.125F, sum_of(position[wing[0]], position[wing[1]]));
   }
   constexpr LoopWeight regular{0.625F, 0.0625F};  // of six neighbours
   for (std::uint32_t v = 0; v < first; ++v) {
-    if (!is_needed(v)) continue;
     const LoopWeight& weight = v < parts.vertex_count[0] ? parts.weight[v] : regular;
     position[v] = weighted(weight.own, position[v], weight.neighbour, parts.sum[v]);
   }
-}
-
-template <bool marked>
-void refine(const FinerSurfaceParts& parts, std::uint32_t k, Vec4* position) {
-  for (std::uint32_t level = 1; level <= k; ++level) {
-    if (parts.options.rule == FinerSurface::Rule::loop) {
-      apply_loop<marked>(parts, level, position);
-    } else {
-      halve_edges<marked>(parts, level, position);
-    }
-  }
-}
-
-// whether there is one flag for each triangle of a level of the surface
-bool is_of_a_level(const Surface& surface, std::size_t flags) {
-  bool is = false;
-  for (std::uint32_t q = 0; q <= surface.level(); ++q) is = is || flags == surface.triangle_count(q);
-  return is;
 }
 
 Double3 exact(const Vec4& v) { return {v.x, v.y, v.z}; }
@@ -178,20 +123,19 @@ Surface::Triangle FinerSurface::triangle(std::uint32_t k, std::uint32_t t) const
 
 const Surface& FinerSurface::surface() const noexcept { return parts_->surface; }
 
-bool FinerSurface::positions(std::uint32_t k, std::span<const Vec4> displacement, std::span<const std::uint8_t> seen,
+bool FinerSurface::positions(std::uint32_t k, std::span<const Vec4> displacement,
                              std::span<Vec4> position) const noexcept {
   const bool fits = k <= added() && position.size() == vertex_count(k) &&
-                    (displacement.empty() || displacement.size() >= vertex_count(0)) &&
-                    (seen.empty() || is_of_a_level(parts_->surface, seen.size()));
+                    (displacement.empty() || displacement.size() >= vertex_count(0));
   if (!fits) return false;
   place_nodes(*parts_, displacement, position.data());
-  if (seen.empty()) {
-    refine<false>(*parts_, k, position.data());
-    return true;
+  for (std::uint32_t level = 1; level <= k; ++level) {
+    if (parts_->options.rule == Rule::loop) {
+      apply_loop(*parts_, level, position.data());
+    } else {
+      halve_edges(*parts_, level, position.data());
+    }
   }
-  mark_seen(*parts_, k, seen);
-  for (std::uint32_t level = k; level > 0; --level) mark_before(*parts_, level);
-  refine<true>(*parts_, k, position.data());
   return true;
 }
 

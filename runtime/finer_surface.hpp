@@ -54,12 +54,9 @@ class FinerSurface {
   [[nodiscard]] Surface::Triangle triangle(std::uint32_t k, std::uint32_t t) const noexcept;
 
   /// Where the vertices of added level k are, m. displacement: of at least the surface's nodes, m; empty: at rest.
-  /// seen: one flag for each triangle of a level of the surface (look_at), which says which level by its size; empty:
-  /// all are seen. Vertices of triangles that are not seen have some finite place or are left as they were. position:
-  /// [vertex_count(k)]; its other vertices are used on the way. False, and nothing written, on another size or level.
-  /// For the loop; work: about 40 operations a vertex of level k, 60 with `seen`.
-  bool positions(std::uint32_t k, std::span<const Vec4> displacement, std::span<const std::uint8_t> seen,
-                 std::span<Vec4> position) const noexcept;
+  /// position: [vertex_count(k)]. False, and nothing written, on another size or level. For the loop; work: about 40
+  /// operations a vertex of level k.
+  bool positions(std::uint32_t k, std::span<const Vec4> displacement, std::span<Vec4> position) const noexcept;
 
   /// Outward unit normals of level k at these positions, the mean of the adjacent triangles' by area; 0 where there is
   /// none. Sizes: [vertex_count(k)] both; false, and nothing written, if they are not. For the loop; work: 60

@@ -102,35 +102,31 @@ TEST_CASE("Loop's rule is that of a plain implementation") {
   }
 }
 
-TEST_CASE("what is seen is where it is when all is seen, and normals point outwards") {
+TEST_CASE("normals of a finer surface point outwards") {
   const TestModel model({.levels = 3});
   for (const Rule rule : {Rule::midpoint, Rule::loop}) {
     const SplitSurface split(model, 2, {2, rule});
-    const auto field = random_field(split.finer.vertex_count(0), 3);
-    const auto all = split.positions(2, field);
-    std::vector<std::uint8_t> seen(split.surface.triangle_count(1));
-    const Look look{{0, 0, 1}, {0, 0, -1}, 0.95F, 0.02F};
-    const Seen found = look_at(split.surface, field, look, seen);
-    CHECK(found.triangles == std::count(seen.begin(), seen.end(), 1));
-    CHECK(found.triangles > seen.size() / 4);
-    CHECK(found.triangles < seen.size());
-    std::vector<Vec4> some(all.size(), Vec4{7, 7, 7, 7});
-    REQUIRE(split.finer.positions(2, field, seen, some));
-    std::size_t moved = 0;
-    for (const Vec4& at : some) moved += at.x != 7 ? 1 : 0;
-    CHECK(moved < all.size());
-    for (std::uint32_t t = 0; t < split.finer.triangle_count(2); ++t) {
-      if (seen[t / 64] == 0) continue;
-      for (const std::uint32_t v : split.finer.triangle(2, t).node) {
-        CHECK(some[v].x == all[v].x);
-        CHECK(some[v].y == all[v].y);
-        CHECK(some[v].z == all[v].z);
-      }
-    }
     const auto rest = split.positions(2);
     std::vector<Vec4> normal(rest.size());
     REQUIRE(split.finer.normals(2, rest, normal));
     for (std::size_t v = 0; v < rest.size(); ++v) CHECK(dot(exact(normal[v]), unit(exact(rest[v]))) > 0.9);
+  }
+}
+
+TEST_CASE("a patch is seen if one of its triangles is") {
+  const TestModel model({.levels = 4});
+  const SplitSurface split(model, 3, {0, Rule::midpoint});
+  const auto field = random_field(split.finer.vertex_count(0), 3);
+  std::vector<std::uint8_t> patches(split.surface.triangle_count(1)), each(split.surface.triangle_count(3));
+  const Look look{{0, 0, 1}, {0, 0, -1}, 0.99F, 0.02F};
+  const Seen found = look_at(split.surface, field, look, patches);
+  CHECK(look_at(split.surface, field, look, each).halvings == found.halvings);
+  CHECK(found.triangles == std::count(patches.begin(), patches.end(), 1));
+  CHECK(found.triangles > patches.size() / 4);
+  CHECK(found.triangles < patches.size());
+  for (std::size_t patch = 0; patch < patches.size(); ++patch) {
+    const auto first = each.begin() + static_cast<std::ptrdiff_t>(16 * patch);
+    CHECK(patches[patch] == (std::count(first, first + 16, 1) > 0 ? 1 : 0));
   }
 }
 
@@ -212,11 +208,9 @@ TEST_CASE("what a finer surface cannot be, or answer, is refused") {
   CHECK(FinerSurface::create(split.surface, {1, Rule::loop}, {memory.data() + 8, need}).error ==
         FinerSurface::Error::memory_misaligned);
   std::vector<Vec4> position(split.finer.vertex_count(1), Vec4{7, 7, 7, 7});
-  const std::vector<std::uint8_t> seen(5, 1);
-  CHECK(!split.finer.positions(2, {}, {}, position));
-  CHECK(!split.finer.positions(0, {}, {}, position));
-  CHECK(!split.finer.positions(1, {position.data(), 3}, {}, position));
-  CHECK(!split.finer.positions(1, {}, seen, position));
+  CHECK(!split.finer.positions(2, {}, position));
+  CHECK(!split.finer.positions(0, {}, position));
+  CHECK(!split.finer.positions(1, {position.data(), 3}, position));
   CHECK(!split.finer.normals(1, position, {position.data(), 3}));
   CHECK(std::all_of(position.begin(), position.end(), [](const Vec4& one) { return one.w == 7; }));
 }

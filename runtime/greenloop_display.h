@@ -47,11 +47,9 @@ uint32_t greenloop_finer_surface_triangle_count(const greenloop_finer_surface* s
 greenloop_triangle greenloop_finer_surface_triangle(const greenloop_finer_surface* surface, uint32_t k, uint32_t t);
 
 /* Where the vertices of added level k are: 4 * count floats [m], x y z 0; count: all of the level. displacement: null,
- * at rest; or 4 * nodes floats. seen: null, all; or `triangles` flags, one for each of a level of the surface. Vectors
- * are 16-byte aligned. 0, and nothing written, on a wrong size. */
+ * at rest; or 4 * nodes floats. Vectors are 16-byte aligned. 0, and nothing written, on a wrong size. */
 int greenloop_finer_surface_positions(const greenloop_finer_surface* surface, uint32_t k, const float* displacement,
-                                      uint32_t nodes, const uint8_t* seen, uint32_t triangles, float* position,
-                                      uint32_t count);
+                                      uint32_t nodes, float* position, uint32_t count);
 /* Outward unit normals at these positions, 4 * count floats. */
 int greenloop_finer_surface_normals(const greenloop_finer_surface* surface, uint32_t k, const float* position,
                                     float* normal, uint32_t count);
@@ -79,8 +77,10 @@ size_t greenloop_bound_mesh_required(const greenloop_surface* surface, size_t ve
 greenloop_bound_created greenloop_bound_mesh_create(const greenloop_surface* surface, const float* vertex,
                                                     size_t vertices, void* memory, size_t bytes);
 uint32_t greenloop_bound_mesh_vertex_count(const greenloop_bound_mesh* mesh);
-/* Where the vertices are. normal: 4 * nodes floats, greenloop_surface_normals of the surface's level under this
- * displacement; the rest as of greenloop_finer_surface_positions. */
+/* Where the vertices are: 4 * count floats [m]. displacement: null, at rest; or 4 * nodes floats. normal: 4 * nodes
+ * floats, greenloop_surface_normals of the surface's level under this displacement. seen: null, all; or `triangles`
+ * flags, one for each of a level of the surface: vertices over others are left as they were. Vectors are 16-byte
+ * aligned. 0, and nothing written, on a wrong size. */
 int greenloop_bound_mesh_positions(const greenloop_bound_mesh* mesh, const float* displacement, const float* normal,
                                    uint32_t nodes, const uint8_t* seen, uint32_t triangles, float* position,
                                    uint32_t count);

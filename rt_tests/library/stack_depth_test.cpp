@@ -170,7 +170,7 @@ TEST_CASE("finer pictures and relief keep below 1 kB") {
   bool right = false;
   const std::size_t bytes = depth_of([&] {
     right = look_at(split.surface, {}, {{0, 0, 1}, {0, 0, -1}}, seen).triangles > 0 &&
-            split.finer.positions(2, {}, seen, position) && split.finer.normals(2, position, normal) &&
+            split.finer.positions(2, {}, position) && split.finer.normals(2, position, normal) &&
             bound.mesh.positions({}, normal, seen, bound_position) &&
             relief_friction(split.finer, slope, 0.3, {1e-3, 0, 0}, {&contact, 1}) > 0;
   });

@@ -279,10 +279,9 @@ TEST_CASE("no allocation and no lock in finer pictures and relief, nor when they
   bool right = bool{finer} && bool{bound};
   for (int i = 0; i < 100; ++i) {
     const Look look{{0.01F * static_cast<float>(i), 0, 1}, {0, 0, -1}, 0.5F, 1e-3F};
-    right = right && look_at(split.surface, {}, look, seen).triangles > 0 &&
-            split.finer.positions(2, {}, seen, position) && finer.surface.positions(2, {}, {}, position) &&
-            split.finer.normals(2, position, normal) && bound.mesh.positions({}, normal, seen, bound_position) &&
-            relief_slopes(normal, detail, slope) &&
+    right = right && look_at(split.surface, {}, look, seen).triangles > 0 && split.finer.positions(2, {}, position) &&
+            finer.surface.positions(2, {}, position) && split.finer.normals(2, position, normal) &&
+            bound.mesh.positions({}, normal, seen, bound_position) && relief_slopes(normal, detail, slope) &&
             relief_friction(split.finer, slope, 0.3, {1e-3, 0, 0}, {&contact, 1}) >= 0;
   }
   mutex_guard::disarm();

@@ -64,9 +64,7 @@ void time_finer(const TestModel& model, const std::vector<Vec4>& field, FinerSur
   std::printf("    %u of %zu patches seen, %u halvings\n", found.triangles, seen.size(), found.halvings);
   for (std::uint32_t k = 1; k <= 2; ++k) {
     std::vector<Vec4> position(split.finer.vertex_count(k)), normal(position.size());
-    print(name, position.size(), median_nanoseconds([&] { (void)split.finer.positions(k, field, {}, position); }));
-    print("    of what is seen", position.size(),
-          median_nanoseconds([&] { (void)split.finer.positions(k, field, seen, position); }));
+    print(name, position.size(), median_nanoseconds([&] { (void)split.finer.positions(k, field, position); }));
     print("    normals", position.size(), median_nanoseconds([&] { (void)split.finer.normals(k, position, normal); }));
   }
 }

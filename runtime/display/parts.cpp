@@ -40,7 +40,6 @@ void FinerSurfaceParts::carve(Arena& arena) noexcept {
   weight = arena.take<LoopWeight>(vertex_count[0]);
   triangle = arena.take<Surface::Triangle>(triangle_count[added]);
   sum = arena.take<Vec4>(vertex_count[before]);
-  needed = arena.take<std::uint8_t>(vertex_count[added]);
   const std::uint64_t half_edges = added > 0 ? std::uint64_t{3} * triangle_count[before] : 0;
   half_edge = arena.take<std::uint32_t>(half_edges);
   scratch = arena.take<std::uint32_t>(half_edges);

@@ -28,7 +28,6 @@ struct FinerSurfaceParts {
   LoopWeight* weight = nullptr;           ///< [vertex_count[0]]; vertices of added levels have six neighbours
   Surface::Triangle* triangle = nullptr;  ///< [triangle_count[added]]
   Vec4* sum = nullptr;                    ///< [vertex_count[added - 1]] of neighbours, while Loop's rule is applied
-  std::uint8_t* needed = nullptr;         ///< [vertex_count[added]] bit k: at added level k
   std::uint32_t* half_edge = nullptr;     ///< [3 triangle_count[added - 1]] at the start: 3 t + i, of triangle t
   std::uint32_t* scratch = nullptr;       ///< the same
 

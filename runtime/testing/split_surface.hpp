@@ -26,7 +26,7 @@ class SplitSurface {
   /// Of added level k.
   [[nodiscard]] std::vector<Vec4> positions(std::uint32_t k, std::span<const Vec4> displacement = {}) const {
     std::vector<Vec4> position(finer.vertex_count(k));
-    if (!finer.positions(k, displacement, {}, position)) throw std::runtime_error("no positions");
+    if (!finer.positions(k, displacement, position)) throw std::runtime_error("no positions");
     return position;
   }
 
