@@ -4,12 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
-
-#include "formats/store/hdf5_file.hpp"
 
 namespace greenloop {
 
@@ -54,21 +52,23 @@ struct TrajectoryScene {
 class TrajectoryFile {
  public:
   static TrajectoryFile open(const std::filesystem::path& path);
+  ~TrajectoryFile();
+  TrajectoryFile(TrajectoryFile&&) noexcept;
+  TrajectoryFile& operator=(TrajectoryFile&&) noexcept;
 
-  [[nodiscard]] const TrajectoryScene& scene() const { return scene_; }
+  [[nodiscard]] const std::filesystem::path& path() const;
+  [[nodiscard]] const TrajectoryScene& scene() const;
   /// Of the file; its orbits may cover fewer.
-  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  [[nodiscard]] std::uint64_t frames() const;
 
   /// Frames first .. first + count - 1, m, to [count][vertices][3]. Throws unless they stand in the file, all finite;
   /// std::invalid_argument unless `positions` has their size. Work: one read; nothing is kept.
   void read_frames(std::uint64_t first, std::uint64_t count, std::span<float> positions) const;
 
  private:
-  TrajectoryFile(Hdf5File hdf5, TrajectoryScene scene, std::uint64_t frames);
-
-  Hdf5File hdf5_;
-  TrajectoryScene scene_;
-  std::uint64_t frames_;
+  struct File;
+  explicit TrajectoryFile(std::unique_ptr<File> file);
+  std::unique_ptr<File> file_;
 };
 
 /// The most that a file will hold: its room is reserved at once, so that a kill at any time leaves it readable. What is
@@ -88,9 +88,12 @@ class TrajectoryWriter {
   /// Goes on behind the last whole orbit. Throws std::runtime_error as TrajectoryFile does. The scene of the file is to
   /// be compared with the wanted one by its user.
   static TrajectoryWriter resume(const std::filesystem::path& path);
+  ~TrajectoryWriter();
+  TrajectoryWriter(TrajectoryWriter&&) noexcept;
+  TrajectoryWriter& operator=(TrajectoryWriter&&) noexcept;
 
   /// With the orbits that are whole.
-  [[nodiscard]] const TrajectoryScene& scene() const { return scene_; }
+  [[nodiscard]] const TrajectoryScene& scene() const;
   /// What is left of the room.
   [[nodiscard]] TrajectoryRoom room() const;
 
@@ -112,13 +115,9 @@ class TrajectoryWriter {
   void close();
 
  private:
-  TrajectoryWriter(Hdf5File hdf5, TrajectoryScene scene, TrajectoryRoom room);
-
-  Hdf5File hdf5_;
-  TrajectoryScene scene_;
-  TrajectoryRoom room_;  // of the whole file
-  std::uint64_t frames_ = 0;
-  std::optional<TrajectoryOrbit> begun_;
+  struct File;
+  explicit TrajectoryWriter(std::unique_ptr<File> file);
+  std::unique_ptr<File> file_;
 };
 
 }  // namespace greenloop
