@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -147,7 +148,8 @@ TEST_CASE("trajectories: misuse of a writer is refused") {
   writer.begin_orbit(0, -1);
   CHECK_THROWS_AS(writer.begin_orbit(0, -1), std::invalid_argument);
   CHECK_THROWS_AS(writer.add_frame(std::vector<float>(11)), std::invalid_argument);
-  CHECK_THROWS_AS(writer.add_frame(std::vector<float>(12, std::nanf(""))), std::invalid_argument);
+  CHECK_THROWS_AS(writer.add_frame(std::vector<float>(12, std::numeric_limits<float>::quiet_NaN())),
+                  std::invalid_argument);
   CHECK(writer.add_frame(frame_values(0)) == 0);
   CHECK_THROWS_AS(writer.end_orbit(true), std::invalid_argument);
   CHECK(writer.add_frame(frame_values(1)) == 1);
@@ -167,13 +169,14 @@ TEST_CASE("trajectories: a scene that cannot be is refused with its field") {
   };
   check_says(refusal([](auto& scene) { scene.time_step = 0; }), "time_step");
   check_says(refusal([](auto& scene) { scene.rest.pop_back(); }), "/rest");
-  check_says(refusal([](auto& scene) { scene.rest[2] = std::nanf(""); }), "/rest");
+  check_says(refusal([](auto& scene) { scene.rest[2] = std::numeric_limits<float>::quiet_NaN(); }), "/rest");
   check_says(refusal([](auto& scene) { scene.triangles[4] = 4; }), "/triangles[1] names vertex 4 of 4");
   check_says(refusal([](auto& scene) { scene.triangles.clear(); }), "/triangles");
   check_says(refusal([](auto& scene) { scene.impulses.clear(); }), "0 impulses");
   check_says(refusal([](auto& scene) { scene.impulses[1].name = "push"; }), "two impulses are named");
   check_says(refusal([](auto& scene) { scene.impulses[1].name = "a\nb"; }), "impulse 1");
-  check_says(refusal([](auto& scene) { scene.impulses[0].persistent[3] = 1.0 / 0.0; }), "/impulses/persistent");
+  check_says(refusal([](auto& scene) { scene.impulses[0].persistent[3] = std::numeric_limits<double>::infinity(); }),
+             "/impulses/persistent");
   check_says(refusal([](auto& scene) { scene.successions[0] = 2; }), "/impulses/successions");
   check_says(refusal([](auto& scene) { scene.orbits.emplace_back(); }), "/orbits/frames[0]");
   CHECK(!std::filesystem::exists(folder.path() / "no.h5"));
@@ -203,7 +206,9 @@ Hdf5Handle simple(const Hdf5Shape& shape) {
 
 void replace_dataset(hid_t file, const char* name, hid_t type, const Hdf5Shape& shape, hid_t plist = H5P_DEFAULT) {
   REQUIRE(H5Ldelete(file, name, H5P_DEFAULT) >= 0);
-  const Hdf5Handle space = simple(shape);
+  const Hdf5Handle space = simple(shape), stored(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  REQUIRE(H5Pset_alloc_time(stored.get(), H5D_ALLOC_TIME_EARLY) >= 0);
+  if (plist == H5P_DEFAULT) plist = stored.get();
   const Hdf5Handle id(H5Dcreate2(file, name, type, space.get(), H5P_DEFAULT, plist, H5P_DEFAULT), H5Dclose);
   REQUIRE(id);
   const std::string unit = "m";
@@ -268,11 +273,12 @@ TEST_CASE("hostile trajectories: tables that do not fit one another or the frame
         replace_dataset(file, "/impulses/initial", H5T_IEEE_F64LE, {3, 4});
       },
       "/impulses/initial", "must have the shape [2, 4]");
+  const Hdf5Handle unwritten(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   check_refused(
-      [](hid_t file) {
-        replace_dataset(file, "/triangles", H5T_STD_U32LE, {1U << 30, 3});
+      [&](hid_t file) {
+        replace_dataset(file, "/triangles", H5T_STD_U32LE, {1U << 30, 3}, unwritten.get());
       },
-      "/triangles", "");
+      "/triangles", "its shape asks for other values");
   check_refused(
       [](hid_t file) {
         replace_dataset(file, "/triangles", H5T_IEEE_F64LE, {2, 3});
@@ -292,7 +298,7 @@ TEST_CASE("hostile trajectories: frames beyond the end of the file, and values t
   {
     const Hdf5Handle file(H5Fopen(wrong.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     const Hdf5Handle id(H5Dopen2(file.get(), "/frames", H5P_DEFAULT), H5Dclose);
-    const std::vector<float> values(20 * 12, std::nanf(""));
+    const std::vector<float> values(20 * 12, std::numeric_limits<float>::quiet_NaN());
     REQUIRE(H5Dwrite(id.get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
   }
   std::vector<float> positions(24);
