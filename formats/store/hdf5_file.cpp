@@ -88,19 +88,19 @@ void Hdf5File::fail(std::string_view object, std::string_view what) const {
   throw std::runtime_error(path_.string() + ": " + std::string(object) + ": " + std::string(what));
 }
 
-Hdf5File Hdf5File::create(const std::filesystem::path& path) {
+Hdf5File Hdf5File::create(const std::filesystem::path& path, const char* document) {
   start_hdf5();
   Hdf5Handle handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (!handle) throw std::runtime_error(open_fault(path, hdf5_fault()));
-  return {std::move(handle), path};
+  return {std::move(handle), path, document};
 }
 
-Hdf5File Hdf5File::open(const std::filesystem::path& path, bool writable) {
+Hdf5File Hdf5File::open(const std::filesystem::path& path, bool writable, const char* document) {
   start_hdf5();
   if (!std::filesystem::exists(path)) throw std::runtime_error(path.string() + ": there is no such file");
   Hdf5Handle handle(H5Fopen(path.c_str(), writable ? H5F_ACC_RDWR : H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!handle) throw std::runtime_error(open_fault(path, hdf5_fault()));
-  return {std::move(handle), path};
+  return {std::move(handle), path, document};
 }
 
 // Link by link, so that none is followed before it is known to stay in the file.
@@ -111,7 +111,7 @@ bool Hdf5File::has_link(const std::string& name) const {
     if (H5Lexists(handle_.get(), part.c_str(), H5P_DEFAULT) <= 0) return false;
     if (H5Lget_info(handle_.get(), part.c_str(), &link, H5P_DEFAULT) < 0) fail(part, "cannot be read");
     if (link.type != H5L_TYPE_HARD) {
-      fail(part, link.type == H5L_TYPE_EXTERNAL ? "is a link to another file; copy what it names into the store"
+      fail(part, link.type == H5L_TYPE_EXTERNAL ? "is a link to another file; copy what it names into this file"
                                                 : "is a link; put what it names in its place");
     }
     if (end == std::string::npos) break;
@@ -122,9 +122,9 @@ bool Hdf5File::has_link(const std::string& name) const {
 }
 
 Hdf5Handle Hdf5File::dataset(const std::string& name) const {
-  if (!has_link(name)) fail(name, "the dataset is missing; see docs/store.md for what a store holds");
+  if (!has_link(name)) fail(name, "the dataset is missing; see " + document_ + " for what belongs there");
   Hdf5Handle id(H5Dopen2(handle_.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!id) fail(name, "is no dataset that can be read; see docs/store.md for what a store holds");
+  if (!id) fail(name, "is no dataset that can be read; see " + document_ + " for what belongs there");
   H5O_info_t info{};
   if (H5Oget_info2(id.get(), &info, H5O_INFO_BASIC) < 0) fail(name, "cannot be read; the file is damaged");
   if (info.rc != 1) fail(name, "stands under several names; copy it so that each has its own");
@@ -154,16 +154,16 @@ void Hdf5File::require_inside(const std::string& name, hid_t id) const {
 }
 
 Hdf5Handle Hdf5File::object(const std::string& name) const {
-  if (!has_link(name)) fail(name, "is missing; see docs/store.md for what a store holds");
+  if (!has_link(name)) fail(name, "is missing; see " + document_ + " for what belongs there");
   Hdf5Handle id(H5Oopen(handle_.get(), name.c_str(), H5P_DEFAULT), H5Oclose);
-  if (!id) fail(name, "is missing; see docs/store.md for what a store holds");
+  if (!id) fail(name, "is missing; see " + document_ + " for what belongs there");
   return id;
 }
 
 Hdf5Handle Hdf5File::attribute(const std::string& object_name, const std::string& name) const {
   const auto owner = object(object_name);
   Hdf5Handle id(H5Aopen(owner.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (!id) fail(object_name, "the attribute '" + name + "' is missing; see docs/store.md");
+  if (!id) fail(object_name, "the attribute '" + name + "' is missing; see " + document_);
   const Hdf5Handle space(H5Aget_space(id.get()), H5Sclose), type(H5Aget_type(id.get()), H5Tclose);
   if (H5Sget_simple_extent_npoints(space.get()) != 1) {
     fail(object_name, "the attribute '" + name + "' is not one value");
@@ -282,7 +282,7 @@ void Hdf5File::write_part(const std::string& name, const Hdf5Shape& start, const
   const Hdf5Handle target = box_of(id.get(), start, count), source = space_of(count);
   if (!target) fail(name, "the part to write lies outside the dataset");
   if (H5Dwrite(id.get(), hdf5_memory_type<Number>(), source.get(), target.get(), H5P_DEFAULT, values) < 0) {
-    fail(name, "cannot be written; is the disk full, or was the store opened read-only?");
+    fail(name, "cannot be written; is the disk full, or was the file opened read-only?");
   }
   close(id, name);  // small parts reach the file only now
 }
@@ -350,9 +350,11 @@ void Hdf5File::close() { close(handle_, "file"); }
   template void Hdf5File::read_part<Number>(const std::string&, const Hdf5Shape&, const Hdf5Shape&,        \
                                             std::add_pointer_t<Number>) const;
 GREENLOOP_INSTANTIATE(double)
+GREENLOOP_INSTANTIATE(float)
 GREENLOOP_INSTANTIATE(int)
 GREENLOOP_INSTANTIATE(unsigned char)
 GREENLOOP_INSTANTIATE(std::uint32_t)
+GREENLOOP_INSTANTIATE(std::int64_t)
 #undef GREENLOOP_INSTANTIATE
 
 }  // namespace greenloop

@@ -24,8 +24,9 @@ inline constexpr hsize_t kMostNumbers = hsize_t{1} << 27;
 /// one number or one text of fixed length (those of variable length are read unchecked by the library).
 class Hdf5File {
  public:
-  static Hdf5File create(const std::filesystem::path& path);
-  static Hdf5File open(const std::filesystem::path& path, bool writable);
+  /// `document` is what messages refer to for what the file should hold.
+  static Hdf5File create(const std::filesystem::path& path, const char* document = "docs/store.md");
+  static Hdf5File open(const std::filesystem::path& path, bool writable, const char* document = "docs/store.md");
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   void renamed(const std::filesystem::path& path) { path_ = path; }
@@ -65,7 +66,8 @@ class Hdf5File {
   [[noreturn]] void fail(std::string_view object, std::string_view what) const;
 
  private:
-  Hdf5File(Hdf5Handle handle, std::filesystem::path path) : handle_(std::move(handle)), path_(std::move(path)) {}
+  Hdf5File(Hdf5Handle handle, std::filesystem::path path, const char* document)
+      : handle_(std::move(handle)), path_(std::move(path)), document_(document) {}
   [[nodiscard]] Hdf5Handle dataset(const std::string& name) const;
   [[nodiscard]] Hdf5Handle object(const std::string& name) const;
   [[nodiscard]] Hdf5Handle attribute(const std::string& object, const std::string& name) const;
@@ -75,6 +77,7 @@ class Hdf5File {
 
   Hdf5Handle handle_;
   std::filesystem::path path_;  // for messages, and for the length of the file
+  std::string document_;
 };
 
 }  // namespace greenloop

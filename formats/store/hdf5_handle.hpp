@@ -56,6 +56,14 @@ inline hid_t hdf5_memory_type<unsigned char>() {
   return H5T_NATIVE_UCHAR;
 }
 template <>
+inline hid_t hdf5_memory_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+inline hid_t hdf5_memory_type<std::int64_t>() {
+  return H5T_NATIVE_INT64;
+}
+template <>
 inline hid_t hdf5_memory_type<std::uint32_t>() {
   return H5T_NATIVE_UINT32;
 }
@@ -74,6 +82,14 @@ inline hid_t hdf5_file_type<int>() {
 template <>
 inline hid_t hdf5_file_type<unsigned char>() {
   return H5T_STD_U8LE;
+}
+template <>
+inline hid_t hdf5_file_type<float>() {
+  return H5T_IEEE_F32LE;
+}
+template <>
+inline hid_t hdf5_file_type<std::int64_t>() {
+  return H5T_STD_I64LE;
 }
 template <>
 inline hid_t hdf5_file_type<std::uint32_t>() {
