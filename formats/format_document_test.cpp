@@ -12,6 +12,7 @@
 
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
+#include "formats/testing/synthetic_motion.hpp"
 #include "formats/transport/stream.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/ready_file.hpp"
@@ -128,6 +129,14 @@ TEST_CASE("docs/format.md: the sections of a level stand in the order it says, a
       before = entry.kind;
       seen.insert(entry.kind);
     }
+  }
+  std::uint32_t before = 0;
+  ModelMutant moving(encoded_file(synthetic_motion({})).bytes.span());
+  for (const layout::SectionEntry& entry : moving.table()) {
+    const bool next_level = entry.kind == static_cast<std::uint32_t>(layout::SectionKind::level);
+    CHECK((next_level || place(entry.kind) >= place(before) || before == 0));
+    before = entry.kind;
+    seen.insert(entry.kind);
   }
   CHECK(seen.size() == std::size(layout::section_forms));
 }

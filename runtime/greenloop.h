@@ -36,7 +36,11 @@ typedef struct greenloop_version_numbers {
 } greenloop_version_numbers;
 
 /* What a model file is precomputed for: which functions take it. */
-typedef enum greenloop_problem { GREENLOOP_PROBLEM_ELASTOSTATIC = 1, GREENLOOP_PROBLEM_SCALAR = 2 } greenloop_problem;
+typedef enum greenloop_problem {
+  GREENLOOP_PROBLEM_ELASTOSTATIC = 1,
+  GREENLOOP_PROBLEM_SCALAR = 2,
+  GREENLOOP_PROBLEM_IMPULSE_RESPONSE = 3
+} greenloop_problem;
 
 /* Rules of the verifier that a model file can break. */
 typedef enum greenloop_rule {
@@ -88,7 +92,8 @@ typedef enum greenloop_status {
   GREENLOOP_HELD_SINGULAR,
   GREENLOOP_HELD_OVERFLOW,
   GREENLOOP_HELD_UNSUPPORTED,
-  GREENLOOP_HELD_BAD_SURFACE
+  GREENLOOP_HELD_BAD_SURFACE,
+  GREENLOOP_HELD_ILLEGAL_IMPULSE
 } greenloop_status;
 
 /* An open model; its contents are the library's. */

@@ -20,10 +20,10 @@
 // start, so that the velocity of every other row is a backward difference. Orbit 0 is the scene at rest.
 //
 // The displacement of component v of a block's 48 (16 vertices, x y z of each) is
-//   u_v = quantum(block) * sum over modes m of (256 hi_vm + lo_vm + 128) c_m
-// with the modes' two planes hi, lo of 8 bits, or quantum * sum of hi_vm c_m where the file has one, and coordinates
-// c_m in units of coordinate_unit; a row's i16 x is c = x / 32767, times the amplitude the coordinate in the orthonormal
-// basis, in m.
+//   u_v = quantum(block) * sum over modes m of value_vm c_m
+// where value = 256 hi + lo with the modes' two planes of 8 bits, or hi where the file has one, and c_m is the
+// coordinate in units of its mode's amplitude: of a row's i16 x it is x / 32767, and c times the amplitude the
+// coordinate in the orthonormal basis, in m.
 
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +38,9 @@ inline constexpr std::uint32_t most_impulses = 64;
 inline constexpr std::uint32_t most_modes = 256;
 inline constexpr std::uint32_t most_planes = 2;
 
-/// Of a coordinate as the sum over modes takes it: 1, the largest of any row, is so many; four times that fits 16 bits.
-inline constexpr std::int32_t coordinate_unit = 8191;
+/// The largest value of a mode by the planes of the file, and of a coordinate.
+constexpr std::int32_t most_value(std::uint32_t planes) { return planes == 1 ? 127 : 256 * 127 + 127; }
+inline constexpr std::int32_t most_coordinate = 32767;
 
 struct ImpulseInfo {
   std::uint32_t problem;     ///< Problem
@@ -50,19 +51,19 @@ struct ImpulseInfo {
   std::uint32_t triangles;
   std::uint32_t impulses;  ///< D, 1..most_impulses
   std::uint32_t orbits;
-  std::uint32_t rows;         ///< of all orbits
-  std::uint32_t planes;       ///< of Modes, 1 or 2
-  double time_step;           ///< s, between two rows of an orbit
-  float rate;                 ///< Hz, of the loop the scene asked for
-  float blend_rate;           ///< 1/s, lambda: what an orbit differs from the state it began in dies out so fast
-  float velocity_balance;     ///< s, rho: a difference of velocities counts so much in the distance of two states
-  float quantisation_error;   ///< of displacements of all rows with all modes, beside that of the modes left out
-  float box_min[3];           ///< m, of all states
-  float box_max[3];           ///< m
-  float displacement;         ///< m, root mean square over rows and vertices: what relative errors are relative to
-  float coordinate_error;     ///< root mean square of the rounding of coordinates, relative
+  std::uint32_t rows;        ///< of all orbits
+  std::uint32_t planes;      ///< of Modes, 1 or 2
+  double time_step;          ///< s, between two rows of an orbit
+  float rate;                ///< Hz, of the loop the scene asked for
+  float blend_rate;          ///< 1/s, lambda: what an orbit differs from the state it began in dies out so fast
+  float velocity_balance;    ///< s, rho: a difference of velocities counts so much in the distance of two states
+  float quantisation_error;  ///< of displacements of all rows with all modes, beside that of the modes left out
+  float box_min[3];          ///< m, of all states
+  float box_max[3];          ///< m
+  float displacement;        ///< m, root mean square over rows and vertices: what relative errors are relative to
+  std::uint32_t reserved_word;
   std::uint64_t source_rows;  ///< states that the model stands for
-  std::uint8_t reserved[144];
+  std::uint8_t reserved[152];
 };
 static_assert(sizeof(ImpulseInfo) == 256 && offsetof(ImpulseInfo, problem) == offsetof(InfoStart, problem));
 
@@ -83,12 +84,12 @@ struct ImpulseRecord {
 static_assert(sizeof(ImpulseRecord) == 64);
 
 struct OrbitRecord {
-  std::uint32_t first_row;       ///< the state before its start
-  std::uint32_t rows;            ///< >= 2
-  std::uint32_t impulse;         ///< that began it; `none` for orbit 0
-  std::uint32_t next_orbit;      ///< goes on in this one behind its last row; `none`: it has come to rest there
-  std::uint32_t next_row;        ///< in this row, not its orbit's first nor last
-  float next_distance;           ///< m, of the two states
+  std::uint32_t first_row;   ///< the state before its start
+  std::uint32_t rows;        ///< >= 2
+  std::uint32_t impulse;     ///< that began it; `none` for orbit 0
+  std::uint32_t next_orbit;  ///< goes on in this one behind its last row; `none`: it has come to rest there
+  std::uint32_t next_row;    ///< in this row, not its orbit's first nor last
+  float next_distance;       ///< m, of the two states
   std::uint32_t reserved[2];
 };
 static_assert(sizeof(OrbitRecord) == 32);

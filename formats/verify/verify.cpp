@@ -1,6 +1,7 @@
 #include "formats/verify.hpp"
 
 #include "formats/verify/elastostatic/walk.hpp"
+#include "formats/verify/impulse_response/walk.hpp"
 #include "formats/verify/section_table.hpp"
 
 namespace greenloop {
@@ -17,6 +18,8 @@ bool verify_problem(const Section& info, SectionTable& table, ModelView& view, V
     case layout::Problem::elastostatic:
     case layout::Problem::scalar:
       return elastostatic::verify_sections(info, table, view, result);
+    case layout::Problem::impulse_response:
+      return impulse_response::verify_sections(info, table, view, result);
   }
   return false;
 }

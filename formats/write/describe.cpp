@@ -32,6 +32,8 @@ std::string_view problem_name(layout::Problem problem) {
       return "elastostatic";
     case layout::Problem::scalar:
       return "scalar";
+    case layout::Problem::impulse_response:
+      return "impulse response";
   }
   return "unknown";
 }

@@ -12,10 +12,10 @@ namespace greenloop {
 
 /// One group of modes of an impulse response model before encoding.
 struct ModeGroupData {
-  layout::ImpulseLevel counts{};                ///< its errors; counts of modes are filled in
-  std::vector<layout::ModeRecord> amplitudes;   ///< [modes of the group], an even number
-  std::vector<std::int16_t> values;             ///< [vertices][3][modes], in quanta of the vertex's block
-  std::vector<std::int16_t> coordinates;        ///< [rows][modes], -32767..32767
+  layout::ImpulseLevel counts{};               ///< its errors; counts of modes are filled in
+  std::vector<layout::ModeRecord> amplitudes;  ///< [modes of the group], an even number
+  std::vector<std::int16_t> values;            ///< [vertices][3][modes], in quanta of the vertex's block
+  std::vector<std::int16_t> coordinates;       ///< [rows][modes], -32767..32767
 };
 
 /// A whole impulse response model before encoding. Offline only.
@@ -33,7 +33,7 @@ struct ImpulseResponseData {
 };
 
 /// The file of such a model: deterministic, complete, checksummed, verified. ImpulseInfo::planes says whether values
-/// are of 8 bits (-127..127) or of 16 (-32767..32767). Throws std::invalid_argument naming the field that does not fit.
+/// are of 8 bits or of 16: layout::most_value. Throws std::invalid_argument naming the field that does not fit.
 /// Filled in from the vectors: the counts of ImpulseInfo and ImpulseLevel, and `problem`.
 [[nodiscard]] ModelFile encoded_file(const ImpulseResponseData& model);
 
