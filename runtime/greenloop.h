@@ -88,7 +88,8 @@ typedef enum greenloop_status {
   GREENLOOP_HELD_SINGULAR,
   GREENLOOP_HELD_OVERFLOW,
   GREENLOOP_HELD_UNSUPPORTED,
-  GREENLOOP_HELD_BAD_SURFACE
+  GREENLOOP_HELD_BAD_SURFACE,
+  GREENLOOP_HELD_UNSOLVED
 } greenloop_status;
 
 /* An open model; its contents are the library's. */

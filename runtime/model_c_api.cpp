@@ -50,7 +50,8 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
               same(GREENLOOP_HELD_SINGULAR, Status::held_singular) &&
               same(GREENLOOP_HELD_OVERFLOW, Status::held_overflow) &&
               same(GREENLOOP_HELD_UNSUPPORTED, Status::held_unsupported) &&
-              same(GREENLOOP_HELD_BAD_SURFACE, Status::held_bad_surface) && GREENLOOP_HELD_BAD_SURFACE + 1 == statuses);
+              same(GREENLOOP_HELD_BAD_SURFACE, Status::held_bad_surface) &&
+              same(GREENLOOP_HELD_UNSOLVED, Status::held_unsolved) && GREENLOOP_HELD_UNSOLVED + 1 == statuses);
 static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
               same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
 static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic) &&
@@ -81,6 +82,8 @@ constexpr const char* status_texts[] = {
     "held: the forces are too large for a finite field",
     "held: a constraint is of a kind that the solver does not know",
     "held: a unilateral contact has no unit normal, weights of more than 1 in all, or a negative number",
+    "held: the laws of contact have no finite solution; numbers are too large, or a compliance is not positive "
+    "definite",
 };
 
 }  // namespace

@@ -188,7 +188,7 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
   body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);
   if (sizes.counts.iterations > 0) {
-    body.unilateral.carve(arena, sizes.counts.max_contacts, view.node_count);
+    body.unilateral.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.prices);
   }
   body.accepted = arena.take<Accepted>(1);
   body.plan = arena.take<Plan>(1);

@@ -36,7 +36,7 @@ struct UnilateralScratch {
   ContactProblem problem;
 
   /// Arrays out of `arena`, for so many contacts with as many corners in all; null while it counts.
-  void carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes) noexcept;
+  void carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes, const Prices& prices) noexcept;
 };
 
 /// Work units of list_unilateral.
