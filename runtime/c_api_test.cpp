@@ -250,8 +250,8 @@ TEST_CASE("every code has a text of its own") {
   for (int status = GREENLOOP_OK; status <= GREENLOOP_HELD_UNSOLVED; ++status) {
     texts.insert(greenloop_status_text(static_cast<greenloop_status>(status)));
   }
-  CHECK(texts.size() == (GREENLOOP_RULE_INCONSISTENT + 1) + (GREENLOOP_CREATE_UNSUPPORTED_MODEL + 1) +
-                            (GREENLOOP_HELD_UNSOLVED + 1));
+  CHECK(texts.size() ==
+        (GREENLOOP_RULE_INCONSISTENT + 1) + (GREENLOOP_CREATE_UNSUPPORTED_MODEL + 1) + (GREENLOOP_HELD_UNSOLVED + 1));
   CHECK(std::string(greenloop_rule_text(static_cast<greenloop_rule>(GREENLOOP_RULE_INCONSISTENT + 1))) == "unknown");
   greenloop_model none;
   CHECK(greenloop_open(nullptr, 0, &none).rule != GREENLOOP_RULE_OK);
