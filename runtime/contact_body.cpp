@@ -2,103 +2,14 @@
 
 #include <cmath>
 #include <limits>
-#include <new>
 
 #include "runtime/contact_body/answer.hpp"
-#include "runtime/memory/arena.hpp"
+#include "runtime/contact_body/touching_work.hpp"
 
 namespace greenloop {
 namespace {
 
-// instructions of x86-64, for each contact and tool: from a candidate to a contact and from its answer back
-constexpr std::uint64_t contact_price = 400;
-constexpr std::uint64_t tool_price = 300;
-
 double larger(double a, double b) { return a > b ? a : b; }
-
-bool in_range(const ContactBody::Limits& limits) {
-  const Elastostatic::Limits& body = limits.elastostatic;
-  return limits.max_tools >= 1 && limits.max_tools <= 16 && limits.max_points >= 1 &&
-         limits.max_points <= Shape::max_points && std::isfinite(limits.margin) && limits.margin >= 0 &&
-         std::isfinite(limits.rigid_stiffness) && limits.rigid_stiffness >= 0 && body.iterations > 0 &&
-         !body.forces_only;
-}
-
-// of all triangles of the finest level, at rest
-double mean_edge(const Surface& surface, Vec4* normal) {
-  const std::uint32_t level = surface.level();
-  const std::uint32_t nodes = surface.node_count(level);
-  auto* area = reinterpret_cast<float*>(normal);
-  if (!surface.areas(level, {}, {area, nodes})) return 0;
-  double sum = 0;
-  for (std::uint32_t i = 0; i < nodes; ++i) sum += double{area[i]};
-  constexpr double equilateral = 0.4330127018922193;  // area of a triangle with unit edges
-  return std::sqrt(sum / (equilateral * surface.triangle_count(level)));
-}
-
-// memory that a part carves itself
-std::span<std::byte> piece(Arena& arena, std::size_t bytes) { return {arena.take<std::byte>(bytes), bytes}; }
-
-CandidateSearch::Limits search_limits(const ContactBody::Limits& limits, double margin) {
-  return {limits.max_tools, limits.max_points, limits.elastostatic.max_contacts, margin};
-}
-
-void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& limits, TouchedBody& body) {
-  body.nodes = model.node_count();
-  body.max_contacts = limits.elastostatic.max_contacts;
-  body.max_tools = limits.max_tools;
-  body.tool = arena.take<Tool>(limits.max_tools);
-  body.placement = arena.take<Placement>(limits.max_tools);
-  body.sag = arena.take_zeroed<Double3>(limits.max_tools);
-  body.point = arena.take<ToolPoint>(body.max_contacts);
-  body.candidate = arena.take<Candidate>(body.max_contacts);
-  body.contact = arena.take<UnilateralContact>(body.max_contacts);
-  body.stick_place = arena.take<Double3>(body.max_contacts);
-  body.rest_place = arena.take<Double3>(body.max_contacts);
-  body.last_place = arena.take<Double3>(body.max_contacts);
-  body.force_before = arena.take<Vec3>(body.max_contacts);
-  body.energy_contact = arena.take<EnergyContact>(std::uint64_t{2} * body.max_contacts);
-  body.force = arena.take<Vec3>(body.max_contacts);
-  body.gap = arena.take<Vec4>(body.max_contacts);
-  body.state = arena.take<ContactState>(body.max_contacts);
-  body.answered = arena.take<ContactBody::Contact>(body.max_contacts);
-  body.tool_answer = arena.take<ContactBody::ToolAnswer>(limits.max_tools);
-  body.displacement = arena.take_zeroed<Vec4>(body.nodes);
-  body.grips.carve(arena, body.max_contacts);
-}
-
-// elastostatic_bytes: of the elastic body
-bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& limits, std::size_t elastostatic_bytes,
-                 TouchedBody& body) {
-  const std::uint32_t finest = model.level_count() - 1;
-  const auto surface = piece(arena, Surface::required(model, finest).bytes);
-  const auto elastostatic = piece(arena, elastostatic_bytes);
-  const auto deformed = piece(arena, DeformedSurface::required(model, finest));
-  const auto search = piece(arena, CandidateSearch::required(search_limits(limits, 0)));
-  if (surface.data() == nullptr) return true;  // it only counts
-  const auto made_surface = Surface::create(model, finest, surface);
-  const auto made_body = Elastostatic::create(model, limits.elastostatic, elastostatic);
-  if (!made_surface || !made_body) return false;
-  const auto made_deformed = DeformedSurface::create(made_surface.surface, deformed);
-  if (!made_deformed) return false;
-  body.surface = made_surface.surface;
-  body.deformed = made_deformed.surface;
-  body.elastostatic = made_body.body;
-  body.mean_edge = mean_edge(body.surface, body.displacement);
-  const double margin = limits.margin > 0 ? limits.margin : 0.25 * body.mean_edge;
-  for (std::uint32_t i = 0; i < body.nodes; ++i) body.displacement[i] = {};
-  const auto made_search = CandidateSearch::create(search_limits(limits, margin), search);
-  if (!made_search) return false;
-  body.search = made_search.search;
-  return true;
-}
-
-// how much a place that cannot move gives way
-float rigid_softness(const Model& model, const ContactBody::Limits& limits) {
-  constexpr double depth = 1e-3;  // m
-  const double stiffness = limits.rigid_stiffness > 0 ? limits.rigid_stiffness : model.view().info->young * depth;
-  return static_cast<float>(1 / stiffness);
-}
 
 // displacement of a candidate's point that its touchable corners have a part in
 Double3 pushed_displacement(const TouchedBody& body, const Candidate& candidate) {
@@ -116,12 +27,15 @@ void put(float (&to)[3], const Double3& from) {
   to[2] = static_cast<float>(from.z);
 }
 
+// corners with less hardly move the point, and its compliance would vanish in rounding
+constexpr float least_weight = 1e-6F;
+
 // touchable corners of a candidate; how many
 std::uint32_t put_corners(const TouchedBody& body, const Candidate& candidate, UnilateralContact& contact) {
   std::uint32_t corners = 0;
   for (int k = 0; k < 3 && candidate.node[k] != layout::none; ++k) {
     const auto weight = static_cast<float>(candidate.weight[k]);
-    if (weight > 0 && body.deformed.is_touchable(candidate.node[k])) {
+    if (weight > least_weight && body.deformed.is_touchable(candidate.node[k])) {
       contact.node[corners] = candidate.node[k];
       contact.weight[corners++] = weight;
     }
@@ -160,7 +74,9 @@ UnilateralContact contact_of(const TouchedBody& body, const Candidate& candidate
   contact.friction = static_cast<float>(tool.friction * friction_factor(body, candidate));
   contact.tool = candidate.tool;
   contact.mount = static_cast<float>(tool.compliance);
-  contact.softness = corners > 0 ? 0 : body.rigid_softness;
+  float held = 1;  // by corners that cannot move
+  for (std::uint32_t k = 0; k < corners; ++k) held -= contact.weight[k];
+  contact.softness = held > least_weight ? held * body.rigid_softness : 0;
   if (grip != nullptr) {
     contact.force[0] = grip->force.x;
     contact.force[1] = grip->force.y;
@@ -208,7 +124,8 @@ std::span<Candidate> take_candidates(TouchedBody& body, std::span<const Candidat
 
 // the candidates that there is room for, by their corners: while there is none, those of triangles farthest from the
 // tool are left out, which hang on nodes that may be candidates themselves
-std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, ContactBody::StepReport& report) {
+std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, ContactBody::StepReport& report,
+                     std::uint64_t& work) {
   const auto is_left_out = [&](const Candidate& candidate, double least) {
     return is_said_by_nodes(body, candidate) || (candidate.triangle != layout::none && candidate.gap >= least);
   };
@@ -217,6 +134,7 @@ std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, Contac
   std::uint32_t corners = body.max_contacts + 1;
   while (corners > body.max_contacts) {
     corners = 0;
+    work += found.size() * chosen_price;
     double farthest = -infinity;
     for (const Candidate& candidate : found) {
       if (is_left_out(candidate, least)) continue;
@@ -247,30 +165,12 @@ std::span<const Tool> put_tools(std::span<const ContactBody::ToolInput> tools, T
   return {body.tool, count};
 }
 
-// what choose takes, if every pass leaves one out
-std::uint64_t most_choosing(std::uint64_t contacts) { return contacts * contacts * 8; }
-
 std::uint64_t most_touching_work(const TouchedBody& body, std::span<const Tool> tools) {
-  const std::uint64_t contacts = body.max_contacts;
-  return body.deformed.update_work() + body.search.find_work(body.deformed, tools) + tools.size() * tool_price +
-         contacts * contact_price + most_choosing(contacts);
-}
-
-// why limits have no requirement
-CreateError refusal(const Model& model, const ContactBody::Limits& limits) {
-  if (!in_range(limits)) return CreateError::bad_limits;
-  const CreateError error = Elastostatic::create(model, limits.elastostatic, {}).error;
-  return error == CreateError::bad_limits ? error : CreateError::unsupported_model;
-}
-
-// bytes of all, given what the elastic body needs
-std::size_t bytes_of(const Model& model, const ContactBody::Limits& limits, std::size_t elastostatic_bytes) {
-  Arena counting;
-  TouchedBody body;
-  static_cast<void>(counting.take<TouchedBody>(1));
-  carve_arrays(counting, model, limits, body);
-  place_parts(counting, model, limits, elastostatic_bytes, body);
-  return static_cast<std::size_t>(counting.bytes());
+  const std::uint64_t contacts = body.max_contacts, whole = body.search.find_work(body.deformed, tools);
+  std::uint64_t points = 0;
+  for (const Tool& tool : tools) points += tool.shape.check() == Shape::Error::none ? tool.shape.point_count() : 0;
+  return body.deformed.update_work() + (whole < body.search_work ? whole : body.search_work) +
+         tools.size() * tool_price + contacts * contact_price + most_choosing(contacts, points);
 }
 
 ContactBody::StepReport held(Status status) {
@@ -282,50 +182,6 @@ ContactBody::StepReport held(Status status) {
 
 }  // namespace
 
-ContactBody::Requirement ContactBody::required(const Model& model, const Limits& limits) noexcept {
-  if (!in_range(limits)) return {};
-  const Elastostatic::Requirement elastostatic = Elastostatic::required(model, limits.elastostatic);
-  if (elastostatic.bytes == 0) return {};
-  Requirement requirement;
-  requirement.bytes = bytes_of(model, limits, elastostatic.bytes);
-  requirement.least_work = elastostatic.least_work;
-  requirement.worst_work = elastostatic.worst_work[model.level_count() - 1];
-  return requirement;
-}
-
-ContactBody::Created ContactBody::create(const Model& model, const Limits& limits,
-                                         std::span<std::byte> memory) noexcept {
-  Created created;
-  created.available = memory.size();
-  const Elastostatic::Requirement elastostatic =
-      in_range(limits) ? Elastostatic::required(model, limits.elastostatic) : Elastostatic::Requirement{};
-  created.requested = elastostatic.bytes > 0 ? bytes_of(model, limits, elastostatic.bytes) : 0;
-  if (created.requested == 0) {
-    created.error = refusal(model, limits);
-    return created;
-  }
-  if (created.requested > memory.size()) {
-    created.error = CreateError::arena_too_small;
-    created.missing = created.requested - memory.size();
-    return created;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = CreateError::arena_misaligned;
-    return created;
-  }
-  Arena arena(memory.data());
-  auto& body = *new (arena.take<TouchedBody>(1)) TouchedBody;
-  carve_arrays(arena, model, limits, body);
-  if (!place_parts(arena, model, limits, elastostatic.bytes, body)) {
-    created.error = CreateError::unsupported_model;
-    return created;
-  }
-  body.rigid_softness = rigid_softness(model, limits);
-  body.least_work = elastostatic.least_work;
-  created.body.body_ = &body;
-  return created;
-}
-
 ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, const Elastostatic::Loads& loads,
                                           Budget budget) noexcept {
   TouchedBody& body = *body_;
@@ -334,12 +190,13 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   const std::span<const Tool> shapes = put_tools(tools, body);
   std::uint64_t work = tools.size() * tool_price;
   body.deformed.update({body.displacement, body.nodes}, work);
-  const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work);
+  const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work, work + body.search_work);
   for (std::uint32_t t = 0; t < tools.size(); ++t) body.placement[t] = place(shapes[t].pose).placement;
   StepReport report;
   report.left_out = found.left_out;
   report.deepest_left_out = found.left_out > 0 ? -found.deepest_left_out.gap : 0;
-  const std::uint32_t count = choose(body, take_candidates(body, found.candidates), report);
+  report.unfinished = found.unfinished;
+  const std::uint32_t count = choose(body, take_candidates(body, found.candidates), report, work);
   body.grips.begin_step();  // the last step may have been refused
   body.grips.begin();
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -362,13 +219,15 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   response.displacement = {body.displacement, body.nodes};
   response.state = {body.state, count};
   response.gap = {body.gap, count};
-  static_cast<Elastostatic::UnilateralReport&>(report) =
-      body.elastostatic.step(std::span<const UnilateralContact>(body.contact, count), loads, budget, response);
+  static_cast<Elastostatic::UnilateralReport&>(report) = body.elastostatic.step(
+      std::span<const UnilateralContact>(body.contact, count), loads, {budget.work - work}, response);
   report.touching_work = work;
+  report.work += work;
+  report.details.needed_work += report.details.needed_work > 0 ? work : 0;
   if (answered(report.status)) {
     let_sag(body, count, tools);
     account_energy(body, count);
-    write_answer(body, count, tools);
+    write_answer(body, count, static_cast<std::uint32_t>(tools.size()));
   }
   return report;
 }

@@ -106,6 +106,7 @@ ContactBody::Limits touched_limits_of(const greenloop_contact_body_limits& limit
   same.max_points = limits.max_points == 0 ? same.max_points : limits.max_points;
   same.margin = limits.margin;
   same.rigid_stiffness = limits.rigid_stiffness;
+  same.search_work = limits.search_work;
   return same;
 }
 
@@ -189,7 +190,7 @@ greenloop_polyhedron_created greenloop_polyhedron_create(const double* vertex, s
 greenloop_contact_body_requirement greenloop_contact_body_required(const greenloop_model* model,
                                                                    greenloop_contact_body_limits limits) {
   const ContactBody::Requirement need = ContactBody::required(model_in(model), touched_limits_of(limits));
-  return {need.bytes, need.least_work, need.worst_work};
+  return {need.bytes, need.least_work, need.worst_work, need.touching_work};
 }
 
 greenloop_contact_body_created greenloop_contact_body_create(const greenloop_model* model,
@@ -210,7 +211,7 @@ greenloop_contact_body_report greenloop_contact_body_step(greenloop_contact_body
                                                           size_t count, const greenloop_loads* loads, uint64_t work) {
   const ContactBody::StepReport report = touched_in(body).step(Tools(tools, count).all(), acting(loads), {work});
   return {push_report_of(static_cast<const Elastostatic::UnilateralReport&>(report)), report.touching_work,
-          report.left_out, report.deepest_left_out};
+          report.left_out, report.deepest_left_out, report.unfinished};
 }
 
 const greenloop_tool_answer* greenloop_contact_body_tools(const greenloop_contact_body* body, size_t* count) {

@@ -172,7 +172,9 @@ TEST_CASE("whatever the budget, the answer obeys the laws and the budget; too sm
     REQUIRE(answered(report.status));
     CHECK(report.work <= budget);
     CHECK(report.touching_work > 0);
+    CHECK(report.touching_work < report.work);
     CHECK(report.touching_work <= touching);
+    CHECK(touching <= touched.requirement().touching_work);
     check_laws(touched.body, tools);
   }
   CHECK(least > 0);
@@ -193,9 +195,82 @@ TEST_CASE("what a body cannot be made with is refused by name") {
   CHECK(refused([](Limits& of) { of.margin = -1; }) == CreateError::bad_limits);
   CHECK(refused([](Limits& of) { of.elastostatic.iterations = 0; }) == CreateError::bad_limits);
   CHECK(refused([](Limits& of) { of.elastostatic.max_contacts = 257; }) == CreateError::bad_limits);
+  CHECK(refused([](Limits& of) { of.search_work = 1000; }) == CreateError::bad_limits);
   const ContactBody::Created small = ContactBody::create(model.model(), TouchableBody::usual(), {});
   CHECK(small.error == CreateError::arena_too_small);
   CHECK(small.missing == small.requested);
+}
+
+// limits of one tool of one point, whose search has the least share that is taken
+ContactBody::Limits starved(const TestModel& model) {
+  ContactBody::Limits limits = TouchableBody::usual();
+  limits.max_tools = 1;
+  limits.max_points = 1;
+  limits.search_work = 1000;
+  while (ContactBody::required(model.model(), limits).bytes == 0) limits.search_work += 1000;
+  return limits;
+}
+
+TEST_CASE("a search that is cut finds what is deepest") {
+  const TestModel model({.levels = 5});
+  const double body_radius = radius_of(model), radius = 0.5 * body_radius;
+  const std::vector tools{ball(radius, {0, 0, 1.4 * body_radius}, 0.3)};
+  TouchableBody whole(model);
+  REQUIRE(answered(whole.step(tools).status));
+  TouchableBody touched(model, starved(model));
+  const auto report = touched.step(tools);
+  REQUIRE(answered(report.status));
+  CHECK(report.unfinished == 1);
+  CHECK(report.touching_work <= touched.requirement().touching_work);
+  check_laws(touched.body, tools);
+  CHECK(touched.body.contacts().size() < whole.body.contacts().size());
+  CHECK(touched.body.tools()[0].depth == whole.body.tools()[0].depth);
+}
+
+TEST_CASE("however little a search may take, a point that goes through the body is held where it came from") {
+  const TestModel model({.levels = 5});
+  const double body_radius = radius_of(model);
+  for (const double step : {0.02, 0.3, 3.0}) {
+    TouchableBody touched(model, starved(model));
+    std::uint32_t left_out = 0, behind = 0;
+    for (double z = 1.1; z > -2; z -= step) {
+      const std::vector tools{ContactBody::ToolInput{{Shape(), {{1e-3, 2e-3, z * body_radius}, {1, 0, 0, 0}}}, 0.3}};
+      const auto report = touched.step(tools);
+      REQUIRE(answered(report.status));
+      CHECK(report.touching_work <= touched.requirement().touching_work);
+      const ContactBody::ToolAnswer& answer = touched.body.tools()[0];
+      left_out += report.unfinished;
+      behind += answer.is_behind ? 1 : 0;
+      if (z < 0.95) CHECK((answer.is_behind || report.unfinished == 1));
+    }
+    MESSAGE("steps of ", step, " radii: held in ", behind, ", left out in ", left_out);
+    if (step < 1) CHECK(behind > 5);
+  }
+}
+
+TEST_CASE("a tool that is left out for a step holds on to what it held") {
+  const TestModel model(sphere);
+  const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;
+  const std::vector still{ball(radius, {0, 0, body_radius + radius - depth}, 1)};
+  const std::vector dragged{ball(radius, {0.01 * body_radius, 0, body_radius + radius - depth}, 1)};
+  std::vector faulty = still;
+  faulty[0].tool.pose.quaternion[0] = 2;
+  double drag[3] = {};
+  for (const int way : {0, 1, 2}) {  // straight on; left out for a step; not there for a step
+    TouchableBody touched(model);
+    for (int k = 0; k < 3; ++k) REQUIRE(answered(touched.step(still).status));
+    if (way == 1) REQUIRE(answered(touched.step(faulty).status));
+    if (way == 2) REQUIRE(answered(touched.step({}).status));
+    if (way != 0) CHECK(touched.body.contacts().empty());
+    REQUIRE(answered(touched.step(dragged).status));
+    const Double3 force = touched.body.tools()[0].force;
+    drag[way] = std::abs(force.x) / force.z;
+    CHECK(std::abs(touched.body.energy().generated) < 1e-6);
+  }
+  MESSAGE("drag over pressure: straight on ", drag[0], ", left out ", drag[1], ", not there ", drag[2]);
+  CHECK(drag[0] > 0.1);
+  CHECK(drag[1] > 0.5 * drag[0]);
+  CHECK(drag[2] > 0.5 * drag[0]);
 }
 
 TEST_CASE("energy adds up when a tool goes right after a step that was refused") {

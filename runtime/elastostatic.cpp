@@ -251,31 +251,31 @@ void answer_loads(Body& body, const Contacts& contacts, const Plan& plan, std::u
 // a solution for unilateral contacts whose residual is below this is as good as the compliance is
 constexpr float unilateral_residual = 2e-4F;
 
-// forces of unilateral contacts on the columns of a set; false, and none written, if they could overflow the answer.
-// allowance: for ContactProblem. work: grows by what they took
-bool push(Body& body, const Contacts& contacts, const ContactSet& set, const Factor& factor, const float* displaced,
-          std::uint64_t allowance, std::uint64_t& work) {
+// forces of unilateral contacts on the columns of a set; none are written if there are none, or they could overflow the
+// answer. allowance: for ContactProblem. work: grows by what they took
+Status push(Body& body, const Contacts& contacts, const ContactSet& set, const Factor& factor, const float* displaced,
+            std::uint64_t allowance, std::uint64_t& work) {
   const UnilateralSet all{contacts.surfaces, set, displaced, body.stiffness};
   ContactAnswer& found = *contacts.found;
-  const std::uint64_t most = body.counts.iterations * ContactProblem::least_work(contacts.corners());
+  const Prices& prices = body.counts.prices;
+  const std::uint64_t most = body.counts.iterations * ContactProblem::least_work(prices, contacts.corners());
   found = solve_unilateral(all, factor, body.cache.stride(), {unilateral_residual, body.counts.iterations},
                            allowance < most ? allowance : most, body.unilateral, body.column_force);
-  work += gather_unilateral_work(body.counts.prices, contacts.corners()) + found.work;
+  work += gather_unilateral_work(prices, contacts.corners()) + found.work;
   if (!found.valid || can_overflow(body, 3 * set.columns, body.column_force)) {
-    return false;
+    return found.valid ? Status::held_overflow : Status::held_unsolved;
   }
   hand_out_unilateral(all, body.unilateral, contacts.output);
-  return true;
+  return Status::ok;
 }
 
 // the same on the planned set. spare: what the plan leaves of the budget
-bool push_planned(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor, const float* displaced,
-                  std::uint64_t spare, std::uint64_t& work) {
+Status push_planned(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor,
+                    const float* displaced, std::uint64_t spare, std::uint64_t& work) {
   const Prices& prices = body.counts.prices;
-  const std::uint64_t corners = plan.counts.corners;
   work += Glide::blend_work(prices, plan.counts.contacts);
-  const std::uint64_t planned =
-      unilateral_work(prices, corners, plan.counts.iterations) - gather_unilateral_work(prices, corners);
+  const std::uint64_t planned = unilateral_work(prices, plan.counts.corners, plan.counts.iterations) -
+                                gather_unilateral_work(prices, plan.counts.corners);
   return push(body, contacts, body.planned, factor, displaced, planned + spare, work);
 }
 
@@ -308,7 +308,7 @@ Status find_forces(Body& body, const Contacts& contacts, const Plan& plan, std::
     displaced = body.loads->column_displaced;
   }
   if (contacts.found != nullptr) {
-    return push_planned(body, contacts, plan, *factor, displaced, spare, work) ? Status::ok : Status::held_overflow;
+    return push_planned(body, contacts, plan, *factor, displaced, spare, work);
   }
   work += plan.forces;
   if (contacts.mixed != nullptr) {
@@ -368,9 +368,9 @@ void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_
 }
 
 // surfaces that touch nothing that moves; apart for its stack
-[[gnu::noinline]] bool push_rigid(Body& body, const Contacts& contacts, std::uint64_t& work) {
-  const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
-  return push(body, contacts, {}, {}, nullptr, allowance, work);
+[[gnu::noinline]] Status push_rigid(Body& body, const Contacts& contacts, std::uint64_t& work) {
+  return push(body, contacts, {}, {}, nullptr, ContactProblem::least_work(body.counts.prices, contacts.corners()),
+              work);
 }
 
 // a step whose inputs are accepted
@@ -385,8 +385,9 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   if (contacts.mixed == nullptr) {
     body.mixed.last.release();
   }
-  if (contacts.held.empty() && !contacts.surfaces.empty() && !push_rigid(body, contacts, work)) {
-    return hold(Status::held_overflow, work, report);
+  const bool is_rigid = contacts.held.empty() && !contacts.surfaces.empty();
+  if (const Status pushed = is_rigid ? push_rigid(body, contacts, work) : Status::ok; pushed != Status::ok) {
+    return hold(pushed, work, report);
   }
   if (contacts.held.empty() && !body.is_loaded) {
     return release(body, response, work, report);

@@ -156,12 +156,14 @@ typedef struct greenloop_contact_body_limits {
   uint32_t max_points;                        /* of a tool that are followed, 1..128; 0: 8 */
   double margin;          /* m, how near the surface is looked at; 0: a quarter of its mean edge length */
   double rigid_stiffness; /* N/m, of places that cannot move; 0: what the model's material has over 1 mm */
+  uint64_t search_work;   /* units that looking for contacts may take; 0: what usually suffices */
 } greenloop_contact_body_limits;
 
 typedef struct greenloop_contact_body_requirement {
-  size_t bytes;        /* 0: greenloop_contact_body_create would refuse */
-  uint64_t least_work; /* of the answer, coarsest; finding contacts is beside it */
-  uint64_t worst_work; /* the same at the finest level */
+  size_t bytes;           /* 0: greenloop_contact_body_create would refuse */
+  uint64_t least_work;    /* with that budget every step is answered */
+  uint64_t worst_work;    /* of a step that is answered at the finest level */
+  uint64_t touching_work; /* of finding contacts, at most: a part of both */
 } greenloop_contact_body_requirement;
 
 typedef struct greenloop_contact_body_created {
@@ -172,9 +174,10 @@ typedef struct greenloop_contact_body_created {
 
 typedef struct greenloop_contact_body_report {
   greenloop_unilateral_report contact;
-  uint64_t touching_work;  /* what finding contacts took, which is not in the work */
+  uint64_t touching_work;  /* what finding contacts took of the work */
   uint32_t left_out;       /* places that may touch, but for which there was no room: the deepest were kept */
   double deepest_left_out; /* m, depth of the deepest of these */
+  uint32_t unfinished;     /* tools that search_work did not suffice for */
 } greenloop_contact_body_report;
 
 /* Start-up. */
@@ -186,8 +189,7 @@ greenloop_contact_body_created greenloop_contact_body_create(const greenloop_mod
                                                              greenloop_contact_body_limits limits, void* memory,
                                                              size_t bytes);
 
-/* Units that finding what may touch these tools takes at most, wherever they are, beside a step's work. For the loop.
- */
+/* Units that finding what may touch these tools takes at most, wherever they are. For the loop. */
 uint64_t greenloop_contact_body_touching_work(const greenloop_contact_body* body, const greenloop_tool* tools,
                                               size_t count);
 

@@ -41,11 +41,53 @@ void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Gr
 
 bool is_behind(const TouchedBody& body, std::uint32_t tool) {
   bool behind = false;
-  const std::uint32_t points = body.tool[tool].shape.point_count();
-  for (std::uint32_t i = 0; i < points && body.search.fault(tool) == ToolFault::none; ++i) {
+  const std::uint32_t points = body.search.fault(tool) == ToolFault::none ? body.tool[tool].shape.point_count() : 0;
+  for (std::uint32_t i = 0; i < points; ++i) {
     behind = behind || body.search.proxy(tool, i).is_held();
   }
   return behind;
+}
+
+ContactBody::Contact contact_after(const TouchedBody& body, std::uint32_t i, const Double3& place) {
+  const Candidate& candidate = body.candidate[i];
+  ContactBody::Contact contact;
+  for (int k = 0; k < 3; ++k) {
+    contact.node[k] = candidate.node[k];
+    contact.weight[k] = candidate.weight[k];
+  }
+  contact.tool = candidate.tool;
+  contact.state = body.state[i];
+  contact.position = place;
+  contact.normal = candidate.normal;
+  contact.force = double3(body.force[i]);
+  const Vec4& gap = body.gap[i];
+  const Double3 from_stick{gap.x, gap.y, gap.z};
+  contact.gap = dot(candidate.normal, from_stick);
+  contact.slip = contact.state == ContactState::open ? Double3{} : from_stick - contact.gap * candidate.normal;
+  return contact;
+}
+
+// of a tool, whose contacts are those from `next` on; which is then the next tool's
+void write_tool(TouchedBody& body, std::uint32_t count, std::uint32_t tool, std::uint32_t& next) {
+  ContactBody::ToolAnswer& answer = body.tool_answer[tool];
+  answer = {};
+  answer.fault = body.search.fault(tool);
+  answer.is_behind = is_behind(body, tool);
+  answer.sag = body.sag[tool];
+  answer.first_contact = next;
+  for (; next < count && body.candidate[next].tool == tool; ++next) {
+    const Candidate& candidate = body.candidate[next];
+    const Double3 place = place_after(body, next);
+    remember(body, next, place, body.grips.find(grip_key(candidate)));
+    body.answered[next] = contact_after(body, next, place);
+    const Double3 force = body.answered[next].force;
+    const Double3 lever = place - body.placement[tool].origin;
+    body.point[next] = {tool, narrow(lever)};
+    ++answer.contacts;
+    answer.depth = larger(answer.depth, -candidate.gap);
+    answer.force += -force;
+    answer.torque += cross(lever, -force);
+  }
 }
 
 }  // namespace
@@ -97,45 +139,17 @@ void account_energy(TouchedBody& body, std::uint32_t count) noexcept {
   body.energy = {account.in, account.stored, account.dissipated, account.lost, generated};
 }
 
-void write_answer(TouchedBody& body, std::uint32_t count, std::span<const ContactBody::ToolInput> tools) noexcept {
-  for (std::uint32_t t = 0; t < tools.size(); ++t) {
-    body.tool_answer[t] = {};
-    body.tool_answer[t].fault = body.search.fault(t);
-    body.tool_answer[t].first_contact = count;
-    body.tool_answer[t].is_behind = is_behind(body, t);
-    body.tool_answer[t].sag = body.sag[t];
-  }
-  body.tool_count = static_cast<std::uint32_t>(tools.size());
+void write_answer(TouchedBody& body, std::uint32_t count, std::uint32_t tools) noexcept {
+  body.tool_count = tools;
   body.answered_count = count;
   body.grips.begin();
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Candidate& candidate = body.candidate[i];
-    const Double3 place = place_after(body, i);
-    remember(body, i, place, body.grips.find(grip_key(candidate)));
-    ContactBody::Contact& contact = body.answered[i];
-    contact = {};
-    for (int k = 0; k < 3; ++k) {
-      contact.node[k] = candidate.node[k];
-      contact.weight[k] = candidate.weight[k];
-    }
-    contact.tool = candidate.tool;
-    contact.state = body.state[i];
-    contact.position = place;
-    contact.normal = candidate.normal;
-    contact.force = double3(body.force[i]);
-    const Vec4& gap = body.gap[i];
-    const Double3 from_stick{gap.x, gap.y, gap.z};
-    contact.gap = dot(candidate.normal, from_stick);
-    contact.slip = contact.state == ContactState::open ? Double3{} : from_stick - contact.gap * candidate.normal;
-    ContactBody::ToolAnswer& answer = body.tool_answer[candidate.tool];
-    answer.first_contact = i < answer.first_contact ? i : answer.first_contact;
-    ++answer.contacts;
-    answer.depth = larger(answer.depth, -candidate.gap);
-    answer.force += -contact.force;
-    const Double3 lever = place - body.placement[candidate.tool].origin;
-    body.point[i] = {candidate.tool, narrow(lever)};
-    answer.torque += cross(lever, -contact.force);
+  std::uint32_t next = 0;
+  for (std::uint32_t t = 0; t < tools; ++t) {
+    write_tool(body, count, t, next);
+    // a tool that is left out holds on to what it held, if what others hold leaves room for it
+    if (body.tool_answer[t].fault != ToolFault::none) body.grips.keep(t, body.max_contacts - (count - next));
   }
+  for (std::uint32_t t = tools; t < body.max_tools; ++t) body.grips.keep(t, body.max_contacts);
   body.grips.turn();
 }
 

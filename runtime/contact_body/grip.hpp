@@ -58,6 +58,10 @@ class Grips {
   void add(const Grip& grip) noexcept { made_[made_count_++] = grip; }
   void turn() noexcept;
 
+  /// Takes over what a tool holds on to, without force, while there are no more than `room` in all; among `add`, by
+  /// tool. For the loop; linear in the grips.
+  void keep(std::uint32_t tool, std::uint32_t room) noexcept;
+
   /// Lets go of what a tool has. Linear.
   void forget(std::uint32_t tool) noexcept;
 

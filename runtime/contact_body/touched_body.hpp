@@ -21,9 +21,10 @@ struct TouchedBody {
   DeformedSurface deformed;
   CandidateSearch search;
   std::uint32_t nodes = 0, max_contacts = 0, max_tools = 0;
-  double mean_edge = 0;          ///< m
-  std::uint64_t least_work = 0;  ///< units, of the elastic body's answer
-  float rigid_softness = 0;      ///< m/N
+  double mean_edge = 0;           ///< m
+  std::uint64_t least_work = 0;   ///< units of a step
+  std::uint64_t search_work = 0;  ///< units that a search for candidates may take
+  float rigid_softness = 0;       ///< m/N
 
   Tool* tool = nullptr;                     ///< [max_tools] of this step
   Placement* placement = nullptr;           ///< [max_tools] the same, after the answer where its spring lets it be

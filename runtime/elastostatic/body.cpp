@@ -188,7 +188,7 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
   body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);
   if (sizes.counts.iterations > 0) {
-    body.unilateral.carve(arena, sizes.counts.max_contacts, view.node_count);
+    body.unilateral.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.prices);
   }
   if (sizes.counts.mixed_contacts) {
     body.mixed.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.glide_cycles);

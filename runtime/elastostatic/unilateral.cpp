@@ -145,7 +145,8 @@ void add_to_columns(const UnilateralSet& all, const UnilateralScratch& scratch, 
 
 }  // namespace
 
-void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes) noexcept {
+void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes,
+                              const Prices& prices) noexcept {
   hold = arena.take<Constraint>(contacts);
   corner = arena.take<UnilateralCorner>(contacts);
   begin = arena.take<std::uint32_t>(contacts + 1);
@@ -157,7 +158,7 @@ void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts, std::uint32_
   gap = arena.take<Vec4>(contacts);
   state = arena.take<ContactState>(contacts);
   compliance.block = arena.take<Block<3>>(ContactCompliance::size(contacts));
-  problem.carve(arena, contacts);
+  problem.carve(arena, contacts, prices);
   builder.carve(arena, contacts);
   point = arena.take<ToolPoint>(contacts);
   for (std::uint32_t node = 0; hold_of_node != nullptr && node < nodes; ++node) {
@@ -218,7 +219,7 @@ std::uint64_t gather_unilateral_work(const Prices& prices, std::uint64_t corners
 }
 
 std::uint64_t unilateral_work(const Prices& prices, std::uint64_t corners, std::uint64_t iterations) noexcept {
-  return gather_unilateral_work(prices, corners) + iterations * ContactProblem::least_work(corners);
+  return gather_unilateral_work(prices, corners) + iterations * ContactProblem::least_work(prices, corners);
 }
 
 ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, std::uint32_t stride,

@@ -40,7 +40,7 @@ struct UnilateralScratch {
   ToolPoint* point = nullptr;  ///< [contacts] of these
 
   /// Arrays out of `arena`, for so many contacts with as many corners in all; null while it counts.
-  void carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes) noexcept;
+  void carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes, const Prices& prices) noexcept;
 };
 
 /// Work units of list_unilateral.

@@ -16,8 +16,9 @@ class LocalModelBuilder {
   void carve(Arena& arena, std::uint32_t candidates) noexcept;
 
   /// Work units of `build`, at most.
-  static constexpr std::uint64_t work(std::uint64_t candidates, std::uint64_t tools, std::uint64_t components) {
-    return tools * components * ContactProblem::response_work(candidates);
+  static constexpr std::uint64_t work(const Prices& prices, std::uint64_t candidates, std::uint64_t tools,
+                                      std::uint64_t components) {
+    return tools * components * ContactProblem::response_work(prices, candidates);
   }
 
   /// Of the problem that was solved last. points: [candidates]. tools: 1 .. LocalModel::most_tools. components: 3 or 6.

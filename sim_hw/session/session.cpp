@@ -35,6 +35,7 @@ ContactBody::Limits limits_of(const Model& model, std::uint32_t contacts) {
   limits.elastostatic.iterations = 64;
   limits.elastostatic.model_loads = true;
   limits.max_tools = max_tools;
+  limits.max_points = 1;  // of a ball
   return limits;
 }
 
@@ -50,13 +51,12 @@ Agreement agree(const SessionOptions& options, const Model& model) {
   Agreement agreement;
   for (std::uint32_t contacts = std::max(intended, usual);; contacts = std::max(contacts / 2, intended)) {
     agreement.limits = limits_of(model, contacts);
-    const auto need = Elastostatic::required(model, agreement.limits.elastostatic);
+    const auto need = ContactBody::required(model, agreement.limits);
     agreement.least_work = need.least_work;
     const std::uint64_t asked = budget_of(options, model);
     agreement.budget.work =
         asked != 0 ? asked
-                   : static_cast<std::uint64_t>(
-                         std::floor(static_cast<double>(need.worst_work[model.level_count() - 1]) * options.starve));
+                   : static_cast<std::uint64_t>(std::floor(static_cast<double>(need.worst_work) * options.starve));
     if (agreement.budget.work >= need.least_work) return agreement;
     if (contacts == intended) break;
   }
