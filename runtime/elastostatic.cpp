@@ -413,8 +413,7 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
 // loads: null where nothing but contacts acts
 void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads* loads, Budget budget,
                const Elastostatic::Response& response, Elastostatic::StepReport& report) {
-  body.answered = false;
-  body.pushed = false;
+  body.answered = body.pushed = false;
   const Status request = check_request(body, constraints.size(), budget, response);
   if (request != Status::ok) {
     return hold(request, 0, report);
@@ -513,7 +512,6 @@ Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralCont
                                                   Budget budget, const UnilateralResponse& response) noexcept {
   Body& body = *body_;
   body.answered = false;
-  body.unilateral.held = 0;
   UnilateralReport report;
   ContactAnswer found;
   Accepted& accepted = *new (body.accepted) Accepted;
@@ -523,7 +521,6 @@ Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralCont
   }
   carry_out(body, accepted, budget, response, report);
   body.pushed = greenloop::answered(report.status);
-  body.surfaces = static_cast<std::uint32_t>(contacts.size());
   report.residual = found.residual;
   report.iterations = found.iterations;
   assert(Arena::intact(body.last_red_zone));

@@ -23,7 +23,6 @@ bool waits(const TouchedBody& body, std::uint32_t i) {
 
 void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Grip* grip) {
   const Candidate& candidate = body.candidate[i];
-  if (waits(body, i)) return;
   Grip made;
   made.key = grip_key(candidate);
   made.touches = body.state[i] != ContactState::open;
@@ -31,7 +30,7 @@ void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Gr
   const bool holds_on = grip != nullptr && grip->touches && made.sticks;
   made.anchor = holds_on ? grip->anchor : body.placement[candidate.tool].to_tool(place);
   made.force = body.force[i];
-  made.shift = place - body.rest_place[i];
+  made.shift = waits(body, i) ? body.last_place[i] - body.rest_place[i] : place - body.rest_place[i];
   for (int k = 0; k < 3; ++k) {
     made.node[k] = candidate.node[k];
     made.weight[k] = candidate.weight[k];

@@ -123,6 +123,8 @@ void accept_surfaces(Body& body, std::span<const UnilateralContact> surfaces, co
   const std::uint32_t most = body.counts.max_contacts;
   const Prices& prices = body.counts.prices;
   UnilateralScratch& scratch = body.unilateral;
+  scratch.held = 0;
+  body.surfaces = static_cast<std::uint32_t>(surfaces.size());
   std::uint32_t nodes = 0;
   accepted.work = list_unilateral_work(prices, surfaces.size(), most) + check_loaded_work(prices, most, 0);
   checked = list_unilateral(surfaces, body.view->node_count, most, scratch, nodes);
