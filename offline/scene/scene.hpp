@@ -62,6 +62,11 @@ struct AccuracyGoal {
   double field = 0.05;        ///< largest relative error of the field of any contact pattern, 0..10
   double field_rough = 0.2;   ///< `field` of alternating and random displacements, 0..10
   double field_peak = 0.1;    ///< largest error at a node over the largest displacement, of any pattern, 0..10
+  /// Largest estimated error of the tetrahedra's forces of pressed patches, 0..10; none: said, but not judged.
+  std::optional<double> mesh_error;
+
+  /// A mesh error above this is warned of.
+  [[nodiscard]] double tolerated_mesh_error() const { return mesh_error.value_or(patch_force); }
 };
 
 /// Work units per microsecond of the target if the scene does not say how fast that is: stated, not measured.

@@ -299,13 +299,15 @@ void read_accuracy(const Table& scene, AccuracyGoal& accuracy) {
   constexpr Interval error{0, 1, true, true};
   constexpr Interval error_of_pattern{0, 10, true, true};
   if (const auto table =
-          section(scene, "accuracy", {"rms", "worst_column", "patch_force", "field", "field_peak", "field_rough"})) {
+          section(scene, "accuracy",
+                  {"rms", "worst_column", "patch_force", "field", "field_peak", "field_rough", "mesh_error"})) {
     set_if(accuracy.rms, table->number("rms", error));
     set_if(accuracy.worst_column, table->number("worst_column", error));
     set_if(accuracy.patch_force, table->number("patch_force", error_of_pattern));
     set_if(accuracy.field, table->number("field", error_of_pattern));
     set_if(accuracy.field_peak, table->number("field_peak", error_of_pattern));
     set_if(accuracy.field_rough, table->number("field_rough", error_of_pattern));
+    accuracy.mesh_error = table->number("mesh_error", error_of_pattern);
   }
 }
 

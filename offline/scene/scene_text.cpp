@@ -98,14 +98,15 @@ std::string solve_text(Elements elements) {
   return elements == Elements::quadratic ? "\n[solve]\nelements = \"quadratic\"\n" : "";
 }
 
-// goals for fields that are not set, by zero, are left out
+// goals that are not set, by zero, are left out
 std::string accuracy_text(const AccuracyGoal& accuracy) {
   const auto goal = [](const std::string& key, double value) {
     return value > 0 ? "\n" + key + " = " + number(value) : std::string();
   };
   return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) +
          "\npatch_force = " + number(accuracy.patch_force) + goal("field", accuracy.field) +
-         goal("field_peak", accuracy.field_peak) + goal("field_rough", accuracy.field_rough) + "\n";
+         goal("field_peak", accuracy.field_peak) + goal("field_rough", accuracy.field_rough) +
+         goal("mesh_error", accuracy.mesh_error.value_or(0)) + "\n";
 }
 
 std::string compression_text(std::optional<layout::Wavelet> wavelet, bool ready) {
