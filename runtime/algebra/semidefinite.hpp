@@ -11,8 +11,8 @@ namespace greenloop {
 // Factors hold L below the diagonal and the inverse of D on it, 0 where a row is left out. In a fixed order of
 // operations; for the loop.
 
-/// Work units of factor_semidefinite and solve_semidefinite together: multiply-adds, and what it takes to begin a column
-/// of them, a dozen.
+/// Work units of factor_semidefinite and solve_semidefinite together: multiply-adds, and what it takes to begin a
+/// column of them, a dozen.
 constexpr std::uint64_t semidefinite_work(const Prices& prices, std::uint64_t order) {
   return priced(order * (order + 4) * (order + 8) / 6 + 12 * order * order, prices.appended) +
          priced(order * order + order, prices.substituted);
