@@ -329,7 +329,7 @@ std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint
   const ModelView view = require_valid(whole);
   require(q < view.header->levels,
           fmt::format("cut after level {}, but the file ends with level {}", q, view.header->levels - 1));
-  require_constraint_level(*view.info, q);
+  if (view.info != nullptr) require_constraint_level(*view.info, q);
 
   const auto table = section_entries(view);
   std::byte* const table_bytes = model.data() + sizeof(layout::Header);
