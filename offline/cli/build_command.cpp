@@ -5,11 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <sstream>
+#include <stdexcept>
 
 #include "formats/output/json_text.hpp"
 #include "formats/output/streams.hpp"
 #include "offline/pipeline/build_model_file.hpp"
+#include "offline/pipeline/build_motion_model.hpp"
 #include "offline/pipeline/model_quality.hpp"
+#include "offline/scene/motion_scene.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -46,12 +49,35 @@ void print_outcome(const BuildArguments& arguments, const BuildOutcome& outcome)
   print_budget(outcome.record);
 }
 
+void print_motion(const std::filesystem::path& model, const nlohmann::json& record) {
+  print_result(fmt::format("{}: {} bytes, {} modes, {} states; truncation error {:.3g} %, quantisation {:.3g} %\n",
+                           model.string(), record["bytes"].dump(), record["modes"].dump(), record["rows"].dump(),
+                           100 * record["truncation_error"].get<double>(),
+                           100 * record["reduction"]["quantisation_error"].get<double>()));
+  const auto& replay = record["replay_error"];
+  if (replay.is_null()) return;
+  print_result(fmt::format("replay of {} held-out orbits: error {:.3g} % median, {:.3g} % in 95 of 100\n",
+                           replay["orbits"].dump(), 100 * replay["median"].get<double>(),
+                           100 * replay["p95"].get<double>()));
+}
+
+int build_motion(const BuildArguments& arguments, const MotionScene& scene, ProgressBar& progress) {
+  const auto& request = arguments.request;
+  if (!request.store.empty() || request.overwrite_store) {
+    throw std::runtime_error(request.scene.string() + ": is made of trajectories, not of a store; leave --store out");
+  }
+  const auto record = build_motion_model(request.scene, scene, request.model, progress);
+  arguments.json ? print_result(json_text(record) + "\n") : print_motion(request.model, record);
+  return 0;
+}
+
 int run_build(BuildArguments& arguments) {
   auto& request = arguments.request;
   if (request.model.empty()) {
     request.model = request.scene.filename().replace_extension(".gloop");
   }
   ProgressBar progress(arguments.json);
+  if (const auto motion = read_motion_scene(request.scene)) return build_motion(arguments, *motion, progress);
   print_outcome(arguments, build_model_file(request, progress));
   return 0;
 }

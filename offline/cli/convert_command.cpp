@@ -26,6 +26,8 @@
 #include "formats/write/ready_file.hpp"
 #include "formats/write/writer.hpp"
 #include "offline/compress/encode/ready_model.hpp"
+#include "offline/pipeline/mesh_series_file.hpp"
+#include "offline/scene/mesh_series.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -76,7 +78,7 @@ ModelFile read_stream(const ConvertArguments& arguments) {
 ModelFile read_levels(const ConvertArguments& arguments) {
   if (is_stream(lower_extension(arguments.input))) return read_stream(arguments);
   ModelFile model = open_model_file(arguments.input);
-  check_levels(arguments, model.view.levels);
+  check_levels(arguments, model.view.header->levels);
   if (!arguments.levels) return model;
   const auto whole = model.bytes.span();
   const auto cut = truncate_to_level({whole.begin(), whole.end()}, *arguments.levels - 1);
@@ -86,6 +88,9 @@ ModelFile read_levels(const ConvertArguments& arguments) {
 ModelFile read_model(const ConvertArguments& arguments) {
   ModelFile model = read_levels(arguments);
   if (!arguments.ready) return model;
+  if (model.view.problem == layout::Problem::impulse_response) {
+    refuse(arguments, "an impulse response model has nothing to be made ready; leave --ready and --no-ready out");
+  }
   const auto bytes = *arguments.ready ? ready_model(model.bytes.span()) : plain_file(model.bytes.span());
   return verified_model(AlignedBytes(bytes), arguments.output.string());
 }
@@ -98,6 +103,9 @@ void convert_model(const ConvertArguments& arguments, const std::string& to) {
     refuse(arguments, "a transport form is never ready; leave --ready out, and say it where the form is unpacked");
   }
   const ModelFile model = read_model(arguments);
+  if (model.view.problem == layout::Problem::impulse_response && !is_c_source(to) && !is_model(to)) {
+    refuse(arguments, "an impulse response model becomes .gloop with --levels, or .h and .c");
+  }
   if (is_c_source(to)) {
     write_c_array(arguments.output, model.bytes.span());
   } else if (is_surface(to)) {
@@ -155,6 +163,15 @@ void convert_volume(const ConvertArguments& arguments, const std::string& to) {
   write_volume(arguments.output, mesh);
 }
 
+bool is_mesh_series(const std::string& from, const std::string& to) { return from == ".toml" && to == ".h5"; }
+
+void convert_mesh_series(const ConvertArguments& arguments) {
+  refuse_model_options(arguments);
+  MeshNotes notes;
+  write_mesh_series(read_mesh_series(arguments.input), arguments.output, notes);
+  print_notes(notes);
+}
+
 /// All files that came of it.
 std::vector<std::filesystem::path> written_files(const ConvertArguments& arguments) {
   if (!is_c_source(lower_extension(arguments.output))) return {arguments.output};
@@ -179,14 +196,16 @@ int run_convert(const ConvertArguments& arguments, std::ostream& out) {
   const std::string from = lower_extension(arguments.input), to = lower_extension(arguments.output);
   if (is_model(from) || is_stream(from)) {
     convert_model(arguments, to);
+  } else if (is_mesh_series(from, to)) {
+    convert_mesh_series(arguments);
   } else if (is_surface(from) || (from == ".vtk" && is_surface(to))) {
     convert_surface(arguments, to);
   } else if (is_volume(from)) {
     convert_volume(arguments, to);
   } else {
     refuse(arguments,
-           fmt::format("do not know \"{}\"; expected a model (.gloop .gloopz), a surface (.off .obj .stl .ply) or "
-                       "a volume (.msh .mesh .meshb .vtk .vtu .node .ele .veg)",
+           fmt::format("do not know \"{}\"; expected a model (.gloop .gloopz), a surface (.off .obj .stl .ply), "
+                       "a volume (.msh .mesh .meshb .vtk .vtu .node .ele .veg) or a series of meshes (.toml to .h5)",
                        from));
   }
   say_written(arguments, out);
@@ -194,13 +213,14 @@ int run_convert(const ConvertArguments& arguments, std::ostream& out) {
 }
 
 void add_convert(CLI::App& parent, int& exit_code) {
-  CLI::App* command = parent.add_subcommand(
-      "convert", "Model to transport form and back, C source, coarser model or surface; meshes to other formats");
+  CLI::App* command = parent.add_subcommand("convert",
+                                            "Model to transport form and back, C source, coarser model or surface; "
+                                            "meshes to other formats, series of meshes to trajectories");
   const auto arguments = std::make_shared<ConvertArguments>();
   command
       ->add_option("input", arguments->input,
                    "Model (.gloop), its transport form (.gloopz), surface (.off .obj .stl .ply) or volume (.msh .mesh "
-                   ".meshb .vtk .vtu .node .ele .veg)")
+                   ".meshb .vtk .vtu .node .ele .veg), or the description of a series of meshes (.toml)")
       ->required();
   command->add_option("-o,--output", arguments->output, "File to write; its extension says what")->required();
   command->add_option(

@@ -77,6 +77,11 @@ void run(const Options& options) {
   require_writable(files);
   if (!options.figures.empty()) require_writable_folder(options.figures);
   const ModelFile file = open_model_file(options.model);
+  if (file.view.problem == layout::Problem::impulse_response) {
+    throw std::runtime_error(options.model.string() +
+                             ": an impulse response model has no report; greenloop inspect "
+                             "shows its modes, orbits and errors");
+  }
   const std::string first = options.traces.empty() ? "" : options.traces.front();
   const auto more = options.traces.begin() + (options.traces.empty() ? 0 : 1);
   const Report report = make_report(file, {.model = options.model,

@@ -1,6 +1,6 @@
 #pragma once
 
-// A TOML table read key by key, every problem collected with its place. Only the scene's parser includes this.
+// A TOML table read key by key, every problem collected with its place. Only parsers of scenes include this.
 #include <toml++/toml.h>
 
 #include <Eigen/Core>
