@@ -14,6 +14,7 @@
 #include "formats/store/elements.hpp"
 #include "formats/store/material.hpp"
 #include "offline/scene/region.hpp"
+#include "offline/scene/simulation.hpp"
 
 namespace greenloop::offline {
 
@@ -126,6 +127,7 @@ struct Scene {
   StepBudget budget;
   std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory
   std::string store_name;                      ///< as the scene says
+  std::optional<Simulation> simulation;        ///< how the body moves, if it is to be simulated
 };
 
 /// Longest scene [bytes].

@@ -268,6 +268,7 @@ TEST_CASE("the examples are accepted: the files, and the one in the documentatio
   for (const std::string name : {"blob", "ear", "bowl", "handle", "web"}) {
     CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/" + name + ".toml").mesh.name == name + ".off");
   }
+  CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/rubber.toml").simulation->impulses.size() == 5);
   std::ifstream stream(GREENLOOP_SOURCE "/docs/scene.md");
   const std::string page(std::istreambuf_iterator<char>(stream), {});
   const auto begin = page.find("```toml\n");
