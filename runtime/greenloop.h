@@ -496,6 +496,5 @@ const char* greenloop_recorder_error_text(greenloop_recorder_error error);
 #ifdef __cplusplus
 }
 #endif
-
 /* NOLINTEND(modernize-use-using, modernize-deprecated-headers) */
 #endif
