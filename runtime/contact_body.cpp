@@ -264,7 +264,7 @@ std::uint64_t ContactBody::local_model(bool turns, float length, LocalModel& mod
 }
 
 std::uint64_t ContactBody::local_model_work(std::uint32_t tools, bool turns) const noexcept {
-  return Elastostatic::local_model_work(body_->max_contacts, tools, turns ? 6 : 3);
+  return body_->elastostatic.local_model_work(body_->max_contacts, tools, turns ? 6 : 3);
 }
 
 }  // namespace greenloop

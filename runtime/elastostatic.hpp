@@ -181,8 +181,8 @@ class Elastostatic {
                             float length, LocalModel& model) noexcept;
 
   /// Work units of `local_model` for so many contacts.
-  [[nodiscard]] static std::uint64_t local_model_work(std::uint32_t contacts, std::uint32_t tools,
-                                                      std::uint32_t components) noexcept;
+  [[nodiscard]] std::uint64_t local_model_work(std::uint32_t contacts, std::uint32_t tools,
+                                               std::uint32_t components) const noexcept;
 
  private:
   Body* body_ = nullptr;

@@ -238,8 +238,8 @@ std::uint64_t Elastostatic::local_model(std::span<const ToolPoint> points, std::
 }
 
 std::uint64_t Elastostatic::local_model_work(std::uint32_t contacts, std::uint32_t tools,
-                                             std::uint32_t components) noexcept {
-  return LocalModelBuilder::work(contacts, tools, components);
+                                             std::uint32_t components) const noexcept {
+  return LocalModelBuilder::work(body_->counts.prices, contacts, tools, components);
 }
 
 }  // namespace greenloop
