@@ -18,6 +18,7 @@ struct ReportInputs {
   std::optional<std::filesystem::path> snapshot;  ///< of greenloop-loop --snapshot
   std::optional<std::filesystem::path> build;     ///< of greenloop build
   bool provenance = false;                        ///< shown as well
+  std::optional<double> mask;                     ///< m, radius of masks whose stiffness is shown
 };
 
 /// A finished report.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,7 @@ namespace {
 struct Options {
   std::string model, output, trace, snapshot, build, figures;
   bool provenance = false, json = false;
+  std::optional<double> mask;
 };
 
 std::optional<std::filesystem::path> given(const std::string& path) {
@@ -77,7 +79,8 @@ void run(const Options& options) {
                                            .trace = given(options.trace),
                                            .snapshot = given(options.snapshot),
                                            .build = given(options.build),
-                                           .provenance = options.provenance});
+                                           .provenance = options.provenance,
+                                           .mask = options.mask});
   write_report(options, files, report);
   options.json ? print_json(output, report) : print_text(output, report);
 }
@@ -95,6 +98,9 @@ void add_report(CLI::App& parent, int& exit_code) {
                       "Displacements at the largest force, by greenloop-loop --snapshot");
   command->add_option("--build", options->build, "Record of the build, by greenloop build");
   command->add_option("--figures", options->figures, "Folder for each figure as its own SVG file");
+  command
+      ->add_option("--mask", options->mask, "Show the stiffness of every touchable node under masks of this radius, m")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--provenance", options->provenance, "Show how the model was built as well");
   command->add_flag("--json", options->json, "Print what was written as JSON");
   command->callback([options, &exit_code] {
