@@ -13,6 +13,7 @@
 #include "offline/report/level_frontiers.hpp"
 #include "offline/report/load_figures.hpp"
 #include "offline/report/loop_figures.hpp"
+#include "offline/report/mask_figure.hpp"
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
 #include "offline/report/model_surface.hpp"
@@ -143,6 +144,14 @@ void add_loads(const Material& material, HtmlPage& page, std::vector<Figure>& fi
   page.end_fold();
 }
 
+void add_masks(const ModelFile& model, const Material& material, double radius, HtmlPage& page,
+               std::vector<Figure>& figures) {
+  page.begin_fold("How stiff it is to a fingertip");
+  const VisibleSurface finest = material.surface.level(material.surface.mesh.finest_level());
+  add_figure(masked_stiffness_figure(model, finest, radius), page, figures);
+  page.end_fold();
+}
+
 void add_run(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
   if (!material.trace) return;
   page.heading("The run");
@@ -246,6 +255,7 @@ Report make_report(const ModelFile& model, const ReportInputs& inputs) {
   add_other_runs(material, page, report.figures);
   page.heading("Details");
   add_loads(material, page, report.figures);
+  if (inputs.mask) add_masks(model, material, *inputs.mask, page, report.figures);
   add_errors(material, page, report.figures);
   add_frontiers(material, page, report.figures);
   add_size(material, page, report.figures);

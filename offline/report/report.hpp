@@ -20,6 +20,7 @@ struct ReportInputs {
   std::vector<std::filesystem::path> more_traces{};  ///< of other runs
   std::optional<std::filesystem::path> stability{};  ///< of greenloop-loop --stability
   bool provenance = false;                           ///< shown as well
+  std::optional<double> mask{};                      ///< m, radius of masks whose stiffness is shown
 };
 
 /// A finished report.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +26,7 @@ struct Options {
   std::string model, output, snapshot, build, stability, figures;
   std::vector<std::string> traces;
   bool provenance = false, json = false;
+  std::optional<double> mask;
 };
 
 std::optional<std::filesystem::path> given(const std::string& path) {
@@ -90,7 +92,8 @@ void run(const Options& options) {
                                            .build = given(options.build),
                                            .more_traces = {more, options.traces.end()},
                                            .stability = given(options.stability),
-                                           .provenance = options.provenance});
+                                           .provenance = options.provenance,
+                                           .mask = options.mask});
   write_report(options, files, report);
   options.json ? print_json(output, report) : print_text(output, report);
 }
@@ -112,6 +115,9 @@ void add_report(CLI::App& parent, int& exit_code) {
   command->add_option("--stability", options->stability, "Stability of a loop, by greenloop-loop --stability");
   command->add_option("--build", options->build, "Record of the build, by greenloop build");
   command->add_option("--figures", options->figures, "Folder for each figure as its own SVG file");
+  command
+      ->add_option("--mask", options->mask, "Show the stiffness of every touchable node under masks of this radius, m")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--provenance", options->provenance, "Show how the model was built as well");
   command->add_flag("--json", options->json, "Print what was written as JSON");
   command->callback([options, &exit_code] {
