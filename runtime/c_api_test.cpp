@@ -159,9 +159,8 @@ TEST_CASE("what is wrong is named") {
   CHECK(small.requested == c.need.bytes);
   CHECK(small.missing == 64);
   CHECK(small.body == nullptr);
-  CHECK(
-      greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 1, 0, nullptr, 0, 0, 0}, arena.data(), c.need.bytes).error ==
-      GREENLOOP_CREATE_BAD_LIMITS);
+  CHECK(greenloop_elastostatic_create(&c.model, {0, 1, 0, 0, 1, 0, nullptr, 0, 0, 0, 0, 0}, arena.data(), c.need.bytes)
+            .error == GREENLOOP_CREATE_BAD_LIMITS);
 }
 
 TEST_CASE("the loop that a model is meant for is the scene's, and a body keeps to it") {
@@ -206,7 +205,7 @@ TEST_CASE("no cycles of a glide stand for the default") {
 TEST_CASE("no refining work stands for no bound of it") {
   CBody c;
   const auto worst = [&c](std::uint64_t work) {
-    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, work, nullptr, 0, 0, 0}).worst_work[0];
+    return greenloop_elastostatic_required(&c.model, {9, 2, 0, 0, 0, work, nullptr, 0, 0, 0, 0, 0}).worst_work[0];
   };
   CHECK(worst(0) == worst(~std::uint64_t{0}));
   CHECK(worst(1) < worst(0));

@@ -7,6 +7,7 @@
 #include "runtime/constraint.hpp"
 #include "runtime/contact/tool.hpp"
 #include "runtime/elastostatic.hpp"
+#include "runtime/local_model.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/model.hpp"
 #include "runtime/vec.hpp"
@@ -25,14 +26,18 @@ class ContactBody {
                                           ///< iterations above 0; forces_only false
     std::uint32_t max_tools = 2;          ///< 1..16
     std::uint32_t max_points = 8;         ///< of a tool that are followed, 1..128: Shape::point_count
-    double margin = 0;           ///< m, how near the surface is looked at: 0 is a quarter of its mean edge length
-    double rigid_stiffness = 0;  ///< N/m, of places that cannot move; 0: what the model's material has over 1 mm
+    double margin = 0;              ///< m, how near the surface is looked at: 0 is a quarter of its mean edge length
+    double rigid_stiffness = 0;     ///< N/m, of places that cannot move; 0: what the model's material has over 1 mm
+    std::uint64_t search_work = 0;  ///< units that looking for contacts may take: 0 is what suffices for max_contacts
+                                    ///< of them and tools that do not leap, of no more than about ten faces
   };
 
   /// One step's tool.
   struct ToolInput {
     Tool tool;              ///< shape and pose
     double friction = 0.3;  ///< Coulomb's coefficient, 0 or more
+    double compliance = 0;  ///< m/N, of a spring between the pose and the tool, which does not turn, 0 or more: a
+                            ///< virtual coupling (runtime/passivity.hpp); 0: the tool is at its pose
   };
 
   /// What a tool feels.
@@ -44,6 +49,7 @@ class ContactBody {
     std::uint32_t contacts = 0;         ///< places that may touch, of which those with a force do
     double depth = 0;                   ///< m, how far the tool was inside of the surface before this step's answer
     bool is_behind = false;             ///< a point of it that is followed (Shape::point) is behind the surface
+    Double3 sag;                        ///< m, how far its spring (ToolInput::compliance) lets it be from its pose
   };
 
   /// A place of the surface that may touch a tool.
@@ -69,16 +75,18 @@ class ContactBody {
     double generated = 0;   ///< the most that did not add up: rounding, and answers short of budget
   };
 
-  /// What Limits cost. least_work and worst_work: of the elastic body alone, coarsest and finest; finding contacts
-  /// takes up to `touching_work` besides, which depends on the tools.
+  /// What Limits cost. least_work: with that budget every step is answered, its contacts found and held at least at the
+  /// coarsest level.
   struct Requirement : greenloop::Requirement {
-    std::uint64_t worst_work = 0;  ///< of the answer at the finest level
+    std::uint64_t worst_work = 0;     ///< of a step that is answered at the finest level
+    std::uint64_t touching_work = 0;  ///< of finding contacts, at most: a part of both
   };
 
   struct StepReport : Elastostatic::UnilateralReport {
-    std::uint64_t touching_work = 0;  ///< units that finding what touches took, which are not in `work`
+    std::uint64_t touching_work = 0;  ///< units of `work` that finding what touches took
     std::uint32_t left_out = 0;       ///< places that may touch, but for which there was no room: the deepest were kept
     double deepest_left_out = 0;      ///< m, depth of the deepest of these
+    std::uint32_t unfinished = 0;     ///< tools that search_work did not suffice for: what is nearest was looked at
   };
 
   struct Created;
@@ -97,11 +105,11 @@ class ContactBody {
   /// budget give the same bits. Budgets from Requirement::least_work on are enough: what they do not hold is answered
   /// coarser, each force pushing and within its cone of friction. On a `held_` status the last answer stands;
   /// held_not_finite and held_bad_surface are said of a tool's friction, held_over_budget at zero work.
-  /// Work: at most budget.work for the answer, and touching_work before it.
+  /// Work: at most budget.work.
   StepReport step(std::span<const ToolInput> tools, const Elastostatic::Loads& loads, Budget budget) noexcept;
 
-  /// Units that finding what may touch these tools takes at most, wherever they are: beside the budget. For the loop;
-  /// work: the tools.
+  /// Units that finding what may touch these tools takes at most, wherever they are: no more than
+  /// Requirement::touching_work. For the loop; work: the tools.
   [[nodiscard]] std::uint64_t touching_work(std::span<const ToolInput> tools) const noexcept;
 
   // The last answer, until the next step; empty or at rest before the first. For the loop; constant work.
@@ -113,6 +121,22 @@ class ContactBody {
   /// The tool is somewhere else without having been between: in the next step it is placed where it is, and holds on to
   /// nothing. Numbers that no tool has are ignored. For the loop; work: linear in the contacts.
   void forget(std::uint32_t tool) noexcept;
+
+  /// Factors on the tools' coefficients of friction, [nodes], 0 or more: of a place within a triangle by the weights of
+  /// its corners. They are read in every step until the next call; the memory is the caller's, who may change them
+  /// between steps. Empty: 1 everywhere; ignored if there are not as many as nodes. One that is negative or not finite
+  /// is refused by the steps in which a tool may touch there, as a tool's own. For the loop; constant work.
+  void surface_friction(std::span<const float> factor) noexcept;
+
+  /// How the tools' forces and torques follow their poses between this step and the next (docs/touching.md, "A faster
+  /// loop"). turns: false: poses do not turn meanwhile, which is half of the work. length: m, above 0, what a turn
+  /// counts as. Returns the work units that it took, at most local_model_work; 0, and nothing is written: refused,
+  /// before the first answer, after a step that was refused, without a tool or with more than LocalModel::most_tools,
+  /// or if length is not above 0. For the loop.
+  std::uint64_t local_model(bool turns, float length, LocalModel& model) noexcept;
+
+  /// Work units of `local_model` for so many tools. For the loop; constant work.
+  [[nodiscard]] std::uint64_t local_model_work(std::uint32_t tools, bool turns) const noexcept;
 
  private:
   TouchedBody* body_ = nullptr;

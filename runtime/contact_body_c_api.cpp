@@ -16,13 +16,19 @@ static_assert(sizeof(UnilateralContact) == sizeof(greenloop_unilateral_contact) 
               offsetof(UnilateralContact, weight) == offsetof(greenloop_unilateral_contact, weight) &&
               offsetof(UnilateralContact, friction) == offsetof(greenloop_unilateral_contact, friction) &&
               offsetof(UnilateralContact, force) == offsetof(greenloop_unilateral_contact, force) &&
+              offsetof(UnilateralContact, mount) == offsetof(greenloop_unilateral_contact, mount) &&
               UnilateralContact::none == GREENLOOP_NONE);
 static_assert(sizeof(ContactState) == sizeof(std::uint8_t) && same(GREENLOOP_CONTACT_OPEN, ContactState::open) &&
               same(GREENLOOP_CONTACT_STICK, ContactState::stick) && same(GREENLOOP_CONTACT_SLIP, ContactState::slip));
 static_assert(sizeof(ContactBody::ToolAnswer) == sizeof(greenloop_tool_answer) &&
               offsetof(ContactBody::ToolAnswer, force) == offsetof(greenloop_tool_answer, force) &&
               offsetof(ContactBody::ToolAnswer, first_contact) == offsetof(greenloop_tool_answer, first_contact) &&
-              offsetof(ContactBody::ToolAnswer, depth) == offsetof(greenloop_tool_answer, depth));
+              offsetof(ContactBody::ToolAnswer, depth) == offsetof(greenloop_tool_answer, depth) &&
+              offsetof(ContactBody::ToolAnswer, sag) == offsetof(greenloop_tool_answer, sag));
+static_assert(sizeof(LocalModel) == sizeof(greenloop_local_model) &&
+              offsetof(LocalModel, change) == offsetof(greenloop_local_model, change) &&
+              LocalModel::most_tools == static_cast<int>(GREENLOOP_LOCAL_TOOLS) &&
+              LocalModel::most_components == static_cast<int>(GREENLOOP_LOCAL_COMPONENTS));
 static_assert(sizeof(ContactBody::Contact) == sizeof(greenloop_touch) &&
               offsetof(ContactBody::Contact, weight) == offsetof(greenloop_touch, weight) &&
               offsetof(ContactBody::Contact, state) == offsetof(greenloop_touch, state) &&
@@ -77,7 +83,7 @@ Shape shape_of(const greenloop_shape& shape) {
 
 ContactBody::ToolInput tool_of(const greenloop_tool& tool) {
   const double *const x = tool.position, *const q = tool.quaternion;
-  return {{shape_of(tool.shape), {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}}}, tool.friction};
+  return {{shape_of(tool.shape), {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}}}, tool.friction, tool.compliance};
 }
 
 // The tools of a step; of too many one more than any body takes, so that it refuses them.
@@ -100,11 +106,16 @@ ContactBody::Limits touched_limits_of(const greenloop_contact_body_limits& limit
   same.max_points = limits.max_points == 0 ? same.max_points : limits.max_points;
   same.margin = limits.margin;
   same.rigid_stiffness = limits.rigid_stiffness;
+  same.search_work = limits.search_work;
   return same;
 }
 
 ContactBody touched_in(const greenloop_contact_body* body) {
   return std::bit_cast<ContactBody>(reinterpret_cast<const TouchedBody*>(body));
+}
+
+const LocalModel& model_at(const greenloop_local_model* model) {
+  return *std::launder(reinterpret_cast<const LocalModel*>(model));
 }
 
 Elastostatic::Loads acting(const greenloop_loads* loads) {
@@ -179,7 +190,7 @@ greenloop_polyhedron_created greenloop_polyhedron_create(const double* vertex, s
 greenloop_contact_body_requirement greenloop_contact_body_required(const greenloop_model* model,
                                                                    greenloop_contact_body_limits limits) {
   const ContactBody::Requirement need = ContactBody::required(model_in(model), touched_limits_of(limits));
-  return {need.bytes, need.least_work, need.worst_work};
+  return {need.bytes, need.least_work, need.worst_work, need.touching_work};
 }
 
 greenloop_contact_body_created greenloop_contact_body_create(const greenloop_model* model,
@@ -200,7 +211,7 @@ greenloop_contact_body_report greenloop_contact_body_step(greenloop_contact_body
                                                           size_t count, const greenloop_loads* loads, uint64_t work) {
   const ContactBody::StepReport report = touched_in(body).step(Tools(tools, count).all(), acting(loads), {work});
   return {push_report_of(static_cast<const Elastostatic::UnilateralReport&>(report)), report.touching_work,
-          report.left_out, report.deepest_left_out};
+          report.left_out, report.deepest_left_out, report.unfinished};
 }
 
 const greenloop_tool_answer* greenloop_contact_body_tools(const greenloop_contact_body* body, size_t* count) {
@@ -227,6 +238,24 @@ const float* greenloop_contact_body_displacement(const greenloop_contact_body* b
 }
 
 void greenloop_contact_body_forget(greenloop_contact_body* body, uint32_t tool) { touched_in(body).forget(tool); }
+
+void greenloop_contact_body_surface_friction(greenloop_contact_body* body, const float* factor, size_t nodes) {
+  touched_in(body).surface_friction({factor, factor == nullptr ? 0 : nodes});
+}
+
+uint64_t greenloop_contact_body_local_model(greenloop_contact_body* body, uint8_t turns, float length,
+                                            greenloop_local_model* model) {
+  return touched_in(body).local_model(turns != 0, length, *std::launder(reinterpret_cast<LocalModel*>(model)));
+}
+
+float greenloop_local_model_motion_length(const greenloop_local_model* model, const float* motion) {
+  return model_at(model).motion_length({motion, std::size_t{model->components} * model->tools});
+}
+
+void greenloop_local_model_evaluate(const greenloop_local_model* model, const float* motion, float* wrenches) {
+  model_at(model).evaluate({motion, std::size_t{model->components} * model->tools},
+                           {wrenches, std::size_t{6} * model->tools});
+}
 
 const char* greenloop_polyhedron_error_text(greenloop_polyhedron_error error) {
   return text_at(polyhedron_error_texts, error);

@@ -80,7 +80,9 @@ TEST_CASE("surfaces that push are answered the same through C, bit for bit") {
                  {0.6F, 0, i % 20 == 19 ? 0.5F : -0.8F},
                  0.4F,
                  0,
-                 {}};
+                 {},
+                 static_cast<std::uint32_t>(first % 2),
+                 first % 2 == 0 ? 1e-4F : 0};
       UnilateralContact& to = same.emplace_back();
       std::memcpy(static_cast<void*>(&to), &contact, sizeof to);
     }
@@ -133,6 +135,7 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
   CHECK(need.bytes == requirement.bytes);
   CHECK(need.least_work == requirement.least_work);
   CHECK(need.worst_work == requirement.worst_work);
+  CHECK(need.touching_work == requirement.touching_work);
   AlignedBytes cpp_memory(need.bytes), c_memory(need.bytes);
   auto cpp = ContactBody::create(model.model(), limits, {cpp_memory.data(), cpp_memory.size()});
   const auto made = greenloop_contact_body_create(&c.model, same, c_memory.data(), c_memory.size());
@@ -161,6 +164,8 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
                                       {GREENLOOP_SHAPE_POLYHEDRON, {}, c_made.polyhedron}};
   const double way[][3] = {{0, 0, 1}, {0.6, 0, 0.8}, {-0.6, 0, 0.8}, {0, 0.8, 0.6}, {0, 0, 1}, {0, -0.8, 0.6}};
   const double distance[] = {0.1, 0.13, 0.12, 0.115, 0.105, 0.118};
+  std::vector<float> rough(greenloop_node_count(&c.model));
+  for (std::size_t i = 0; i < rough.size(); ++i) rough[i] = 0.25F * static_cast<float>(i % 8);
   std::size_t touches = 0;
   bool felt[6] = {};
   for (int i = 0; i < 60; ++i) {
@@ -171,16 +176,19 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
       const Double3 place{at * way[t][0] + 2e-4 * i, at * way[t][1], at * way[t][2]};
       const bool is_plane = t == 4;  // upside down
       const double w = is_plane ? 0 : 1, x = is_plane ? 1 : 0;
-      tools.push_back({{shapes[t], {place, {w, x, 0, 0}}}, 0.1 * t});
-      c_tools.push_back({c_shapes[t], {place.x, place.y, place.z}, {w, x, 0, 0}, 0.1 * t});
+      tools.push_back({{shapes[t], {place, {w, x, 0, 0}}}, 0.1 * t, t == 1 ? 1e-4 : 0});
+      c_tools.push_back({c_shapes[t], {place.x, place.y, place.z}, {w, x, 0, 0}, 0.1 * t, t == 1 ? 1e-4 : 0});
     }
     tools[2].tool.pose.quaternion[1] = c_tools[2].quaternion[1] = i == 30 ? 0.5 : 0;
+    if (i == 20) {
+      cpp.body.surface_friction(rough);
+      greenloop_contact_body_surface_friction(made.body, rough.data(), rough.size());
+    }
     if (i == 40) cpp.body.forget(1), greenloop_contact_body_forget(made.body, 1);
     const std::uint64_t touching = cpp.body.touching_work(tools);
     CHECK(greenloop_contact_body_touching_work(made.body, c_tools.data(), c_tools.size()) == touching);
-    const std::uint64_t work = touching + (i % 7 == 6   ? need.least_work - 1
-                                           : i % 7 == 5 ? need.least_work
-                                                        : need.worst_work);
+    CHECK(touching <= need.touching_work);
+    const std::uint64_t work = i % 7 == 6 ? need.least_work - 1 : i % 7 == 5 ? need.least_work : need.worst_work;
     const auto expected = cpp.body.step(tools, {}, {work});
     const auto report = greenloop_contact_body_step(made.body, c_tools.data(), c_tools.size(), nullptr, work);
     check_same(report.contact.step, expected);
@@ -189,6 +197,7 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
     CHECK(report.touching_work == expected.touching_work);
     CHECK(report.left_out == expected.left_out);
     CHECK(report.deepest_left_out == expected.deepest_left_out);
+    CHECK(report.unfinished == expected.unfinished);
     std::size_t count = 0;
     const greenloop_tool_answer* const answers = greenloop_contact_body_tools(made.body, &count);
     REQUIRE(count == cpp.body.tools().size());
@@ -200,6 +209,7 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
       CHECK(answers[t].first_contact == answer.first_contact);
       CHECK(answers[t].contacts == answer.contacts);
       CHECK(answers[t].depth == answer.depth);
+      CHECK(same_bytes(answers[t].sag, answer.sag));
       felt[t] |= norm(answer.force) > 0;
     }
     const greenloop_touch* const touch = greenloop_contact_body_contacts(made.body, &count);
@@ -220,7 +230,41 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
     CHECK(std::memcmp(field, cpp.body.displacement().data(), cpp.body.displacement().size_bytes()) == 0);
   }
   CHECK(touches > 100);
+  // the point stands in the plane's way, and is ahead of it
   CHECK(std::count(felt, felt + 6, true) >= 5);
+}
+
+TEST_CASE("a local model is the same through C, bit for bit") {
+  ContactBody::Limits limits;
+  limits.elastostatic = {.max_contacts = 40, .cached_factors = 3, .iterations = 20};
+  greenloop_contact_body_limits same{};
+  same.elastostatic = c_limits(limits.elastostatic);
+  const TestModel model(options);
+  CModel c;
+  AlignedBytes cpp_memory(ContactBody::required(model.model(), limits).bytes), c_memory(cpp_memory.size());
+  ContactBody cpp = ContactBody::create(model.model(), limits, {cpp_memory.data(), cpp_memory.size()}).body;
+  auto* const body = greenloop_contact_body_create(&c.model, same, c_memory.data(), c_memory.size()).body;
+  const ContactBody::ToolInput tool{{Shape::sphere(0.03), {{0, 0, 0.125}, {1, 0, 0, 0}}}, 0.3};
+  const greenloop_tool c_tool = {{GREENLOOP_SHAPE_SPHERE, {0.03}, nullptr}, {0, 0, 0.125}, {1, 0, 0, 0}, 0.3, 0};
+  LocalModel cpp_model;
+  greenloop_local_model c_model;
+  CHECK(greenloop_contact_body_local_model(body, 1, 0.03F, &c_model) == 0);
+  REQUIRE(answered(cpp.step({&tool, 1}, {}, {any_budget}).status));
+  static_cast<void>(greenloop_contact_body_step(body, &c_tool, 1, nullptr, any_budget));
+  for (const bool turns : {false, true}) {
+    const std::uint64_t work = cpp.local_model(turns, 0.03F, cpp_model);
+    CHECK(work > 0);
+    CHECK(work <= cpp.local_model_work(1, turns));
+    CHECK(greenloop_contact_body_local_model(body, turns ? 1 : 0, 0.03F, &c_model) == work);
+    CHECK(same_bytes(c_model, cpp_model));
+    const float motion[6] = {1e-6F, 2e-6F, 3e-6F, 1e-4F, 0, 0};
+    float cpp_wrench[6], c_wrench[6];
+    cpp_model.evaluate({motion, cpp_model.components}, cpp_wrench);
+    greenloop_local_model_evaluate(&c_model, motion, c_wrench);
+    CHECK(same_bytes(c_wrench, cpp_wrench));
+    CHECK(greenloop_local_model_motion_length(&c_model, motion) ==
+          cpp_model.motion_length({motion, cpp_model.components}));
+  }
 }
 
 TEST_CASE("what C is given wrongly is refused by name") {
@@ -235,7 +279,7 @@ TEST_CASE("what C is given wrongly is refused by name") {
   const auto made = greenloop_contact_body_create(&c.model, limits, memory.data(), memory.size());
   REQUIRE(made.error == GREENLOOP_CREATE_OK);
   greenloop_tool tools[40] = {};
-  for (greenloop_tool& tool : tools) tool = {{GREENLOOP_SHAPE_POLYHEDRON, {}, nullptr}, {}, {1, 0, 0, 0}, 0.3};
+  for (greenloop_tool& tool : tools) tool = {{GREENLOOP_SHAPE_POLYHEDRON, {}, nullptr}, {}, {1, 0, 0, 0}, 0.3, 0};
   constexpr std::uint64_t work = std::uint64_t{1} << 40;
   CHECK(greenloop_contact_body_step(made.body, tools, 40, nullptr, work).contact.step.status ==
         GREENLOOP_HELD_OUT_OF_RANGE);

@@ -47,10 +47,10 @@ void to_set_order(const Factor& factor, std::uint32_t columns, const float* of_f
   }
 }
 
-// whether forces of columns could overflow the answer
-bool can_overflow(const Body& body, const ContactSet& set, const float* force) {
+// whether so many components of forces could overflow the answer
+bool can_overflow(const Body& body, std::uint32_t components, const float* force) {
   float sum = 0;
-  for (std::uint32_t i = 0; i < 3 * set.columns; ++i) {
+  for (std::uint32_t i = 0; i < components; ++i) {
     sum += std::fabs(force[i]);
   }
   return !(sum <= body.force_limit && sum * body.stiffness <= FLT_MAX);
@@ -72,7 +72,7 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
   to_factor_order(factor, set.columns, force, solution);
   cholesky_solve(order, body.cache.stride(), factor.matrix, body.solution);
   to_set_order(factor, set.columns, solution, force);
-  return !can_overflow(body, set, force);
+  return !can_overflow(body, 3 * set.columns, force);
 }
 
 // sums of the known forces; returns the model's loads
@@ -103,6 +103,7 @@ bool solve_forces(const Body& body, std::span<const Constraint> contacts, const 
 // nothing is touched: the body is at rest
 void release(Body& body, const Elastostatic::Response& response, std::uint64_t work, Elastostatic::StepReport& report) {
   body.last.release();
+  body.mixed.last.release();
   body.planned.columns = 0;
   body.answered = true;
   const std::uint32_t finest = body.view->levels - 1;
@@ -145,6 +146,12 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
   return body.older_force;
 }
 
+void report_glide(const GlideReport& glide, Elastostatic::StepReport& report) {
+  report.details.glide = glide.share;
+  report.details.level_difference = glide.difference;
+  report.details.switch_work = glide.work;
+}
+
 // blends the level's forces with those of the level before, if that is another, and remembers the answer
 [[gnu::noinline]] void glide_forces(Body& body, std::span<const Constraint> contacts, std::uint64_t budget,
                                     float* force, Elastostatic::StepReport& report) {
@@ -152,9 +159,7 @@ const float* solve_older_level(Body& body, std::span<const Constraint> contacts,
   const float* const older = solve_older_level(body, contacts, budget, report.work);
   const GlideReport glide = body.glide.blend(contacts, body.last, older, force);
   body.last.remember(contacts, body.planned, force);
-  report.details.glide = glide.share;
-  report.details.level_difference = glide.difference;
-  report.details.switch_work = glide.work;
+  report_glide(glide, report);
 }
 
 // what the glide to a finer level begins with, if its factor has just been completed
@@ -238,7 +243,7 @@ void answer_loads(Body& body, const Contacts& contacts, const Plan& plan, std::u
   report.status = is_finest(body, plan) ? Status::ok : Status::coarser;
   body.last.release();
   body.answered = true;
-  if (contacts.are_held()) {
+  if (contacts.found == nullptr) {
     hand_out_forces(body, contacts, response.force, report);
   }
 }
@@ -246,32 +251,45 @@ void answer_loads(Body& body, const Contacts& contacts, const Plan& plan, std::u
 // a solution for unilateral contacts whose residual is below this is as good as the compliance is
 constexpr float unilateral_residual = 2e-4F;
 
-// forces of unilateral contacts on the columns of a set; false, and none written, if they could overflow the answer.
-// allowance: for ContactProblem. work: grows by what they took
-bool push(Body& body, const Contacts& contacts, const ContactSet& set, const Factor& factor, const float* displaced,
-          std::uint64_t allowance, std::uint64_t& work) {
+// forces of unilateral contacts on the columns of a set; none are written if there are none, or they could overflow the
+// answer. allowance: for ContactProblem. work: grows by what they took
+Status push(Body& body, const Contacts& contacts, const ContactSet& set, const Factor& factor, const float* displaced,
+            std::uint64_t allowance, std::uint64_t& work) {
   const UnilateralSet all{contacts.surfaces, set, displaced, body.stiffness};
   ContactAnswer& found = *contacts.found;
-  const std::uint64_t most = body.counts.iterations * ContactProblem::least_work(contacts.corners());
+  const Prices& prices = body.counts.prices;
+  const std::uint64_t most = body.counts.iterations * ContactProblem::least_work(prices, contacts.corners());
   found = solve_unilateral(all, factor, body.cache.stride(), {unilateral_residual, body.counts.iterations},
                            allowance < most ? allowance : most, body.unilateral, body.column_force);
-  work += gather_unilateral_work(body.counts.prices, contacts.corners()) + found.work;
-  if (!found.valid || can_overflow(body, set, body.column_force)) {
-    return false;
+  work += gather_unilateral_work(prices, contacts.corners()) + found.work;
+  if (!found.valid || can_overflow(body, 3 * set.columns, body.column_force)) {
+    return found.valid ? Status::held_overflow : Status::held_unsolved;
   }
   hand_out_unilateral(all, body.unilateral, contacts.output);
-  return true;
+  return Status::ok;
 }
 
 // the same on the planned set. spare: what the plan leaves of the budget
-bool push_planned(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor, const float* displaced,
-                  std::uint64_t spare, std::uint64_t& work) {
+Status push_planned(Body& body, const Contacts& contacts, const Plan& plan, const Factor& factor,
+                    const float* displaced, std::uint64_t spare, std::uint64_t& work) {
   const Prices& prices = body.counts.prices;
-  const std::uint64_t corners = plan.counts.corners;
   work += Glide::blend_work(prices, plan.counts.contacts);
-  const std::uint64_t planned =
-      unilateral_work(prices, corners, plan.counts.iterations) - gather_unilateral_work(prices, corners);
+  const std::uint64_t planned = unilateral_work(prices, plan.counts.corners, plan.counts.iterations) -
+                                gather_unilateral_work(prices, plan.counts.corners);
   return push(body, contacts, body.planned, factor, displaced, planned + spare, work);
+}
+
+// forces of mixed contacts on the columns of the planned set
+Status hold_mixed(const Body& body, MixedScratch& scratch, const Factor& factor, const float* displaced) {
+  const bool finest = body.planned.level() + 1 == body.counts.levels;
+  const MixedSet all{body.planned, factor, body.cache.stride(), displaced, finest};
+  if (solve_mixed(all, scratch, body.column_force) > 0 && finest) {
+    return Status::held_singular;
+  }
+  return can_overflow(body, 3 * body.planned.columns, body.column_force) ||
+                 can_overflow(body, 3 * scratch.contacts, scratch.force)
+             ? Status::held_overflow
+             : Status::ok;
 }
 
 // the forces of the columns of the planned set, in Body::column_force, and of its contacts; `work` grows by what that
@@ -289,10 +307,13 @@ Status find_forces(Body& body, const Contacts& contacts, const Plan& plan, std::
     work += displace_by_loads_work(body.counts, plan.counts, body.loads->counts, displace_by_loads(body));
     displaced = body.loads->column_displaced;
   }
-  if (!contacts.are_held()) {
-    return push_planned(body, contacts, plan, *factor, displaced, spare, work) ? Status::ok : Status::held_overflow;
+  if (contacts.found != nullptr) {
+    return push_planned(body, contacts, plan, *factor, displaced, spare, work);
   }
   work += plan.forces;
+  if (contacts.mixed != nullptr) {
+    return hold_mixed(body, *contacts.mixed, *factor, displaced);
+  }
   if (!solve_forces(body, contacts.held, body.planned, *factor, displaced, body.column_force)) {
     return Status::held_overflow;
   }
@@ -326,6 +347,10 @@ void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_
     glide_forces(body, contacts.held, budget, contacts.force, report);
   } else {
     body.glide.stop(set.level());
+    if (contacts.mixed != nullptr) {
+      share_forces(body.column_force, contacts.held.size(), set, contacts.force);
+      report_glide(glide_mixed(contacts.all, set, *contacts.mixed), report);
+    }
     body.last.remember(contacts.held, set, contacts.force);
   }
   report.error = answer_error(body, plan, !response.displacement.empty(), report);
@@ -337,15 +362,15 @@ void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_
   const bool finest = is_finest(body, plan) && set.waiting == 0 && report.details.glide == 1;
   report.status = finest ? Status::ok : Status::coarser;
   body.answered = true;
-  if (contacts.are_held()) {
+  if (contacts.found == nullptr) {
     hand_out_forces(body, contacts, response.force, report);
   }
 }
 
 // surfaces that touch nothing that moves; apart for its stack
-[[gnu::noinline]] bool push_rigid(Body& body, const Contacts& contacts, std::uint64_t& work) {
-  const std::uint64_t allowance = ContactProblem::least_work(contacts.corners());
-  return push(body, contacts, {}, {}, nullptr, allowance, work);
+[[gnu::noinline]] Status push_rigid(Body& body, const Contacts& contacts, std::uint64_t& work) {
+  return push(body, contacts, {}, {}, nullptr, ContactProblem::least_work(body.counts.prices, contacts.corners()),
+              work);
 }
 
 // a step whose inputs are accepted
@@ -357,8 +382,12 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   }
   const Contacts& contacts = accepted.contacts;
   std::uint64_t work = accepted.work;
-  if (contacts.held.empty() && !contacts.surfaces.empty() && !push_rigid(body, contacts, work)) {
-    return hold(Status::held_overflow, work, report);
+  if (contacts.mixed == nullptr) {
+    body.mixed.last.release();
+  }
+  const bool is_rigid = contacts.held.empty() && !contacts.surfaces.empty();
+  if (const Status pushed = is_rigid ? push_rigid(body, contacts, work) : Status::ok; pushed != Status::ok) {
+    return hold(pushed, work, report);
   }
   if (contacts.held.empty() && !body.is_loaded) {
     return release(body, response, work, report);
@@ -367,7 +396,8 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   wants.budget = budget.work - work;
   wants.field = !response.displacement.empty();
   wants.finest_displaced = wants.field ? finest_displaced(body, response) : body.counts.levels - 1;
-  wants.corners = contacts.are_held() ? 0 : contacts.corners();
+  wants.corners = contacts.mixed != nullptr ? contacts.mixed_counts.corners : contacts.corners();
+  wants.rows = contacts.mixed_counts.rows;
   wants.iterations = least_iterations(body.counts.iterations);
   const Plan& plan = *new (body.plan) Plan(make_plan(body, contacts.held, wants));
   work += plan.work;
@@ -383,7 +413,7 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
 // loads: null where nothing but contacts acts
 void take_step(Body& body, std::span<const Constraint> constraints, const Elastostatic::Loads* loads, Budget budget,
                const Elastostatic::Response& response, Elastostatic::StepReport& report) {
-  body.answered = false;
+  body.answered = body.pushed = false;
   const Status request = check_request(body, constraints.size(), budget, response);
   if (request != Status::ok) {
     return hold(request, 0, report);
@@ -401,65 +431,6 @@ void take_step(Body& body, std::span<const Constraint> constraints, const Elasto
 }
 
 }  // namespace
-
-Elastostatic::Intent Elastostatic::intended(const Model& model) noexcept {
-  if (model.problem() != layout::Problem::elastostatic) {
-    return {};
-  }
-  const layout::Info& info = *model.view().info;
-  return {.limits = {.max_contacts = info.max_contacts, .model_loads = info.loads > 0},
-          .budget = {info.step_work},
-          .rate = info.rate,
-          .share = info.share > 0 ? info.share : 1};
-}
-
-Elastostatic::Requirement Elastostatic::required(const Model& model, const Elastostatic::Limits& limits) noexcept {
-  BodySizes sizes;
-  Elastostatic::Requirement requirement;
-  measure_body(model.view(), limits, sizes, requirement);
-  if (!sizes.supported) {
-    return {};
-  }
-  Arena counting;
-  place_body(counting, model.view(), sizes);
-  requirement.bytes = counting.bytes() <= SIZE_MAX ? static_cast<std::size_t>(counting.bytes()) : 0;
-  return requirement;
-}
-
-Elastostatic::Created Elastostatic::create(const Model& model, const Elastostatic::Limits& limits,
-                                           std::span<std::byte> memory) noexcept {
-  const ModelView& view = model.view();
-  Created created;
-  created.available = memory.size();
-  BodySizes sizes;
-  Elastostatic::Requirement requirement;
-  measure_body(view, limits, sizes, requirement);
-  if (!sizes.supported) {
-    created.error = in_range(limits) ? CreateError::unsupported_model : CreateError::bad_limits;
-    return created;
-  }
-  Arena counting;
-  place_body(counting, view, sizes);
-  if (counting.bytes() > memory.size()) {
-    created.requested = counting.bytes() <= SIZE_MAX ? static_cast<std::size_t>(counting.bytes()) : 0;
-    created.error = CreateError::arena_too_small;
-    created.missing = created.requested > memory.size() ? created.requested - memory.size() : 0;
-    return created;
-  }
-  created.requested = static_cast<std::size_t>(counting.bytes());
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % requirement.alignment != 0) {
-    created.error = CreateError::arena_misaligned;
-    return created;
-  }
-  Arena arena(memory.data());
-  created.body.body_ = place_body(arena, view, sizes);
-  if (created.body.body_ == nullptr) {
-    created.error = CreateError::unsupported_model;
-    return created;
-  }
-  created.body.body_->least_work = requirement.least_work;
-  return created;
-}
 
 Elastostatic::StepReport Elastostatic::step(std::span<const Constraint> contacts, Budget budget,
                                             const Response& response) noexcept {
@@ -490,6 +461,7 @@ Elastostatic::UnilateralReport Elastostatic::step(std::span<const UnilateralCont
     accept_surfaces(body, contacts, loads, response, found, accepted);
   }
   carry_out(body, accepted, budget, response, report);
+  body.pushed = greenloop::answered(report.status);
   report.residual = found.residual;
   report.iterations = found.iterations;
   assert(Arena::intact(body.last_red_zone));

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "runtime/constraint.hpp"
+#include "runtime/local_model.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/mask.hpp"
 #include "runtime/model.hpp"
@@ -31,6 +32,7 @@ class Elastostatic {
     std::uint32_t max_forces = 0;  ///< 0..4096, nodes that known forces are on in a step, those of masks each time; 0:
                                    ///< constraints of other kinds than hold are refused
     bool model_loads = false;      ///< the model's loads may act, gravity and pressures
+    bool mixed_contacts = false;   ///< contacts of kinds normal and mask; false: they are refused
     std::uint32_t max_points = 0;  ///< 0..4096, points whose displacement may be asked for at once; 0: none, nor what
                                    ///< masks meet
     Prices prices{};               ///< that make work units of what a step does
@@ -52,17 +54,19 @@ class Elastostatic {
 
   /// What acts on a body in a step beside its constraints, and how stiff it is.
   struct Loads {
-    std::span<const Mask> masks{};  ///< that constraints of kind pattern name
+    std::span<const Mask> masks{};  ///< that constraints of kinds pattern and mask name
     Vec3 gravity{};  ///< m/s^2, of the whole body, where the model has accelerations (ElastostaticView::has_gravity)
-    std::span<const float> pressure{};  ///< Pa, of the model's first pressures, in their order
-    float stiffness = 1;                ///< 2^-20..2^20, Young's modulus over the model's
+    std::span<const float> pressure{};         ///< Pa, of the model's first pressures, in their order
+    float stiffness = 1;                       ///< 2^-20..2^20, Young's modulus over the model's
+    std::span<const DirectedMask> directed{};  ///< that constraints of kinds normal and along name
   };
 
   /// The answer of a step; the caller owns the memory. The size of `displacement` says which nodes are displaced: all,
   /// or those of the coarser levels, which come first in the file (Model::node_count). Floats of the caller's are seen
   /// as vectors by as_vec3 and as_vec4.
   struct Response {
-    std::span<Vec3> force;         ///< [constraints] N, the force that holds each, or that is known, in their order
+    std::span<Vec3> force;  ///< [constraints] N, the force that holds each, or that is known, in their order; along a
+                            ///< directed mask its amount and two zeros
     std::span<Vec4> displacement;  ///< [nodes of levels 0..q] m; empty: none is wanted
   };
 
@@ -123,7 +127,9 @@ class Elastostatic {
   /// The same with what else acts (James & Pai 2001, section 4.2): known forces, on nodes and by masks, reduce what the
   /// contacts have to do to stand where they are held. They are resolved at the level of the contacts: below the finest
   /// one, and in steps without contacts that the budget does not hold there, a force acts on the node that stands for
-  /// its own. Forces of contacts scale with the stiffness, displacements by known forces with its inverse.
+  /// its own. Forces of contacts scale with the stiffness, displacements by known forces with its inverse. With
+  /// Limits::mixed_contacts masks may be held, and nodes and masks along directions alone (docs/loop.md, "Mixed
+  /// contacts"); one that depends on the others at the finest level makes the step held_singular.
   StepReport step(std::span<const Constraint> constraints, const Loads& loads, Budget budget,
                   const Response& response) noexcept;
 
@@ -164,6 +170,19 @@ class Elastostatic {
   /// masked_compliance is.
   std::uint64_t stiffness(const MeshPoint& point, std::span<const Mask, 3> masks, float rigid, bool capped,
                           std::span<float, 9> stiffness) noexcept;
+
+  /// How the forces of the last answer follow the motions of the rigid surfaces, until the next step (James & Pai 2001,
+  /// section 5; docs/loop.md, "A faster loop"). points: [contacts] of that answer in their order: the tool that each is
+  /// of, and the lever about which its torque is taken and it turns, m. tools: 1 .. LocalModel::most_tools. components:
+  /// 3 or 6. length: m, above 0. Returns the work units that it took; at most local_model_work. For the loop. Refused,
+  /// 0 and nothing is written, unless the last step was one of unilateral contacts and answered, and where a number is
+  /// out of these ranges.
+  std::uint64_t local_model(std::span<const ToolPoint> points, std::uint32_t tools, std::uint32_t components,
+                            float length, LocalModel& model) noexcept;
+
+  /// Work units of `local_model` for so many contacts.
+  [[nodiscard]] std::uint64_t local_model_work(std::uint32_t contacts, std::uint32_t tools,
+                                               std::uint32_t components) const noexcept;
 
  private:
   Body* body_ = nullptr;

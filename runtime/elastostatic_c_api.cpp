@@ -21,6 +21,9 @@ static_assert(sizeof(Prices) == sizeof(greenloop_prices) && std::is_trivially_co
 // a span is a pointer and a size
 static_assert(sizeof(Mask) == sizeof(greenloop_mask) && alignof(Mask) == alignof(greenloop_mask) &&
               offsetof(Mask, weight) == offsetof(greenloop_mask, weight) && std::is_trivially_copyable_v<Mask>);
+static_assert(sizeof(DirectedMask) == sizeof(greenloop_directed_mask) &&
+              offsetof(DirectedMask, part) == offsetof(greenloop_directed_mask, part) &&
+              std::is_trivially_copyable_v<DirectedMask> && sizeof(Vec3) == 3 * sizeof(float));
 static_assert(sizeof(MeshPoint) == sizeof(greenloop_vertex) &&
               offsetof(MeshPoint, weight) == offsetof(greenloop_vertex, weight));
 // NOLINTEND(misc-redundant-expression)
@@ -42,6 +45,7 @@ Elastostatic::Limits limits_of(greenloop_elastostatic_limits limits) noexcept {
   same.model_loads = limits.model_loads != 0;
   same.max_points = limits.max_points;
   same.iterations = limits.iterations;
+  same.mixed_contacts = limits.mixed_contacts != 0;
   return same;
 }
 
@@ -50,6 +54,8 @@ namespace {
 std::span<const Mask> masks_of(const greenloop_mask* masks, std::size_t count) {
   return {reinterpret_cast<const Mask*>(masks), count};
 }
+
+std::span<Vec3> vectors_of(float* vectors, std::size_t count) { return {reinterpret_cast<Vec3*>(vectors), count}; }
 
 std::span<const MeshPoint> points_of(const greenloop_vertex* points, std::size_t count) {
   return {reinterpret_cast<const MeshPoint*>(points), count};
@@ -61,7 +67,8 @@ Elastostatic::Loads loads_of(const greenloop_loads& loads) noexcept {
   return {masks_of(loads.mask, loads.masks),
           {loads.gravity[0], loads.gravity[1], loads.gravity[2]},
           {loads.pressure, loads.pressures},
-          loads.stiffness == 0 ? 1 : loads.stiffness};
+          loads.stiffness == 0 ? 1 : loads.stiffness,
+          {reinterpret_cast<const DirectedMask*>(loads.directed_mask), loads.directed_masks}};
 }
 
 greenloop_elastostatic_report report_of(const Elastostatic::StepReport& report) noexcept {
@@ -89,7 +96,7 @@ greenloop_elastostatic_intent greenloop_elastostatic_intended(const greenloop_mo
   const Elastostatic::Limits& limits = intent.limits;
   return {{limits.max_contacts, limits.cached_factors, limits.forces_only ? 1 : 0, limits.keep_capacitance ? 1 : 0,
            limits.glide_cycles, limits.refining_work, nullptr, limits.max_forces, limits.model_loads ? 1 : 0,
-           limits.max_points, limits.iterations},
+           limits.max_points, limits.iterations, limits.mixed_contacts ? 1 : 0},
           intent.budget.work,
           intent.rate,
           intent.share};
@@ -146,6 +153,18 @@ greenloop_mask greenloop_make_mask(const greenloop_model* model, const float* ar
                                    size_t capacity) {
   return std::bit_cast<greenloop_mask>(
       make_mask(model_in(model), {area, areas}, points_of(point, 1)[0], radius, {node, capacity}, {weight, capacity}));
+}
+
+greenloop_directed_mask greenloop_direct_mask(const greenloop_mask* mask, const float* direction, float* part,
+                                              size_t capacity) {
+  return std::bit_cast<greenloop_directed_mask>(
+      direct_mask(masks_of(mask, 1)[0], {direction[0], direction[1], direction[2]}, vectors_of(part, capacity)));
+}
+
+greenloop_directed_mask greenloop_make_torque_mask(const greenloop_model* model, const greenloop_mask* mask,
+                                                   const float* axis, float* part, size_t capacity) {
+  return std::bit_cast<greenloop_directed_mask>(
+      make_torque_mask(model_in(model), masks_of(mask, 1)[0], {axis[0], axis[1], axis[2]}, vectors_of(part, capacity)));
 }
 
 uint64_t greenloop_elastostatic_displacements(greenloop_elastostatic* body, const greenloop_vertex* points,

@@ -93,6 +93,7 @@ typedef enum greenloop_status {
   GREENLOOP_HELD_OVERFLOW,
   GREENLOOP_HELD_UNSUPPORTED,
   GREENLOOP_HELD_BAD_SURFACE,
+  GREENLOOP_HELD_UNSOLVED,
   GREENLOOP_HELD_ILLEGAL_IMPULSE
 } greenloop_status;
 
@@ -145,6 +146,7 @@ typedef struct greenloop_elastostatic_limits {
   int model_loads;     /* 1: the model's loads may act, gravity and pressures */
   uint32_t max_points; /* 0..4096, points whose displacement may be asked for at once; 0: none, nor what masks meet */
   uint32_t iterations; /* 0..1024 for unilateral contacts (greenloop_contact.h), at most 256 of them; 0: refused */
+  int mixed_contacts;  /* 1: contacts of kinds GREENLOOP_NORMAL and GREENLOOP_MASK; 0: they are refused */
 } greenloop_elastostatic_limits;
 
 /* The loop that a model is meant for, as its scene has it ([budget] of docs/scene.md). */
@@ -169,18 +171,20 @@ typedef struct greenloop_elastostatic_created {
   greenloop_elastostatic* body;         /* null on an error */
 } greenloop_elastostatic_created;
 
-/* What is known of a node. GREENLOOP_NORMAL is refused; forces are known by greenloop_elastostatic_limits.max_forces.
- */
+/* What is known of a node or a mask. Forces are known by greenloop_elastostatic_limits.max_forces, GREENLOOP_NORMAL and
+ * GREENLOOP_MASK by mixed_contacts there. */
 typedef enum greenloop_constraint_kind {
-  GREENLOOP_HOLD,   /* all three components of its displacement */
-  GREENLOOP_NORMAL, /* its displacement along the normal; it slides freely across it */
-  GREENLOOP_FORCE,  /* the force on it */
-  GREENLOOP_PATTERN /* the force of a mask, by its number, as a whole; it is spread by the mask's weights */
+  GREENLOOP_HOLD,    /* all three components of a node's displacement */
+  GREENLOOP_NORMAL,  /* what a directed mask measures, as a node's displacement along its normal; all else is free */
+  GREENLOOP_FORCE,   /* the force on a node */
+  GREENLOOP_PATTERN, /* the force of a mask as a whole; it is spread by the mask's weights */
+  GREENLOOP_MASK,    /* all three components of a mask's mean displacement */
+  GREENLOOP_ALONG    /* the force along a directed mask */
 } greenloop_constraint_kind;
 
 typedef struct greenloop_constraint {
-  uint32_t node;  /* index in the model file; of a pattern the number of its mask */
-  float value[3]; /* m where displacements are known, N where forces are */
+  uint32_t node;  /* index in the model file, or the number of a mask or directed mask */
+  float value[3]; /* m where displacements are known, N where forces are; of a directed mask the first alone */
   greenloop_constraint_kind kind;
 } greenloop_constraint;
 
@@ -200,14 +204,26 @@ typedef struct greenloop_mask {
   size_t weights;
 } greenloop_mask;
 
+/* A mask whose force has a direction of its own at each node: an amount x of it is the forces x part[k], and it
+ * measures the sum of part[k] times the displacement of node[k]. part: 3 floats a node; parts: nodes. */
+typedef struct greenloop_directed_mask {
+  const uint32_t* node;
+  size_t nodes;
+  const float* part;
+  size_t parts;
+} greenloop_directed_mask;
+
 /* What acts on a body in a step beside its constraints, and how stiff it is. */
 typedef struct greenloop_loads {
-  const greenloop_mask* mask; /* that constraints of kind GREENLOOP_PATTERN name */
+  const greenloop_mask* mask; /* that constraints of kinds GREENLOOP_PATTERN and GREENLOOP_MASK name */
   size_t masks;
   float gravity[3];      /* m/s^2, of the whole body, where greenloop_has_gravity */
   const float* pressure; /* Pa, of the model's first pressures, in their order */
   size_t pressures;
   float stiffness; /* 2^-20..2^20, Young's modulus over the model's; 0: 1 */
+  const greenloop_directed_mask*
+      directed_mask; /* that constraints of kinds GREENLOOP_NORMAL and GREENLOOP_ALONG name */
+  size_t directed_masks;
 } greenloop_loads;
 
 /* A force [N] and its torque [N m] about a point. */
@@ -308,6 +324,14 @@ uint32_t greenloop_pressure_count(const greenloop_model* model);
 greenloop_mask greenloop_make_mask(const greenloop_model* model, const float* area, size_t areas,
                                    const greenloop_vertex* point, float radius, uint32_t* node, float* weight,
                                    size_t capacity);
+
+/* A mask along a unit vector, 3 floats; and the torque of a mask, N m, about a unit vector through its centre, without
+ * a force in all. part: room for 3 floats a node, which the directed mask refers to. Of 0 nodes if there are more than
+ * `capacity`, or none is off the axis. For the loop; linear in the nodes. */
+greenloop_directed_mask greenloop_direct_mask(const greenloop_mask* mask, const float* direction, float* part,
+                                              size_t capacity);
+greenloop_directed_mask greenloop_make_torque_mask(const greenloop_model* model, const greenloop_mask* mask,
+                                                   const float* axis, float* part, size_t capacity);
 
 /* Selected answers. Each returns the units that it spent beside those of steps; 0, and nothing is written, where it is
  * refused. For the loop; at most greenloop_elastostatic_requirement.selected_work, the stiffness three times that. */
@@ -472,6 +496,5 @@ const char* greenloop_recorder_error_text(greenloop_recorder_error error);
 #ifdef __cplusplus
 }
 #endif
-
 /* NOLINTEND(modernize-use-using, modernize-deprecated-headers) */
 #endif

@@ -26,6 +26,8 @@ typedef struct greenloop_unilateral_contact {
   float friction;   /* Coulomb's coefficient, 0 or more */
   float softness;   /* m/N, of the surface itself, 0 or more; above 0 if no node is named */
   float force[3];   /* N, a guess to begin with, as from the last step */
+  uint32_t tool;    /* whose the surface is: contacts of a tool share its mount */
+  float mount;      /* m/N, of a spring that the whole tool hangs on, 0 or more; the same for all of its contacts */
 } greenloop_unilateral_contact;
 
 typedef struct greenloop_unilateral_report {
@@ -98,6 +100,7 @@ typedef struct greenloop_tool {
   double position[3];   /* m, of its origin, in the frame of the model */
   double quaternion[4]; /* w, x, y, z of unit length: turns the tool's axes into the model's */
   double friction;      /* Coulomb's coefficient, 0 or more */
+  double compliance;    /* m/N, of a spring between the pose and the tool, 0 or more; 0: the tool is at its pose */
 } greenloop_tool;
 
 /* Why a tool was left alone in a step. */
@@ -119,6 +122,7 @@ typedef struct greenloop_tool_answer {
   uint32_t contacts;      /* places that may touch, of which those with a force do */
   double depth;           /* m, how far the tool was inside of the surface before this step's answer */
   uint8_t is_behind;      /* a point of it that is followed is behind the surface */
+  double sag[3];          /* m, how far its spring lets it be from its pose */
 } greenloop_tool_answer;
 
 /* A place of the surface that may touch a tool. */
@@ -152,12 +156,14 @@ typedef struct greenloop_contact_body_limits {
   uint32_t max_points;                        /* of a tool that are followed, 1..128; 0: 8 */
   double margin;          /* m, how near the surface is looked at; 0: a quarter of its mean edge length */
   double rigid_stiffness; /* N/m, of places that cannot move; 0: what the model's material has over 1 mm */
+  uint64_t search_work;   /* units that looking for contacts may take; 0: what usually suffices */
 } greenloop_contact_body_limits;
 
 typedef struct greenloop_contact_body_requirement {
-  size_t bytes;        /* 0: greenloop_contact_body_create would refuse */
-  uint64_t least_work; /* of the answer, coarsest; finding contacts is beside it */
-  uint64_t worst_work; /* the same at the finest level */
+  size_t bytes;           /* 0: greenloop_contact_body_create would refuse */
+  uint64_t least_work;    /* with that budget every step is answered */
+  uint64_t worst_work;    /* of a step that is answered at the finest level */
+  uint64_t touching_work; /* of finding contacts, at most: a part of both */
 } greenloop_contact_body_requirement;
 
 typedef struct greenloop_contact_body_created {
@@ -168,9 +174,10 @@ typedef struct greenloop_contact_body_created {
 
 typedef struct greenloop_contact_body_report {
   greenloop_unilateral_report contact;
-  uint64_t touching_work;  /* what finding contacts took, which is not in the work */
+  uint64_t touching_work;  /* what finding contacts took of the work */
   uint32_t left_out;       /* places that may touch, but for which there was no room: the deepest were kept */
   double deepest_left_out; /* m, depth of the deepest of these */
+  uint32_t unfinished;     /* tools that search_work did not suffice for */
 } greenloop_contact_body_report;
 
 /* Start-up. */
@@ -182,8 +189,7 @@ greenloop_contact_body_created greenloop_contact_body_create(const greenloop_mod
                                                              greenloop_contact_body_limits limits, void* memory,
                                                              size_t bytes);
 
-/* Units that finding what may touch these tools takes at most, wherever they are, beside a step's work. For the loop.
- */
+/* Units that finding what may touch these tools takes at most, wherever they are. For the loop. */
 uint64_t greenloop_contact_body_touching_work(const greenloop_contact_body* body, const greenloop_tool* tools,
                                               size_t count);
 
@@ -200,6 +206,67 @@ const float* greenloop_contact_body_displacement(const greenloop_contact_body* b
 
 /* The tool is somewhere else without having been between. For the loop. */
 void greenloop_contact_body_forget(greenloop_contact_body* body, uint32_t tool);
+
+/* Factors on the tools' coefficients of friction, of each node, 0 or more, read in every step until the next call; the
+ * memory is the caller's, who may change them between steps. Null: 1 everywhere. For the loop. */
+void greenloop_contact_body_surface_friction(greenloop_contact_body* body, const float* factor, size_t nodes);
+
+/* ---- A faster loop, and a passive one. ---- */
+
+enum { GREENLOOP_LOCAL_TOOLS = 3, GREENLOOP_LOCAL_COMPONENTS = 18 };
+
+/* The tools' forces as they follow the tools' motions while no contact changes its state: runtime/local_model.hpp. */
+typedef struct greenloop_local_model {
+  uint32_t tools;
+  uint32_t components; /* of a tool's motion: 3, a translation, or 6, then a rotation vector */
+  float length;        /* m, what a turn by a radian counts as in `range` */
+  float range;         /* m, a motion up to which no contact opens, closes, begins to slip or to stick */
+  float wrench[GREENLOOP_LOCAL_COMPONENTS]; /* of the body on each tool at the step: force, N, and torque, N m */
+  float change[GREENLOOP_LOCAL_COMPONENTS][GREENLOOP_LOCAL_COMPONENTS]; /* of the wrenches per unit of a component */
+} greenloop_local_model;
+
+/* Of the last answer, until the next step. turns: 0: tools do not turn meanwhile. length: m, above 0. Returns the work
+ * units that it took; 0, and nothing is written: refused, with no answer, no tool or more than GREENLOOP_LOCAL_TOOLS.
+ * For the loop. */
+uint64_t greenloop_contact_body_local_model(greenloop_contact_body* body, uint8_t turns, float length,
+                                            greenloop_local_model* model);
+
+/* motion: tools * components of it since the step, m and rad. */
+float greenloop_local_model_motion_length(const greenloop_local_model* model, const float* motion);
+
+/* wrenches: 6 * tools, N and N m. For the loop. */
+void greenloop_local_model_evaluate(const greenloop_local_model* model, const float* motion, float* wrenches);
+
+/* The largest stiffness, N/m, that a loop of this period, s, with forces that are late by `delay`, s, may render on a
+ * device of this damping, N s/m, and be passive against any hand. */
+double greenloop_passive_stiffness(double period, double delay, double damping, double virtual_damping);
+
+/* N/m, of a spring in series with which a body of this stiffness is as soft as `limit`. */
+double greenloop_coupling_stiffness(double body, double limit);
+
+enum { GREENLOOP_TANK_PORTS = 16 };
+
+/* Keeps a sampled loop passive by what it observes: runtime/passivity.hpp. */
+typedef struct greenloop_energy_tank {
+  uint8_t enabled;     /* 0: it only observes */
+  double period;       /* s */
+  double reserve;      /* J, what the hand may get beyond what it gave */
+  double most_damping; /* N s/m, with which it is braked at most */
+  double level;        /* J, below 0: overdrawn */
+  double lowest;       /* J, the least level so far, at most 0 */
+  double drained;      /* J, by braking so far */
+  double delivered;    /* J, net, to the hands so far */
+  uint32_t ports;      /* the rest is the tank's own */
+  double position[GREENLOOP_TANK_PORTS][3], force[GREENLOOP_TANK_PORTS][3], braking[GREENLOOP_TANK_PORTS][3];
+} greenloop_energy_tank;
+
+/* An enabled tank; its settings may be changed before the first step. */
+greenloop_energy_tank greenloop_energy_tank_make(double period, double reserve, double most_damping);
+
+/* One sample. position, force: 3 * ports doubles [m, N], at most GREENLOOP_TANK_PORTS; force: what is wanted, becomes
+ * what is to be rendered. stored: J. For the loop. */
+void greenloop_energy_tank_step(greenloop_energy_tank* tank, const double* position, double* force, size_t ports,
+                                double stored);
 
 /* One sentence each; static storage. */
 const char* greenloop_polyhedron_error_text(greenloop_polyhedron_error error);

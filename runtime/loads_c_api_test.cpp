@@ -16,8 +16,12 @@ namespace greenloop {
 namespace {
 
 constexpr SyntheticOptions with_loads{.levels = 3, .gravity = true, .pressures = 2};
-constexpr Elastostatic::Limits limits{
-    .max_contacts = 4, .cached_factors = 2, .max_forces = 40, .model_loads = true, .max_points = 2};
+constexpr Elastostatic::Limits limits{.max_contacts = 4,
+                                      .cached_factors = 2,
+                                      .max_forces = 40,
+                                      .model_loads = true,
+                                      .mixed_contacts = true,
+                                      .max_points = 2};
 
 // a body in C beside one in C++
 struct Both {
@@ -29,6 +33,7 @@ struct Both {
     same.max_forces = limits.max_forces;
     same.model_loads = 1;
     same.max_points = limits.max_points;
+    same.mixed_contacts = 1;
     need = greenloop_elastostatic_required(&c_model, same);
     arena = AlignedBytes(need.bytes);
     field = AlignedBytes(std::size_t{16} * greenloop_node_count(&c_model));
@@ -76,7 +81,7 @@ TEST_CASE("a loaded step, and what is asked after it, are the same through C, bi
                                               {0, {0, 1, 0}, GREENLOOP_PATTERN}};
   const std::vector<Constraint> same = {{nodes[20], {1e-3F, 0, 0}}, {0, {0, 1, 0}, Constraint::Kind::pattern}};
   const float pressure[] = {100, 200};
-  const greenloop_loads loads{&mask, 1, {0, 0, -9.81F}, pressure, 2, 2};
+  const greenloop_loads loads{&mask, 1, {0, 0, -9.81F}, pressure, 2, 2, nullptr, 0};
   float force[6];
   const auto report = greenloop_elastostatic_step_loaded(both.c, constraints, 2, &loads, any_budget, force,
                                                          reinterpret_cast<float*>(both.field.data()), count);
@@ -102,6 +107,47 @@ TEST_CASE("a loaded step, and what is asked after it, are the same through C, bi
         both.cpp.body().stiffness(same_point, same_masks, 50, true, block));
   CHECK(same_bytes(block, c_block));
   CHECK(stiffness_norm(block) > 0);
+}
+
+TEST_CASE("mixed contacts are the same through C, bit for bit") {
+  Both both;
+  const auto nodes = both.model.touchable();
+  const std::uint32_t masked[] = {nodes[4], nodes[9], nodes[17]};
+  const float weight[] = {0.5F, 0.25F, 0.25F}, up[] = {0, 0, 1};
+  const greenloop_mask mask{masked, 3, weight, 3};
+  const Mask same_mask{masked, weight};
+  float part[9];
+  std::vector<Vec3> same_part(3);
+  greenloop_directed_mask directed[] = {greenloop_direct_mask(&mask, up, part, 3), {}};
+  const DirectedMask same_directed = direct_mask(same_mask, {0, 0, 1}, same_part);
+  REQUIRE(directed[0].parts == 3);
+  CHECK(std::memcmp(part, same_part.data(), sizeof part) == 0);
+  float torque[9];
+  std::vector<Vec3> same_torque(3);
+  directed[1] = greenloop_make_torque_mask(&both.c_model, &mask, up, torque, 3);
+  REQUIRE(make_torque_mask(both.model.model(), same_mask, {0, 0, 1}, same_torque).part.size() == directed[1].parts);
+  CHECK(std::memcmp(torque, same_torque.data(), sizeof torque) == 0);
+
+  const greenloop_constraint constraints[] = {{nodes[20], {1e-3F, 0, 0}, GREENLOOP_HOLD},
+                                              {0, {-1e-3F, 0, 0}, GREENLOOP_NORMAL},
+                                              {1, {1e-3F, 0, 0}, GREENLOOP_ALONG}};
+  const std::vector<Constraint> same = {{nodes[20], {1e-3F, 0, 0}},
+                                        {0, {-1e-3F, 0, 0}, Constraint::Kind::normal},
+                                        {1, {1e-3F, 0, 0}, Constraint::Kind::along}};
+  greenloop_loads loads{};
+  loads.directed_mask = directed;
+  loads.directed_masks = 2;
+  Elastostatic::Loads same_loads;
+  const DirectedMask both_directed[] = {same_directed, {masked, same_torque}};
+  same_loads.directed = both_directed;
+  float force[9];
+  const auto report = greenloop_elastostatic_step_loaded(both.c, constraints, 3, &loads, any_budget, force, nullptr, 0);
+  const Elastostatic::StepReport expected = both.cpp.step(same, same_loads, any_budget, false);
+  CHECK(report.status == GREENLOOP_OK);
+  CHECK(report.work == expected.work);
+  CHECK(std::equal(both.cpp.force().begin(), both.cpp.force().end(), force));
+  CHECK(force[3] < 0);
+  CHECK(force[6] == 1e-3F);
 }
 
 TEST_CASE("a stiffness of 0 is the model's own; wrenches are those of C++") {

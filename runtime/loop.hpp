@@ -33,9 +33,11 @@ enum class Status : std::uint8_t {
   held_unsupported,    ///< a constraint is of a kind that the solver does not know
   held_bad_surface,  ///< of a unilateral contact: its normal is not of unit length, its weights sum to more than 1, or
                      ///< a number that must not be negative is
+  held_unsolved,     ///< the laws of unilateral contacts have no finite solution: numbers are too large, or a point's
+                     ///< compliance is not positive definite to working precision
   held_illegal_impulse,  ///< an impulse may not follow the last one
 };
-inline constexpr std::size_t statuses = 13;
+inline constexpr std::size_t statuses = 14;
 
 /// Whether a step was answered, so that its buffers hold this step's answer.
 constexpr bool answered(Status status) { return status <= Status::coarser; }

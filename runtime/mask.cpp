@@ -52,7 +52,56 @@ bool fill_corner(const Model& model, std::span<const float> area, const MeshPoin
   return std::isfinite(corner.share);
 }
 
+// of the positions, by the weights
+Vec3 centre_of(const Model& model, const Mask& mask) {
+  double sum[4] = {};
+  for (std::size_t k = 0; k < mask.node.size(); ++k) {
+    const Vec3 x = model.position(mask.node[k]);
+    const double weight = mask.weight[k];
+    sum[0] += weight * x.x;
+    sum[1] += weight * x.y;
+    sum[2] += weight * x.z;
+    sum[3] += weight;
+  }
+  return {static_cast<float>(sum[0] / sum[3]), static_cast<float>(sum[1] / sum[3]),
+          static_cast<float>(sum[2] / sum[3])};
+}
+
 }  // namespace
+
+DirectedMask direct_mask(const Mask& mask, Vec3 direction, std::span<Vec3> part) noexcept {
+  const std::size_t count = mask.node.size();
+  if (count > part.size() || count != mask.weight.size()) {
+    return {};
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const float weight = mask.weight[k];
+    part[k] = {weight * direction.x, weight * direction.y, weight * direction.z};
+  }
+  return {mask.node, part.first(count)};
+}
+
+DirectedMask make_torque_mask(const Model& model, const Mask& mask, Vec3 axis, std::span<Vec3> part) noexcept {
+  const std::size_t count = mask.node.size();
+  const auto known = [&](std::uint32_t node) { return node < model.node_count(); };
+  if (count > part.size() || count != mask.weight.size() || !std::all_of(mask.node.begin(), mask.node.end(), known)) {
+    return {};
+  }
+  const Vec3 centre = centre_of(model, mask);
+  double square = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Vec3 x = model.position(mask.node[k]);
+    const Vec3 r{x.x - centre.x, x.y - centre.y, x.z - centre.z};
+    part[k] = {axis.y * r.z - axis.z * r.y, axis.z * r.x - axis.x * r.z, axis.x * r.y - axis.y * r.x};
+    const Vec3& t = part[k];
+    square += double{mask.weight[k]} * (double{t.x} * t.x + double{t.y} * t.y + double{t.z} * t.z);
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto scale = static_cast<float>(mask.weight[k] / square);
+    part[k] = {scale * part[k].x, scale * part[k].y, scale * part[k].z};
+  }
+  return square > 0 && std::isfinite(1 / square) ? DirectedMask{mask.node, part.first(count)} : DirectedMask{};
+}
 
 Mask make_mask(const Model& model, std::span<const float> area, const MeshPoint& point, float radius,
                std::span<std::uint32_t> node, std::span<float> weight) noexcept {

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "runtime/model.hpp"
+#include "runtime/vec.hpp"
 
 namespace greenloop {
 
@@ -34,5 +35,24 @@ struct Mask {
 /// finite. For the loop; work: some 60 operations per node of `area`.
 [[nodiscard]] Mask make_mask(const Model& model, std::span<const float> area, const MeshPoint& point, float radius,
                              std::span<std::uint32_t> node, std::span<float> weight) noexcept;
+
+/// A mask whose force has a direction of its own at each node, in fixed proportion: pressure along the surface's
+/// normals, a torque, or a single node's normal. An amount x of it is the forces x part[k]; what it measures of
+/// displacements u is the sum of part[k].u[k], so that force times displacement is work. Three of them are the axes of
+/// a tensor mask (James & Pai 2001, section 6.1, footnote 7).
+struct DirectedMask {
+  std::span<const std::uint32_t> node;  ///< file indices of touchable nodes
+  std::span<const Vec3> part;           ///< of each
+};
+
+/// A mask along a unit vector: its amounts are newtons, and it measures the mean displacement along the vector, m.
+/// part: memory for it, as many as the mask has nodes; empty if they do not fit. For the loop; linear in the nodes.
+[[nodiscard]] DirectedMask direct_mask(const Mask& mask, Vec3 direction, std::span<Vec3> part) noexcept;
+
+/// The torque of a mask about a unit vector through its centre: forces w (a x r), which have no sum. Its amounts are
+/// newton metres, and it measures the mean rotation about the axis, rad. Memory as of direct_mask; empty, too, if a
+/// node is not of the model, or no node is off the axis. For the loop; linear in the nodes.
+[[nodiscard]] DirectedMask make_torque_mask(const Model& model, const Mask& mask, Vec3 axis,
+                                            std::span<Vec3> part) noexcept;
 
 }  // namespace greenloop

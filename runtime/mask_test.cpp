@@ -95,6 +95,41 @@ TEST_CASE("below the node spacing a mask is its node; corners that are not touch
   CHECK(bench.make(at_node(fixed), 0.01F).node.empty());
 }
 
+TEST_CASE("a mask along a direction has its weights, a torque turns by a newton metre and does not push") {
+  Bench bench({.levels = 4});
+  const Mask mask = bench.make(at_node(bench.model.touchable()[40]), 0.05F);
+  REQUIRE(mask.node.size() > 3);
+  std::vector<Vec3> part(mask.node.size());
+  const DirectedMask along = direct_mask(mask, {0, 0.6F, 0.8F}, part);
+  REQUIRE(along.part.size() == mask.node.size());
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    CHECK(along.part[k].x == 0);
+    CHECK(along.part[k].y == mask.weight[k] * 0.6F);
+    CHECK(along.part[k].z == mask.weight[k] * 0.8F);
+  }
+  const DirectedMask torque = make_torque_mask(bench.model.model(), mask, {0, 0, 1}, part);
+  REQUIRE(torque.part.size() == mask.node.size());
+  double force[3] = {}, about = 0, size = 0;
+  for (std::size_t k = 0; k < part.size(); ++k) {
+    const Vec3 x = bench.model.model().position(mask.node[k]);
+    force[0] += double{part[k].x};
+    force[1] += double{part[k].y};
+    force[2] += double{part[k].z};
+    about += double{x.x} * part[k].y - double{x.y} * part[k].x;
+    size += std::hypot(double{part[k].x}, double{part[k].y});
+  }
+  CHECK(about == doctest::Approx(1).epsilon(1e-4));
+  for (const double sum : force) CHECK(std::abs(sum) <= 1e-4 * size);
+  // what is no such mask
+  CHECK(direct_mask(mask, {0, 0, 1}, std::span(part).first(2)).node.empty());
+  CHECK(make_torque_mask(bench.model.model(), mask, {0, 0, 1}, std::span(part).first(2)).node.empty());
+  CHECK(
+      make_torque_mask(bench.model.model(), {mask.node.first(1), mask.weight.first(1)}, {0, 0, 1}, part).node.empty());
+  const std::uint32_t foreign[] = {bench.model.view().node_count, 0};
+  const float halves[] = {0.5F, 0.5F};
+  CHECK(make_torque_mask(bench.model.model(), {foreign, halves}, {0, 0, 1}, part).node.empty());
+}
+
 TEST_CASE("what is no mask is an empty one") {
   Bench bench({.levels = 3});
   const std::uint32_t node = bench.model.touchable()[0];

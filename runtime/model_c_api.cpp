@@ -51,10 +51,12 @@ static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::
               same(GREENLOOP_HELD_OVERFLOW, Status::held_overflow) &&
               same(GREENLOOP_HELD_UNSUPPORTED, Status::held_unsupported) &&
               same(GREENLOOP_HELD_BAD_SURFACE, Status::held_bad_surface) &&
+              same(GREENLOOP_HELD_UNSOLVED, Status::held_unsolved) &&
               same(GREENLOOP_HELD_ILLEGAL_IMPULSE, Status::held_illegal_impulse) &&
               GREENLOOP_HELD_ILLEGAL_IMPULSE + 1 == statuses);
 static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NORMAL, Constraint::Kind::normal) &&
-              same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern));
+              same(GREENLOOP_FORCE, Constraint::Kind::force) && same(GREENLOOP_PATTERN, Constraint::Kind::pattern) &&
+              same(GREENLOOP_MASK, Constraint::Kind::mask) && same(GREENLOOP_ALONG, Constraint::Kind::along));
 static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic) &&
               same(GREENLOOP_PROBLEM_SCALAR, layout::Problem::scalar) &&
               same(GREENLOOP_PROBLEM_IMPULSE_RESPONSE, layout::Problem::impulse_response));
@@ -84,6 +86,8 @@ constexpr const char* status_texts[] = {
     "held: the forces are too large for a finite field",
     "held: a constraint is of a kind that the solver does not know",
     "held: a unilateral contact has no unit normal, weights of more than 1 in all, or a negative number",
+    "held: the laws of contact have no finite solution; numbers are too large, or a compliance is not positive "
+    "definite",
     "held: an impulse may not follow the last one",
 };
 

@@ -67,6 +67,13 @@
   ROW(linear_node, 30, 136, "a node that is predicted from its parents")                         \
   ROW(butterfly_node, 63.5, 163, "a node that is predicted by a stencil")                        \
   ROW(block_node, 82.9, 511, "a node that is predicted by blocks")                               \
-  ROW(block_term, 5.73, 18.4, "a block that it is predicted by")
+  ROW(block_term, 5.73, 18.4, "a block that it is predicted by")                                 \
+  /* unilateral contacts */                                                                      \
+  ROW(law, 350, 350, "a unilateral contact whose law is set up")                                 \
+  ROW(law_block, 13, 13, "a block of their compliance, in one direction")                        \
+  ROW(swept_law, 850, 850, "a contact in a pair of sweeps")                                      \
+  ROW(projected_law, 200, 200, "a contact that is projected onto its cone")                      \
+  ROW(frozen_law, 600, 600, "a contact in a Newton step")                                        \
+  ROW(law_vector, 350, 350, "a contact in a vector of it")
 
 #endif

@@ -172,4 +172,10 @@ ModelFile encoded_file(const ImpulseResponseData& model) {
   return file;
 }
 
+std::vector<std::byte> encode(const ImpulseResponseData& model) {
+  const ModelFile file = encoded_file(model);
+  const auto bytes = file.bytes.span();
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace greenloop

@@ -37,4 +37,7 @@ struct ImpulseResponseData {
 /// Filled in from the vectors: the counts of ImpulseInfo and ImpulseLevel, and `problem`.
 [[nodiscard]] ModelFile encoded_file(const ImpulseResponseData& model);
 
+/// The bytes of that file.
+[[nodiscard]] std::vector<std::byte> encode(const ImpulseResponseData& model);
+
 }  // namespace greenloop

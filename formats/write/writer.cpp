@@ -270,7 +270,9 @@ ModelView require_valid(const AlignedBytes& file) {
   return view;
 }
 
-void require_constraint_level(const layout::Info& info, std::uint32_t q) {
+void require_constraint_level(const ModelView& view, std::uint32_t q) {
+  if (view.problem == layout::Problem::impulse_response) return;
+  const layout::Info& info = *view.info;
   require(q >= info.coarsest_constraint_level,
           fmt::format("cut after level {}, but the coarsest constraint level is {}; keep at least that many levels", q,
                       info.coarsest_constraint_level));
@@ -329,7 +331,7 @@ std::vector<std::byte> truncate_to_level(std::vector<std::byte> model, std::uint
   const ModelView view = require_valid(whole);
   require(q < view.header->levels,
           fmt::format("cut after level {}, but the file ends with level {}", q, view.header->levels - 1));
-  if (view.info != nullptr) require_constraint_level(*view.info, q);
+  require_constraint_level(view, q);
 
   const auto table = section_entries(view);
   std::byte* const table_bytes = model.data() + sizeof(layout::Header);

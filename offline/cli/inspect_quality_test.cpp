@@ -44,12 +44,12 @@ class Inspected {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// of a scene that asks for this of patches
-std::string provenance(double patch_force, double mesh_error) {
+// of a scene that asks for this of patches and, in lines of its own, of the mesh
+std::string provenance(double patch_force, double mesh_error, const std::string& asked_of_mesh = "") {
   const std::string scene =
       "[surface]\nfile = \"own.off\"\nunit = \"m\"\n[material]\nyoung = \"1 Pa\"\npoisson = 0.4\n[[fixed]]\n"
       "below = 0.1\naxis = \"z\"\n[accuracy]\nrms = 0.9\npatch_force = " +
-      std::to_string(patch_force) + "\n";
+      std::to_string(patch_force) + "\n" + asked_of_mesh;
   return Json{{"scene_text", scene}, {"mesh_error", {{"force", mesh_error}}}}.dump();
 }
 
@@ -69,16 +69,29 @@ TEST_CASE("inspect: a model whose scene is not known is not judged") {
 }
 
 TEST_CASE("inspect: errors are judged by what the scene asks for, mesh and compression apart") {
-  CHECK(Inspected(provenance(0.5, 0.4)).json()["verdict"] == "HELD");
+  CHECK(Inspected(provenance(0.5, 0.6, "mesh_error = 0.7\n")).json()["verdict"] == "HELD");
   {
-    const Inspected model(provenance(0.5, 0.6));
+    const Inspected model(provenance(0.5, 0.4, "mesh_error = 0.3\n"));
     CHECK(model.json()["verdict"] == "VIOLATED");
-    CHECK(contains(model.text(), "VIOLATED: the mesh error is 60 % where 50 % is asked; all other errors are within"));
+    CHECK(model.json()["quality"]["warning"].is_null());
+    CHECK(contains(model.text(), "VIOLATED: the mesh error is 40 % where 30 % is asked; all other errors are within"));
   }
-  const Inspected model(provenance(0.2, 0.1));
+  const Inspected model(provenance(0.2, 0.1, "mesh_error = 0.2\n"));
   CHECK(model.json()["verdict"] == "VIOLATED");
   CHECK(contains(model.text(), "VIOLATED: the compression error (patch_force) is 25 % where 20 % is asked; all other"));
   CHECK(model.json()["quality"]["mesh_error"] == Json{{"asked", 0.2}, {"reached", 0.1}, {"held", true}});
+}
+
+TEST_CASE(
+    "inspect: a mesh error of which nothing is asked is no violation; beyond what is asked of forces it is warned of") {
+  const Inspected small(provenance(0.5, 0.4));
+  CHECK(small.json()["verdict"] == "HELD");
+  CHECK(small.json()["quality"]["warning"].is_null());
+  CHECK(small.json()["quality"]["mesh_error"] == Json{{"asked", nullptr}, {"reached", 0.4}, {"held", nullptr}});
+  const Inspected large(provenance(0.5, 0.6));
+  CHECK(large.json()["verdict"] == "HELD");
+  CHECK(contains(large.json()["quality"]["warning"].get<std::string>(), "up to 60 % too large"));
+  CHECK(contains(large.text(), "HELD: all errors are within what is asked; warning: the tetrahedra make forces"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "offline/cli/build_command.hpp"
 #include "offline/cli/convert_command.hpp"
 #include "offline/cli/inspect_command.hpp"
+#include "offline/cli/simulate_command.hpp"
 #include "offline/cli/verify_command.hpp"
 #include "offline/report/report_command.hpp"
 
@@ -37,6 +38,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   greenloop::offline::add_build(app, exit_code);
+  greenloop::offline::add_simulate(app, exit_code);
   greenloop::offline::add_inspect(app, exit_code);
   greenloop::offline::add_verify(app, exit_code);
   greenloop::offline::add_convert(app, exit_code);

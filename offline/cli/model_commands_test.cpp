@@ -192,10 +192,10 @@ TEST_CASE("inspect: the table for people says the same") {
   const Folder folder("inspect_text");
   std::ostringstream out;
   CHECK(run_inspect({folder / "sphere.gloop", false}, out) == 0);
-  for (const char* part : {"66, 41 of them in the domain", "3 of 3", "times fewer than the dense matrix (60.5 kB)",
-                           "Young's modulus 100000.0 Pa", "worst column", "compression error, level by level",
-                           "NOT JUDGED: the scene", "mesh error, patch_force", "1000000 units a step, ",
-                           "100 % of a period at 1000 Hz is 1000 us", "units per us, by "}) {
+  for (const char* part :
+       {"66, 41 of them in the domain", "3 of 3", "times fewer than the dense matrix (60.5 kB)",
+        "Young's modulus 100000.0 Pa", "worst column", "compression error, level by level", "NOT JUDGED: the scene",
+        "mesh error ", "1000000 units a step, ", "100 % of a period at 1000 Hz is 1000 us", "units per us, by "}) {
     CAPTURE(part);
     CHECK(out.str().find(part) != std::string::npos);
   }

@@ -121,6 +121,11 @@ TEST_CASE("what was asked stands beside what is reached, with one verdict") {
   write_surface(build.file("body.off"), {ball.positions, triangles_of_level(ball, 1)});
   const std::string mesh = "[surface]\nfile = \"body.off\"\n", levels = "[remesh]\nbase_vertices = 12\nlevels = 1\n";
   REQUIRE(build.fails(mesh, levels).empty());
+  CHECK(build.record()["verdict"] == "HELD");
+  CHECK(build.record()["quality"]["mesh_error"]["asked"].is_null());
+  CHECK(contains(build.record()["quality"]["sentence"], "; warning: the tetrahedra make forces of pressed patches"));
+  CHECK(build.warned("mesh error: "));
+  REQUIRE(build.fails(mesh, levels + "[accuracy]\nmesh_error = 0.05\n").empty());
   const auto strict = build.record();
   CHECK(strict["verdict"] == "VIOLATED");
   CHECK(strict["quality"]["mesh_error"]["asked"] == 0.05);
@@ -129,7 +134,7 @@ TEST_CASE("what was asked stands beside what is reached, with one verdict") {
   CHECK(contains(strict["quality"]["sentence"], "the mesh error is "));
   CHECK(strict["quality"]["arena_bytes"] > 0);
   CHECK(strict["quality"]["step_us"]["asked"] == 1000);
-  REQUIRE(build.fails(mesh, levels + "[accuracy]\npatch_force = 9\n").empty());
+  REQUIRE(build.fails(mesh, levels + "[accuracy]\nmesh_error = 9\n").empty());
   CHECK(build.record()["verdict"] == "HELD");
 }
 

@@ -161,10 +161,19 @@ std::vector<int> touched_nodes(const GreenStoreContents& contents) {
 std::string better_mesh(const Scene& scene, double error) {
   if (scene.elements == Elements::linear) return "[solve] elements = \"quadratic\" lessens it most";
   if (scene.mesh.tetrahedra) return "tetrahedra half as long about halve it";
-  const int levels = scene.remesh.levels + static_cast<int>(std::ceil(std::log2(error / scene.accuracy.patch_force)));
+  const int levels =
+      scene.remesh.levels + static_cast<int>(std::ceil(std::log2(error / scene.accuracy.tolerated_mesh_error())));
   const char* const halving = "each further level about halves it";
   return levels <= most_levels ? fmt::format("{}: remesh.levels = {} should do", halving, levels)
                                : fmt::format("{}; no remesh.levels up to {} would do", halving, most_levels);
+}
+
+std::string asked_of_mesh(const AccuracyGoal& accuracy) {
+  if (accuracy.mesh_error) return fmt::format("accuracy.mesh_error = {} asks for less", *accuracy.mesh_error);
+  return fmt::format(
+      "accuracy.patch_force = {} bounds the compression error, which is apart from it; accuracy.mesh_error would have "
+      "it judged",
+      accuracy.patch_force);
 }
 
 MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar& progress) {
@@ -176,12 +185,11 @@ MeshError measure_mesh(const Scene& scene, const GreenStore& store, ProgressBar&
       fmt::format("forces of pressed patches up to {}{:.3g} % too large, extrapolated from quadratic elements",
                   error.settled ? "" : "more than ", 100 * error.force());
   progress.end(found);
-  if (error.force() > scene.accuracy.patch_force) {
+  if (error.force() > scene.accuracy.tolerated_mesh_error()) {
     const Eigen::Vector3d& at = error.patches.front().center;
     progress.warn(fmt::format(
-        "mesh error: {}, the worst at ({:.3g}, {:.3g}, {:.3g}) m; accuracy.patch_force = {} asks for less, and the "
-        "compression error is apart from it. For contacts of the same size in metres {}",
-        found, at.x(), at.y(), at.z(), scene.accuracy.patch_force, better_mesh(scene, error.force())));
+        "mesh error: {}, the worst at ({:.3g}, {:.3g}, {:.3g}) m; {}. For contacts of the same size in metres {}",
+        found, at.x(), at.y(), at.z(), asked_of_mesh(scene.accuracy), better_mesh(scene, error.force())));
   }
   return error;
 }

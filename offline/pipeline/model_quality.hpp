@@ -18,9 +18,10 @@ struct StepCost {
 };
 
 /// What the scene in a model's provenance asked for beside what the model reaches at its finest level:
-/// {verdict, sentence, compression_error: {rms, worst_column, patch_force, field, field_peak, field_rough}, mesh_error,
-/// step_us, arena_bytes}, an error as {asked, reached, held}, what is not known null. Judged are the errors, the mesh
-/// error by what is asked of patch_force: "HELD", "VIOLATED", or "NOT JUDGED" where the scene is not known.
+/// {verdict, sentence, warning, compression_error: {rms, worst_column, patch_force, field, field_peak, field_rough},
+/// mesh_error, step_us, arena_bytes}, an error as {asked, reached, held}, what is not known or not asked null. Judged
+/// are the errors of which something is asked: "HELD", "VIOLATED", or "NOT JUDGED" where the scene is not known. A mesh
+/// error that is not judged and above what is asked of patch_force is a warning, which ends the sentence.
 [[nodiscard]] nlohmann::ordered_json quality_of(const ModelView& view, const StepCost& cost);
 
 /// The sentence and a table.

@@ -26,7 +26,7 @@ constexpr double kStep = 0.7;          ///< of the way to the centre of the neig
 constexpr double kShorter = 0.99;      ///< of an edge, at most, that its halves may be
 constexpr double kMostTriangles = 16;  ///< times those wanted, beside four times those given
 
-/// A bound that no surface whose splits shorten edges comes near to.
+/// A bound that no surface whose splits shorten edges comes near to, triangles that are gone again counted.
 std::size_t most_triangles(const TriangleMesh& mesh, double edge_length) {
   const double wanted = surface_area(mesh) * 4 / std::sqrt(3.0) / (edge_length * edge_length);
   return 4 * mesh.triangles.size() + static_cast<std::size_t>(kMostTriangles * wanted);
@@ -66,6 +66,7 @@ class Evening {
     for (const double coarser : kRounds) {
       flattest_ = coarser > 1 ? kFlat : kBent;
       split_long_edges(coarser * kLongest * length_);
+      if (gave_up()) return;
       flip_edges();
       collapse_short_edges();
       flip_edges();
@@ -76,6 +77,7 @@ class Evening {
 
   EvenMesh result() const {
     EvenMesh even;
+    even.settled = !gave_up();
     std::vector<int> renumbered(positions_.size(), -1);
     for (std::size_t v = 0; v < positions_.size(); ++v) {
       if (!fans_.has_vertex(static_cast<int>(v))) continue;
@@ -92,6 +94,8 @@ class Evening {
   }
 
  private:
+  [[nodiscard]] bool gave_up() const { return fans_.triangles() > most_triangles_; }
+
   [[nodiscard]] double distance(int v, int w) const { return (positions_[v] - positions_[w]).norm(); }
 
   [[nodiscard]] Eigen::Vector3d cross(int a, int b, int c) const {
@@ -124,6 +128,7 @@ class Evening {
     while (any) {
       any = false;
       for (int t = 0; t < static_cast<int>(fans_.triangles()); ++t) {
+        if (gave_up()) return;
         if (!fans_.has_triangle(t)) continue;
         for (int e = 0; e < 3; ++e) {
           const int v = fans_.corners(t)[e], w = fans_.corners(t)[(e + 1) % 3];
@@ -149,7 +154,7 @@ class Evening {
     const auto at = halfway(v, w);
     const Eigen::Vector3d middle_place = original_.position(at.point);
     const double farther = std::max((middle_place - positions_[v]).norm(), (middle_place - positions_[w]).norm());
-    if (farther > kShorter * distance(v, w) || fans_.triangles() > most_triangles_) return false;
+    if (farther > kShorter * distance(v, w)) return false;
     const int middle = fans_.split(v, w);
     links_.split(v, w, middle);
     positions_.emplace_back();

@@ -14,6 +14,7 @@ struct EvenMesh {
   TriangleMesh mesh;
   Features features;               ///< its edges along the chains of the original, in the same order
   std::vector<BoundPoint> origin;  ///< of each vertex, on the original
+  bool settled = true;             ///< false: it was given up, half done, as more splits only made more long edges
 
   /// A point of `mesh` on the original: the closest one; along a chain, by length.
   [[nodiscard]] SurfacePoint on_original(const BoundPoint& at, const FeatureCurves& original_curves,
@@ -28,7 +29,8 @@ struct EvenMesh {
 /// 4/5 collapsed, flipped towards Delaunay, and vertices slide along the original to the centre of their neighbours
 /// (Botsch, Kobbelt, "A remeshing approach to multiresolution modeling", 2004, section 4). Chains stay chains of edges
 /// and corners stay where they are. Every vertex lies on the original and never leaves its sheet. The same input gives
-/// the same bits. Work: linear in the triangles of both. `original` has the edges of `features` as sharp ones.
+/// the same bits. Work: linear in the triangles of both: where splits would make more than four times those given and
+/// 16 times those wanted, it is given up (`settled`). `original` has the edges of `features` as sharp ones.
 [[nodiscard]] EvenMesh even_mesh(const Surface& original, const Features& features, const FeatureCurves& curves,
                                  double edge_length);
 

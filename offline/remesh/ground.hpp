@@ -36,6 +36,9 @@ class Ground {
   [[nodiscard]] Attempt attempt(const SelfParameterization& base, int levels, double least_angle,
                                 const std::function<void(double)>& progress) const;
 
+  /// Whether the surface is as even as was asked; no base over one that is not will do.
+  [[nodiscard]] bool settled() const { return !even_ || even_->settled; }
+
   [[nodiscard]] const Surface& surface() const { return even_ ? *even_surface_ : input_; }
 
  private:

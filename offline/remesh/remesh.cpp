@@ -194,6 +194,7 @@ class Search {
     const auto features = find_features(normalized, kSharp, kShortestLine);
     if (is_drawn(features)) {
       const Ground drawn(normalized, features, even_edge(normalized, options_));
+      if (!drawn.settled()) return without_features(normalized, most_base());
       if (auto found = with_features(drawn, std::min(kFeatureBase * options_.base_vertices, most_base()))) return found;
       if (auto found = without_features(normalized, std::min(feature_vertices() / kFeatureBase, most_base())))
         return found;
@@ -278,6 +279,7 @@ class Search {
         const Features none{{}, std::vector<char>(input_.vertices.size(), 0)};
         even_ = std::make_unique<Ground>(normalized, none, even_edge(normalized, options_));
       }
+      if (!even_->settled()) break;
       const int base_vertices = grown(kEvenGrowth[even_attempts_]);
       if (!affords(*even_, base_vertices)) break;
       if (auto found = over(*even_, input_, even_->base(base_vertices))) return found;

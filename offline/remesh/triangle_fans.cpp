@@ -1,7 +1,6 @@
 #include "offline/remesh/triangle_fans.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace greenloop::offline {
@@ -26,9 +25,9 @@ std::vector<int> TriangleFans::neighbors(int v) const {
 }
 
 std::vector<int> TriangleFans::common_neighbors(int v, int w) const {
-  const auto of_v = neighbors(v), of_w = neighbors(w);
-  std::vector<int> common;
-  std::set_intersection(of_v.begin(), of_v.end(), of_w.begin(), of_w.end(), std::back_inserter(common));
+  if (valence(w) < valence(v)) return common_neighbors(w, v);
+  auto common = neighbors(v);
+  std::erase_if(common, [&](int u) { return sides(u, w)[0] < 0; });
   return common;
 }
 
@@ -38,6 +37,10 @@ int TriangleFans::following(int t, int v) const {
 }
 
 std::array<int, 2> TriangleFans::sides(int v, int w) const {
+  if (valence(w) < valence(v)) {
+    const auto [right, left] = sides(w, v);
+    return {left, right};
+  }
   std::array<int, 2> found{-1, -1};
   for (const int t : around_[v]) {
     if (following(t, v) == w) found[0] = t;

@@ -20,14 +20,14 @@ class TriangleFans {
   [[nodiscard]] const std::vector<int>& around(int v) const { return around_[v]; }
   [[nodiscard]] int valence(int v) const { return static_cast<int>(around_[v].size()); }
 
-  /// In increasing order.
+  /// In increasing order; of both ends of an edge, in work that the greater valence has no part in.
   [[nodiscard]] std::vector<int> neighbors(int v) const;
   [[nodiscard]] std::vector<int> common_neighbors(int v, int w) const;
 
   /// The corner after `v` counter-clockwise in triangle t.
   [[nodiscard]] int following(int t, int v) const;
 
-  /// The triangles left and right of the edge from v to w; -1 where there is none.
+  /// The triangles left and right of the edge from v to w; -1 where there is none. Work: linear in the lesser valence.
   [[nodiscard]] std::array<int, 2> sides(int v, int w) const;
 
   /// `from` becomes `to`, a neighbour of it; the two triangles at their edge go.

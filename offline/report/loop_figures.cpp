@@ -106,7 +106,8 @@ std::string seconds(double time) { return readable(time) + "\u202fs"; }
 
 }  // namespace
 
-Figure force_figure(const std::vector<TraceCycle>& trace) {
+Figure force_figure(const std::vector<TraceCycle>& trace, const std::string& run) {
+  const std::string title = run.empty() ? "Force over time" : "Force over time: " + run;
   const auto total = over_time(trace, [](const TraceCycle& cycle) { return cycle.force; });
   const auto parts = force_series(trace);
   const bool components = parts.size() == 3 && parts[0].name.ends_with("component");
@@ -120,12 +121,12 @@ Figure force_figure(const std::vector<TraceCycle>& trace) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     legend.push_back({parts[i].name, {series_paints[i % series_paints.size()], 1.2}});
   }
-  TimePlot panel = time_plot("Force over time", caption, legend);
+  TimePlot panel = time_plot(title, caption, legend);
   SvgPlot plot(panel.canvas, panel.area, time_axis(trace), force_axis(total, parts));
   plot.curve(total, total_stroke);
   for (std::size_t i = 0; i < parts.size(); ++i) plot.curve(parts[i].data, legend[i + 1].stroke);
   plot.legend(legend);
-  return {"force", "Force over time", caption, {panel.canvas}};
+  return {run.empty() ? "force" : "force_" + run, title, caption, {panel.canvas}};
 }
 
 Figure work_figure(const std::vector<TraceCycle>& trace) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "offline/report/figure.hpp"
@@ -8,8 +9,8 @@
 namespace greenloop::offline {
 
 /// The force over time: of every probe when several push, else its components. `trace` has at least one cycle, here and
-/// below; the figures' size does not grow with its length.
-[[nodiscard]] Figure force_figure(const std::vector<TraceCycle>& trace);
+/// below; the figures' size does not grow with its length. run: its name if there are several, or empty.
+[[nodiscard]] Figure force_figure(const std::vector<TraceCycle>& trace, const std::string& run = {});
 
 /// The work of every cycle against its budget, misses crossed.
 [[nodiscard]] Figure work_figure(const std::vector<TraceCycle>& trace);

@@ -13,10 +13,12 @@
 #include "offline/report/level_frontiers.hpp"
 #include "offline/report/load_figures.hpp"
 #include "offline/report/loop_figures.hpp"
+#include "offline/report/mask_figure.hpp"
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
 #include "offline/report/model_surface.hpp"
 #include "offline/report/pattern_figures.hpp"
+#include "offline/report/stability_figure.hpp"
 #include "offline/report/trace.hpp"
 #include "offline/report/verdict.hpp"
 
@@ -31,12 +33,14 @@ struct Material {
   std::optional<TraceSummary> summary;
   std::optional<std::vector<Eigen::Vector3d>> snapshot;
   std::optional<BuildRecord> build;
+  std::vector<Figure> other_runs{};  ///< their forces
+  std::optional<Figure> stability{};
 };
 
 // of greenloop-loop, which runs no other models
 void require_run(const ModelView& model, const ReportInputs& inputs) {
   if (model.problem == layout::Problem::elastostatic) return;
-  for (const auto& record : {inputs.trace, inputs.snapshot}) {
+  for (const auto& record : {inputs.trace, inputs.snapshot, inputs.stability}) {
     if (!record) continue;
     throw std::runtime_error(fmt::format("{}: a run of an elastostatic model, but {} is a {} one; leave it out",
                                          record->string(), inputs.model.string(), problem_name(model.problem)));
@@ -71,6 +75,12 @@ Material read_material(const ModelView& model, const ReportInputs& inputs) {
     require_levels(*material.trace, model, *inputs.trace);
     material.summary = summarise(*material.trace);
   }
+  for (const auto& path : inputs.more_traces) {
+    const auto trace = load_trace(path);
+    require_levels(trace, model, path);
+    material.other_runs.push_back(force_figure(trace, path.stem().string()));
+  }
+  if (inputs.stability) material.stability = stability_figure(load_stability(*inputs.stability));
   if (inputs.snapshot) material.snapshot = load_snapshot(*inputs.snapshot, model.node_count);
   if (inputs.build) {
     material.build = load_build_record(*inputs.build);
@@ -134,6 +144,14 @@ void add_loads(const Material& material, HtmlPage& page, std::vector<Figure>& fi
   page.end_fold();
 }
 
+void add_masks(const ModelFile& model, const Material& material, double radius, HtmlPage& page,
+               std::vector<Figure>& figures) {
+  page.begin_fold("How stiff it is to a fingertip");
+  const VisibleSurface finest = material.surface.level(material.surface.mesh.finest_level());
+  add_figure(masked_stiffness_figure(model, finest, radius), page, figures);
+  page.end_fold();
+}
+
 void add_run(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
   if (!material.trace) return;
   page.heading("The run");
@@ -142,6 +160,17 @@ void add_run(const Material& material, HtmlPage& page, std::vector<Figure>& figu
               page, figures);
   const std::string held = held_text(*material.trace);
   if (!held.empty()) page.paragraph(held);
+}
+
+void add_other_runs(Material& material, HtmlPage& page, std::vector<Figure>& figures) {
+  if (!material.other_runs.empty()) {
+    page.heading("Other runs");
+    add_figures(std::move(material.other_runs), page, figures);
+  }
+  if (material.stability) {
+    page.heading("A hand in the loop");
+    add_figure(*std::move(material.stability), page, figures);
+  }
 }
 
 void add_errors(const Material& material, HtmlPage& page, std::vector<Figure>& figures) {
@@ -216,15 +245,17 @@ std::vector<MissingInput> missing_inputs(const Material& material, const std::fi
 }  // namespace
 
 Report make_report(const ModelFile& model, const ReportInputs& inputs) {
-  const Material material = read_material(model.view, inputs);
+  Material material = read_material(model.view, inputs);
   Report report;
   HtmlPage page(inputs.model.filename().string(), summary_text(material));
   page.verdict(verdict_of(model, material.build, material.summary));
   page.heading("The body");
   add_figures(body_pictures(material), page, report.figures);
   add_run(material, page, report.figures);
+  add_other_runs(material, page, report.figures);
   page.heading("Details");
   add_loads(material, page, report.figures);
+  if (inputs.mask) add_masks(model, material, *inputs.mask, page, report.figures);
   add_errors(material, page, report.figures);
   add_frontiers(material, page, report.figures);
   add_size(material, page, report.figures);

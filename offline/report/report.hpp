@@ -14,10 +14,13 @@ namespace greenloop::offline {
 /// The files a report is made of; all but the model may be absent.
 struct ReportInputs {
   std::filesystem::path model;
-  std::optional<std::filesystem::path> trace;     ///< of greenloop-loop --trace
-  std::optional<std::filesystem::path> snapshot;  ///< of greenloop-loop --snapshot
-  std::optional<std::filesystem::path> build;     ///< of greenloop build
-  bool provenance = false;                        ///< shown as well
+  std::optional<std::filesystem::path> trace;        ///< of greenloop-loop --trace
+  std::optional<std::filesystem::path> snapshot;     ///< of greenloop-loop --snapshot
+  std::optional<std::filesystem::path> build;        ///< of greenloop build
+  std::vector<std::filesystem::path> more_traces{};  ///< of other runs
+  std::optional<std::filesystem::path> stability{};  ///< of greenloop-loop --stability
+  bool provenance = false;                           ///< shown as well
+  std::optional<double> mask{};                      ///< m, radius of masks whose stiffness is shown
 };
 
 /// A finished report.

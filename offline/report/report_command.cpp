@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "formats/output/json_text.hpp"
 #include "formats/output/output_file.hpp"
@@ -21,8 +23,10 @@ namespace greenloop::offline {
 namespace {
 
 struct Options {
-  std::string model, output, trace, snapshot, build, figures;
+  std::string model, output, snapshot, build, stability, figures;
+  std::vector<std::string> traces;
   bool provenance = false, json = false;
+  std::optional<double> mask;
 };
 
 std::optional<std::filesystem::path> given(const std::string& path) {
@@ -48,8 +52,10 @@ void print_text(const std::string& output, const Report& report) {
 
 CommandFiles files_of(const Options& options, const std::string& output) {
   CommandFiles files{.inputs = {{"the model", options.model}}, .outputs = {{"the report", output}}};
-  for (const auto& [what, path] : {std::pair("the trace", options.trace), std::pair("the snapshot", options.snapshot),
-                                   std::pair("the record of the build", options.build)}) {
+  for (const std::string& trace : options.traces) files.inputs.push_back({"the trace", trace});
+  for (const auto& [what, path] :
+       {std::pair("the snapshot", options.snapshot), std::pair("the record of the build", options.build),
+        std::pair("the stability map", options.stability)}) {
     if (!path.empty()) files.inputs.push_back({what, path});
   }
   return files;
@@ -78,11 +84,16 @@ void run(const Options& options) {
                              ": an impulse response model has no report; greenloop inspect "
                              "shows its modes, orbits and errors");
   }
+  const std::string first = options.traces.empty() ? "" : options.traces.front();
+  const auto more = options.traces.begin() + (options.traces.empty() ? 0 : 1);
   const Report report = make_report(file, {.model = options.model,
-                                           .trace = given(options.trace),
+                                           .trace = given(first),
                                            .snapshot = given(options.snapshot),
                                            .build = given(options.build),
-                                           .provenance = options.provenance});
+                                           .more_traces = {more, options.traces.end()},
+                                           .stability = given(options.stability),
+                                           .provenance = options.provenance,
+                                           .mask = options.mask});
   write_report(options, files, report);
   options.json ? print_json(output, report) : print_text(output, report);
 }
@@ -95,11 +106,18 @@ void add_report(CLI::App& parent, int& exit_code) {
       parent.add_subcommand("report", "Write pictures and figures of a model and of a run as one HTML file");
   command->add_option("model", options->model, "Model file (.gloop)")->required();
   command->add_option("-o,--output", options->output, "Report to write (default: the model's name with .html)");
-  command->add_option("--trace", options->trace, "Cycles of a run, by greenloop-loop --trace");
+  command
+      ->add_option("--trace", options->traces,
+                   "Cycles of a run, by greenloop-loop --trace; more of them: forces of other runs")
+      ->allow_extra_args(false);
   command->add_option("--snapshot", options->snapshot,
                       "Displacements at the largest force, by greenloop-loop --snapshot");
+  command->add_option("--stability", options->stability, "Stability of a loop, by greenloop-loop --stability");
   command->add_option("--build", options->build, "Record of the build, by greenloop build");
   command->add_option("--figures", options->figures, "Folder for each figure as its own SVG file");
+  command
+      ->add_option("--mask", options->mask, "Show the stiffness of every touchable node under masks of this radius, m")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--provenance", options->provenance, "Show how the model was built as well");
   command->add_flag("--json", options->json, "Print what was written as JSON");
   command->callback([options, &exit_code] {

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -134,6 +135,26 @@ TEST_CASE("the command writes the complete report and every figure, the same as 
                                       "nan ", "lnan", "not a number", "inf\""}) {
     CAPTURE(forbidden);
     CHECK_FALSE(has(text, forbidden));
+  }
+}
+
+TEST_CASE("forces of other runs and a stability map stand in the report where they are given") {
+  const Sample sample;
+  int exit_code = 1;
+  CLI::App app("test", "greenloop");
+  add_report(app, exit_code);
+  const auto slide = sample.folder.path() / "slide.csv";
+  std::filesystem::copy_file(sample.trace(100, 900), slide);
+  const auto map = sample.folder.write("map.csv", "rate,delay,stiffness,bound,stable\n500,0,100,200,1\n");
+  const auto figures = sample.folder.path() / "figures";
+  app.parse(fmt::format("report --trace {} --trace {} --stability {} --figures {} {}", sample.trace(100, 900).string(),
+                        slide.string(), map.string(), figures.string(), sample.model.string()));
+  CHECK(exit_code == 0);
+  const std::string page = content_of(sample.folder.path() / "ball.html");
+  CHECK(has(page, "Force over time: slide"));
+  CHECK(has(page, "Stability over stiffness"));
+  for (const char* name : {"force.svg", "force_slide.svg", "stability.svg"}) {
+    CHECK(std::filesystem::exists(figures / name));
   }
 }
 

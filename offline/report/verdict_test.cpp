@@ -14,9 +14,9 @@ namespace {
 constexpr const char* scene =
     R"("scene_text": "[surface]\nfile = \"a.off\"\nunit = \"m\"\n[material]\nyoung = \"1 kPa\"\n)"
     R"(poisson = 0.3\n[[fixed]]\nbelow = 0.1\naxis = \"z\"\n[accuracy]\nrms = 0.02\n)"
-    R"(worst_column = 0.1\npatch_force = 0.05\n")";
+    R"(worst_column = 0.1\npatch_force = 0.05\nmesh_error = 0.05\n")";
 
-// with errors of its finest level, of a scene that asks for 2, 10 and 5 %
+// with errors of its finest level, of a scene that asks for 2, 10, 5 and 5 %
 ModelFile model_with(float patch_force, const char* mesh_error, const char* asked = scene) {
   ModelData data = synthetic_model({.levels = 2});
   for (LevelData& level : data.levels) {
@@ -60,6 +60,18 @@ TEST_CASE("one error beyond what is asked, and the verdict names it") {
   CHECK(mesh.good == false);
   CHECK(mesh.sentence.starts_with("Not good enough: the mesh error is 133 % where 5 % is asked"));
   CHECK(row(mesh, "mesh error").reached == "133\u202f%");
+}
+
+TEST_CASE("a mesh error of which nothing is asked stands in the sentence and in a row that is not judged") {
+  std::string silent = scene;
+  const std::string goal = R"(mesh_error = 0.05\n)";
+  silent.erase(silent.find(goal), goal.size());
+  const Verdict verdict = verdict_of(model_with(0.04F, "1.33", silent.c_str()), {}, {});
+  CHECK(verdict.good == true);
+  CHECK(verdict.sentence.starts_with("As asked: all errors are within what is asked; warning: the tetrahedra make"));
+  CHECK(verdict.sentence.find("133 %") != std::string::npos);
+  CHECK_FALSE(row(verdict, "mesh error").held);
+  CHECK(row(verdict, "mesh error").reached == "133\u202f%");
 }
 
 TEST_CASE("a run that missed cycles is not good enough, whatever the errors") {

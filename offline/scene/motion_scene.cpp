@@ -45,7 +45,11 @@ std::optional<MotionScene> parse_motion_scene(std::string_view text, const std::
   const auto toml = parse_toml(text, file);
   if (!toml.contains("trajectories")) return std::nullopt;
   Problems problems(file.string());
-  const Table table(toml, "", {"trajectories", "accuracy", "reduction", "budget"}, problems);
+  // what `greenloop simulate` reads may stand in the same file
+  const Table table(toml, "",
+                    {"trajectories", "accuracy", "reduction", "budget", "surface", "remesh", "material", "fixed",
+                     "simulate", "impulses"},
+                    problems);
   MotionScene scene;
   read_trajectories(table, file, scene);
   read_accuracy(table, scene);

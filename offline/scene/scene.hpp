@@ -14,6 +14,7 @@
 #include "formats/store/elements.hpp"
 #include "formats/store/material.hpp"
 #include "offline/scene/region.hpp"
+#include "offline/scene/simulation.hpp"
 
 namespace greenloop::offline {
 
@@ -62,6 +63,11 @@ struct AccuracyGoal {
   double field = 0.05;        ///< largest relative error of the field of any contact pattern, 0..10
   double field_rough = 0.2;   ///< `field` of alternating and random displacements, 0..10
   double field_peak = 0.1;    ///< largest error at a node over the largest displacement, of any pattern, 0..10
+  /// Largest estimated error of the tetrahedra's forces of pressed patches, 0..10; none: said, but not judged.
+  std::optional<double> mesh_error;
+
+  /// A mesh error above this is warned of.
+  [[nodiscard]] double tolerated_mesh_error() const { return mesh_error.value_or(patch_force); }
 };
 
 /// Work units per microsecond of the target if the scene does not say how fast that is: stated, not measured.
@@ -121,6 +127,7 @@ struct Scene {
   StepBudget budget;
   std::optional<std::filesystem::path> store;  ///< HDF5 store, seen from the working directory
   std::string store_name;                      ///< as the scene says
+  std::optional<Simulation> simulation;        ///< how the body moves, if it is to be simulated
 };
 
 /// Longest scene [bytes].

@@ -6,6 +6,7 @@
 
 #include "formats/write/describe.hpp"
 #include "offline/scene/scene.hpp"
+#include "offline/scene/simulation_parser.hpp"
 #include "offline/scene/toml_source.hpp"
 #include "offline/scene/toml_table.hpp"
 
@@ -292,13 +293,15 @@ void read_accuracy(const Table& scene, AccuracyGoal& accuracy) {
   constexpr Interval error{0, 1, true, true};
   constexpr Interval error_of_pattern{0, 10, true, true};
   if (const auto table =
-          section(scene, "accuracy", {"rms", "worst_column", "patch_force", "field", "field_peak", "field_rough"})) {
+          section(scene, "accuracy",
+                  {"rms", "worst_column", "patch_force", "field", "field_peak", "field_rough", "mesh_error"})) {
     set_if(accuracy.rms, table->number("rms", error));
     set_if(accuracy.worst_column, table->number("worst_column", error));
     set_if(accuracy.patch_force, table->number("patch_force", error_of_pattern));
     set_if(accuracy.field, table->number("field", error_of_pattern));
     set_if(accuracy.field_peak, table->number("field_peak", error_of_pattern));
     set_if(accuracy.field_rough, table->number("field_rough", error_of_pattern));
+    accuracy.mesh_error = table->number("mesh_error", error_of_pattern);
   }
 }
 
@@ -357,10 +360,11 @@ void read_store(const Table& scene, const std::filesystem::path& file, Scene& re
 Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   const auto toml = parse_toml(text, file);
   Problems problems(file.string());
-  const Table table(toml, "",
-                    {"surface", "volume", "remesh", "material", "solve", "fixed", "touched", "read", "loads",
-                     "constraints", "accuracy", "compression", "budget", "store"},
-                    problems);
+  const Table table(
+      toml, "",
+      {"surface", "volume", "remesh", "material", "solve", "fixed", "touched", "read", "loads", "constraints",
+       "accuracy", "compression", "budget", "store", "simulate", "impulses", "trajectories", "reduction"},
+      problems);
   Scene scene;
   read_mesh(table, file, scene.mesh);
   read_remesh(table, scene.mesh.tetrahedra, scene.remesh);
@@ -375,10 +379,12 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   read_regions(table, "read", scene.read);
   read_loads(table, scene);
   read_constraints(table, scene.remesh.levels, scene.coarsest_constraints);
-  read_accuracy(table, scene.accuracy);
+  // what a model of trajectories is to be like says its own reader
+  if (!table.has("trajectories")) read_accuracy(table, scene.accuracy);
   read_compression(table, scene.wavelet, scene.ready);
   read_budget(table, scene.budget);
   read_store(table, file, scene);
+  read_simulation(table, file, scene);
   problems.throw_if_any();
   return scene;
 }

@@ -34,6 +34,7 @@ TEST_CASE("the smallest scene gets the documented defaults") {
   CHECK(scene.accuracy.field == 0.05);
   CHECK(scene.accuracy.field_peak == 0.1);
   CHECK(scene.accuracy.field_rough == 0.2);
+  CHECK_FALSE(scene.accuracy.mesh_error);
   CHECK_FALSE(scene.wavelet);
   CHECK(scene.budget.rate == 1000);
   CHECK_FALSE(scene.budget.work);
@@ -72,6 +73,7 @@ TEST_CASE("every key is read") {
     field = 0.03
     field_peak = 0.25
     field_rough = 0.35
+    mesh_error = 0.5
     [compression]
     wavelet = "linear"
     [budget]
@@ -104,6 +106,7 @@ TEST_CASE("every key is read") {
   CHECK(scene.accuracy.field == 0.03);
   CHECK(scene.accuracy.field_peak == 0.25);
   CHECK(scene.accuracy.field_rough == 0.35);
+  CHECK(scene.accuracy.mesh_error == 0.5);
   CHECK(scene.wavelet == greenloop::layout::Wavelet::linear);
   CHECK(scene.budget.rate == 500);
   CHECK(scene.budget.work == 123456);
@@ -228,7 +231,7 @@ TEST_CASE("a model is made ready if the scene says so, and only then is it part 
 
 TEST_CASE("patch forces and fields may be off by more than themselves, but neither not at all nor tenfold") {
   CHECK(parse_scene(smallest + "[accuracy]\npatch_force = 1.5\n", "s.toml").accuracy.patch_force == 1.5);
-  for (const std::string key : {"patch_force", "field", "field_peak", "field_rough"}) {
+  for (const std::string key : {"patch_force", "field", "field_peak", "field_rough", "mesh_error"}) {
     CAPTURE(key);
     CHECK_NOTHROW(static_cast<void>(parse_scene(smallest + "[accuracy]\n" + key + " = 1.5\n", "s.toml")));
     check_refused(smallest + "[accuracy]\n" + key + " = 0\n", {"accuracy." + key + ": 0 is out of range"});
@@ -248,9 +251,10 @@ TEST_CASE("every wavelet can be asked for by name, or the best") {
 }
 
 TEST_CASE("patch force, field and wavelet are part of the canonical text") {
-  for (const char* key : {"[accuracy]\npatch_force = 0.2\n", "[accuracy]\nfield = 0.2\n",
-                          "[accuracy]\nfield_peak = 0.2\n", "[accuracy]\nfield_rough = 0.3\n",
-                          "[compression]\nwavelet = \"linear\"\n", "[compression]\nwavelet = \"lifted butterfly\"\n"}) {
+  for (const char* key :
+       {"[accuracy]\npatch_force = 0.2\n", "[accuracy]\nfield = 0.2\n", "[accuracy]\nfield_peak = 0.2\n",
+        "[accuracy]\nfield_rough = 0.3\n", "[accuracy]\nmesh_error = 0.05\n", "[compression]\nwavelet = \"linear\"\n",
+        "[compression]\nwavelet = \"lifted butterfly\"\n"}) {
     CAPTURE(key);
     const auto canonical = canonical_text(parse_scene(smallest + key, "s.toml"));
     CHECK(canonical != canonical_text(parse_scene(smallest, "s.toml")));
@@ -264,6 +268,7 @@ TEST_CASE("the examples are accepted: the files, and the one in the documentatio
   for (const std::string name : {"blob", "ear", "bowl", "handle", "web"}) {
     CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/" + name + ".toml").mesh.name == name + ".off");
   }
+  CHECK(read_scene(GREENLOOP_SOURCE "/offline/scene/examples/rubber.toml").simulation->impulses.size() == 5);
   std::ifstream stream(GREENLOOP_SOURCE "/docs/scene.md");
   const std::string page(std::istreambuf_iterator<char>(stream), {});
   const auto begin = page.find("```toml\n");

@@ -98,14 +98,15 @@ std::string solve_text(Elements elements) {
   return elements == Elements::quadratic ? "\n[solve]\nelements = \"quadratic\"\n" : "";
 }
 
-// goals for fields that are not set, by zero, are left out
+// goals that are not set, by zero, are left out
 std::string accuracy_text(const AccuracyGoal& accuracy) {
   const auto goal = [](const std::string& key, double value) {
     return value > 0 ? "\n" + key + " = " + number(value) : std::string();
   };
   return "\n[accuracy]\nrms = " + number(accuracy.rms) + "\nworst_column = " + number(accuracy.worst_column) +
          "\npatch_force = " + number(accuracy.patch_force) + goal("field", accuracy.field) +
-         goal("field_peak", accuracy.field_peak) + goal("field_rough", accuracy.field_rough) + "\n";
+         goal("field_peak", accuracy.field_peak) + goal("field_rough", accuracy.field_rough) +
+         goal("mesh_error", accuracy.mesh_error.value_or(0)) + "\n";
 }
 
 std::string compression_text(std::optional<layout::Wavelet> wavelet, bool ready) {
@@ -132,6 +133,36 @@ std::string loads_text(const Scene& scene) {
   return text;
 }
 
+std::string impulse_text(const SupportImpulse& impulse) {
+  std::string text = "\n[[impulses]]\nname = " + string(impulse.name) +
+                     "\nvelocity = " + quantity(impulse.speed, "m/s") + "\ndirection = " + triple(impulse.direction) +
+                     "\n";
+  if (!impulse.after) return text;
+  text += "after = [";
+  for (std::size_t i = 0; i < impulse.after->size(); ++i) text += (i > 0 ? ", " : "") + string((*impulse.after)[i]);
+  return text + "]\n";
+}
+
+// what is not damped, by zero, is left out
+std::string simulation_text(const std::optional<Simulation>& simulation) {
+  if (!simulation) return "";
+  const Simulation& s = *simulation;
+  const auto damping = [](const std::string& key, double value, std::string_view unit) {
+    return value > 0 ? key + " = " + quantity(value, unit) + "\n" : std::string();
+  };
+  std::string text =
+      "\n[simulate]\ntime_step = " + quantity(s.time_step, "s") +
+      "\nstrain = " + string(s.corotational ? "corotational" : "linear") + "\nlevel = " + std::to_string(s.level) +
+      "\n" + damping("mass_damping", s.mass_damping, "1/s") + damping("stiffness_damping", s.stiffness_damping, "s") +
+      "newmark_gamma = " + number(s.newmark_gamma) + "\nrest = " + quantity(s.rest, "m") +
+      "\nsampling = " + string(s.coverage ? "coverage" : "random") + "\norbits = " + std::to_string(s.orbits) +
+      "\nheld_out = " + std::to_string(s.held_out) + "\nshortest = " + quantity(s.shortest, "s") +
+      "\nlongest = " + quantity(s.longest, "s") + "\nto_rest = " + number(s.to_rest) +
+      "\nlongest_to_rest = " + quantity(s.longest_to_rest, "s") + "\nseed = " + std::to_string(s.seed) + "\n";
+  for (const auto& impulse : s.impulses) text += impulse_text(impulse);
+  return text + (s.trajectories_name.empty() ? "" : "\n[trajectories]\nfile = " + string(s.trajectories_name) + "\n");
+}
+
 // columns do not follow from the density
 std::string tables_of_body(const Scene& scene, std::optional<double> density) {
   return remesh_text(scene) + material_text(scene.material, density) + solve_text(scene.elements) +
@@ -143,11 +174,13 @@ std::string tables_of_body(const Scene& scene, std::optional<double> density) {
 std::string body_text(const Scene& scene) { return mesh_text(scene.mesh) + tables_of_body(scene, std::nullopt); }
 
 std::string canonical_text(const Scene& scene) {
+  const bool motion = scene.simulation && !scene.simulation->trajectories_name.empty();
   return mesh_text(scene.mesh) + (scene.mesh.keep_vertex_map ? "keep_vertex_map = true\n" : "") +
          tables_of_body(scene, scene.density) + loads_text(scene) +
          "\n[constraints]\ncoarsest = " + std::to_string(scene.coarsest_constraints) + "\n" +
-         accuracy_text(scene.accuracy) + compression_text(scene.wavelet, scene.ready) + budget_text(scene.budget) +
-         (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "");
+         (motion ? "" : accuracy_text(scene.accuracy)) + compression_text(scene.wavelet, scene.ready) +
+         budget_text(scene.budget) + (scene.store ? "\n[store]\nfile = " + string(scene.store_name) + "\n" : "") +
+         simulation_text(scene.simulation);
 }
 
 }  // namespace greenloop::offline

@@ -19,21 +19,40 @@ struct Unit {
   double per;
 };
 
-constexpr std::array<Unit, 22> units{{{"m", Dimension::length, 1, 1},          {"cm", Dimension::length, 1, 1e2},
-                                      {"mm", Dimension::length, 1, 1e3},       {"um", Dimension::length, 1, 1e6},
+constexpr std::array<Unit, 30> units{{{"m", Dimension::length, 1, 1},
+                                      {"cm", Dimension::length, 1, 1e2},
+                                      {"mm", Dimension::length, 1, 1e3},
+                                      {"um", Dimension::length, 1, 1e6},
                                       {"\u00b5m", Dimension::length, 1, 1e6},  // micro sign
                                       {"\u03bcm", Dimension::length, 1, 1e6},  // Greek mu
-                                      {"km", Dimension::length, 1e3, 1},       {"in", Dimension::length, 254, 1e4},
-                                      {"Pa", Dimension::pressure, 1, 1},       {"kPa", Dimension::pressure, 1e3, 1},
-                                      {"MPa", Dimension::pressure, 1e6, 1},    {"GPa", Dimension::pressure, 1e9, 1},
-                                      {"N/mm^2", Dimension::pressure, 1e6, 1}, {"Hz", Dimension::frequency, 1, 1},
-                                      {"kHz", Dimension::frequency, 1e3, 1},   {"MHz", Dimension::frequency, 1e6, 1},
-                                      {"kg/m^3", Dimension::density, 1, 1},    {"kg/m3", Dimension::density, 1, 1},
-                                      {"g/cm^3", Dimension::density, 1e3, 1},  {"g/cm3", Dimension::density, 1e3, 1},
-                                      {"kg/L", Dimension::density, 1e3, 1},    {"kg/l", Dimension::density, 1e3, 1}}};
+                                      {"km", Dimension::length, 1e3, 1},
+                                      {"in", Dimension::length, 254, 1e4},
+                                      {"Pa", Dimension::pressure, 1, 1},
+                                      {"kPa", Dimension::pressure, 1e3, 1},
+                                      {"MPa", Dimension::pressure, 1e6, 1},
+                                      {"GPa", Dimension::pressure, 1e9, 1},
+                                      {"N/mm^2", Dimension::pressure, 1e6, 1},
+                                      {"Hz", Dimension::frequency, 1, 1},
+                                      {"kHz", Dimension::frequency, 1e3, 1},
+                                      {"MHz", Dimension::frequency, 1e6, 1},
+                                      {"kg/m^3", Dimension::density, 1, 1},
+                                      {"kg/m3", Dimension::density, 1, 1},
+                                      {"g/cm^3", Dimension::density, 1e3, 1},
+                                      {"g/cm3", Dimension::density, 1e3, 1},
+                                      {"kg/L", Dimension::density, 1e3, 1},
+                                      {"kg/l", Dimension::density, 1e3, 1},
+                                      {"s", Dimension::time, 1, 1},
+                                      {"ms", Dimension::time, 1, 1e3},
+                                      {"us", Dimension::time, 1, 1e6},
+                                      {"m/s", Dimension::speed, 1, 1},
+                                      {"cm/s", Dimension::speed, 1, 1e2},
+                                      {"mm/s", Dimension::speed, 1, 1e3},
+                                      {"1/s", Dimension::rate, 1, 1},
+                                      {"1/ms", Dimension::rate, 1e3, 1}}};
 
 std::string_view name_of(Dimension dimension) {
-  constexpr std::array<std::string_view, 4> names{"length", "pressure", "frequency", "density"};
+  constexpr std::array<std::string_view, 7> names{"length", "pressure", "frequency", "density",
+                                                  "time",   "speed",    "rate"};
   return names[static_cast<std::size_t>(dimension)];
 }
 
@@ -70,7 +89,8 @@ std::string_view trimmed(std::string_view text) {
 }  // namespace
 
 std::string_view example_of(Dimension dimension) {
-  constexpr std::array<std::string_view, 4> examples{"30 cm", "20 kPa", "1 kHz", "1000 kg/m^3"};
+  constexpr std::array<std::string_view, 7> examples{"30 cm", "20 kPa",  "1 kHz", "1000 kg/m^3",
+                                                     "10 ms", "0.5 m/s", "2 1/s"};
   return examples[static_cast<std::size_t>(dimension)];
 }
 

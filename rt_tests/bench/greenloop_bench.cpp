@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <vector>
 
 #include "formats/output/json_text.hpp"
@@ -17,6 +18,7 @@
 #include "rt_tests/bench/field_benchmark.hpp"
 #include "rt_tests/bench/kernel_benchmark.hpp"
 #include "rt_tests/bench/roofline.hpp"
+#include "rt_tests/bench/synthesis_benchmark.hpp"
 #include "runtime/model.hpp"
 
 namespace {
@@ -29,6 +31,7 @@ using greenloop::bench::FieldFigures;
 using greenloop::bench::ForceFigures;
 using greenloop::bench::Roofline;
 using greenloop::bench::RooflinePoint;
+using greenloop::bench::SynthesisFigures;
 using greenloop::bench::TransformFigures;
 using nlohmann::json;
 
@@ -110,6 +113,14 @@ json as_json(const ContactFigures& figures) {
 }
 
 json as_json(const ForceFigures& figures) { return {{"contacts", figures.contacts}, {"us", figures.us}}; }
+
+json as_json(const SynthesisFigures& figures) {
+  return {{"rank", figures.rank},      {"planes", figures.planes},
+          {"nodes", figures.vertices}, {"truncation_error", figures.error},
+          {"us", figures.us},          {"frames_per_s", figures.frames_per_s},
+          {"bytes", figures.bytes},    {"bandwidth_ratio", figures.bandwidth_ratio},
+          {"work", figures.work}};
+}
 
 json as_json(const RooflinePoint& point) {
   return {{"kernel", point.kernel},
@@ -217,22 +228,44 @@ void print_table(const std::vector<FieldFigures>& all, const BackSubstitution& b
   }
 }
 
-int run(const Arguments& arguments) {
-  const auto file = greenloop::open_model_file(arguments.model);
-  greenloop::require_problem(file.view, greenloop::layout::Problem::elastostatic, arguments.model);
-  const auto opened = greenloop::Model::open(file.bytes.span());
+int run_motion(const Arguments& arguments, const greenloop::Model& model) {
+  const auto figures = greenloop::bench::measure_motion(model, arguments.rounds);
+  if (arguments.json) {
+    greenloop::print_result(greenloop::json_text(json{{"model", arguments.model.filename().string()},
+                                                      {"state_us", figures.step_us},
+                                                      {"state_work", figures.step_work},
+                                                      {"synthesis", list_of(figures.synthesis)}}) +
+                            "\n");
+    return 0;
+  }
+  fmt::print("a step without displacements: {:.3f} us, {} units\n\nDisplacements of all vertices, thread CPU time:\n",
+             figures.step_us, figures.step_work);
+  fmt::print("{:>6} {:>7} {:>9} {:>10} {:>9} {:>11} {:>16} {:>10}\n", "modes", "planes", "vertices", "truncation", "us",
+             "frames/s", "x bytes/stream", "work");
+  for (const SynthesisFigures& f : figures.synthesis) {
+    fmt::print("{:>6} {:>7} {:>9} {:>9.2f}% {:>9.1f} {:>11.0f} {:>16.2f} {:>10}\n", f.rank, f.planes, f.vertices,
+               100 * f.error, f.us, f.frames_per_s, f.bandwidth_ratio, f.work);
+  }
+  return 0;
+}
+
+int run_contact(const Arguments& arguments, const greenloop::Model& model) {
+  if (arguments.store.empty()) {
+    throw std::runtime_error(arguments.model.string() +
+                             ": name the HDF5 store that the model was built from with --store");
+  }
   auto store = greenloop::GreenStore::open(arguments.store, greenloop::GreenStore::Access::kReadOnly);
   store.require_components(3);
   const auto back = greenloop::bench::time_back_substitution(store);
   std::vector<FieldFigures> all;
   for (const std::size_t contacts : arguments.contacts) {
-    all.push_back(greenloop::bench::measure_field(opened.model, store, contacts, arguments.rounds, back.seconds));
+    all.push_back(greenloop::bench::measure_field(model, store, contacts, arguments.rounds, back.seconds));
   }
-  const KernelFigures kernels = measure_kernels(opened.model, store, arguments);
-  const Roofline roofline = greenloop::bench::measure_roofline(opened.model, arguments.contacts, arguments.rounds);
-  const std::vector<ContactFigures> contact = measure_contacts(opened.model, arguments);
+  const KernelFigures kernels = measure_kernels(model, store, arguments);
+  const Roofline roofline = greenloop::bench::measure_roofline(model, arguments.contacts, arguments.rounds);
+  const std::vector<ContactFigures> contact = measure_contacts(model, arguments);
   const CreationFigures creation =
-      greenloop::bench::measure_creation(opened.model, {.max_contacts = opened.model.view().info->max_contacts});
+      greenloop::bench::measure_creation(model, {.max_contacts = model.view().info->max_contacts});
   if (!arguments.json) {
     print_table(all, back);
     print_kernels(kernels);
@@ -263,18 +296,28 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
+int run(const Arguments& arguments) {
+  const auto file = greenloop::open_model_file(arguments.model);
+  const auto opened = greenloop::Model::open(file.bytes.span());
+  if (opened.model.problem() == greenloop::layout::Problem::impulse_response) {
+    return run_motion(arguments, opened.model);
+  }
+  greenloop::require_problem(file.view, greenloop::layout::Problem::elastostatic, arguments.model);
+  return run_contact(arguments, opened.model);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app(
       "Measures the field of given forces and a whole step (cached factor, forces, displacement of every node) against "
       "summing dense columns and against a sparse back-substitution, side by side in one run, and field and contact "
-      "forces against the exact solution.",
+      "forces against the exact solution. Of an impulse response model: frames a second by as many modes as a budget "
+      "holds.",
       "greenloop-bench");
   Arguments arguments;
   app.add_option("model", arguments.model, "The model file")->required()->check(CLI::ExistingFile);
-  app.add_option("--store", arguments.store, "The HDF5 store the model was built from")
-      ->required()
+  app.add_option("--store", arguments.store, "The HDF5 store an elastostatic model was built from")
       ->check(CLI::ExistingFile);
   app.add_option("--contacts", arguments.contacts, "Constraint counts to measure")
       ->check(CLI::Range(1, 1024))

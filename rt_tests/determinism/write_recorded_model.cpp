@@ -1,6 +1,7 @@
 // write_recorded_model FILE.h WAVELET: a model of the recorded script as a C array, FILE.h and FILE.c, and as a model
-// file, FILE.gloop; WAVELET is lifted-linear, lifted-butterfly, butterfly or equilibrated. It is the synthetic sphere's
-// mesh with arbitrary numbers on it: bits that no mathematical library has a part in.
+// file, FILE.gloop; WAVELET is lifted-linear, lifted-butterfly, butterfly or equilibrated: the synthetic sphere's mesh
+// with arbitrary numbers on it, bits that no mathematical library has a part in. Or it is motion or large-motion: an
+// impulse response model with arbitrary values and coordinates.
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -12,6 +13,7 @@
 
 #include "formats/output/output_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/testing/synthetic_motion.hpp"
 #include "formats/write/c_array.hpp"
 #include "formats/write/writer.hpp"
 
@@ -99,6 +101,33 @@ ModelData arbitrary_model(layout::Wavelet wavelet) {
   return data;
 }
 
+// coordinates wander, so that orbits look like motions
+ImpulseResponseData arbitrary_motion(const SyntheticMotion& options) {
+  std::mt19937_64 random(21);
+  ImpulseResponseData data = synthetic_motion(options);
+  const std::int32_t most = layout::most_value(options.planes);
+  for (ModeGroupData& group : data.groups) {
+    const std::size_t modes = group.amplitudes.size();
+    for (layout::ModeRecord& mode : group.amplitudes) mode.amplitude = 0x1p-6F * (1 + uniform(random));
+    for (std::int16_t& value : group.values) {
+      value = static_cast<std::int16_t>(static_cast<int>(random() % (2U * most + 1)) - most);
+    }
+    for (std::size_t i = 0; i < group.coordinates.size(); ++i) {
+      const int before = i < modes ? 0 : group.coordinates[i - modes];
+      const int at = before - before / 16 + static_cast<int>(random() % 2001) - 1000;
+      group.coordinates[i] = static_cast<std::int16_t>(at);
+    }
+  }
+  for (layout::ReferenceRecord& reference : data.references) {
+    if (reference.orbit != layout::none) reference.distance = 0x1p-8F * uniform(random);
+  }
+  for (layout::OrbitRecord& orbit : data.orbits) {
+    if (orbit.next_orbit != layout::none) orbit.next_distance = 0x1p-8F * uniform(random);
+  }
+  for (float& quantum : data.quanta) quantum = 0x1p-22F * (1 + uniform(random));
+  return data;
+}
+
 }  // namespace
 }  // namespace greenloop
 
@@ -108,13 +137,21 @@ int main(int argc, char** argv) {
                                                    {"lifted-butterfly", Wavelet::lifted_butterfly},
                                                    {"butterfly", Wavelet::butterfly},
                                                    {"equilibrated", Wavelet::equilibrated}};
-  const auto wavelet = wavelets.find(argc == 3 ? argv[2] : "");
-  if (wavelet == wavelets.end()) {
-    std::cerr << "usage: write_recorded_model FILE.h lifted-linear|lifted-butterfly|butterfly|equilibrated\n";
+  const std::map<std::string, greenloop::SyntheticMotion> motions = {
+      {"motion", {.vertices = 90, .modes = 8, .groups = 3, .planes = 2, .orbits = 12, .alternating = true}},
+      {"large-motion", {.vertices = 642, .modes = 12, .groups = 3, .orbits = 12}}};
+  const std::string kind = argc == 3 ? argv[2] : "";
+  const auto wavelet = wavelets.find(kind);
+  const auto motion = motions.find(kind);
+  if (wavelet == wavelets.end() && motion == motions.end()) {
+    std::cerr << "usage: write_recorded_model FILE.h "
+                 "lifted-linear|lifted-butterfly|butterfly|equilibrated|motion|large-motion\n";
     return 2;
   }
   try {
-    const std::vector<std::byte> bytes = greenloop::encode(greenloop::arbitrary_model(wavelet->second));
+    const std::vector<std::byte> bytes = motion != motions.end()
+                                             ? greenloop::encode(greenloop::arbitrary_motion(motion->second))
+                                             : greenloop::encode(greenloop::arbitrary_model(wavelet->second));
     greenloop::write_c_array(argv[1], bytes);
     greenloop::write_file(std::filesystem::path(argv[1]).replace_extension(".gloop"), bytes);
   } catch (const std::exception& error) {

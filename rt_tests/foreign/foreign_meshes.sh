@@ -19,6 +19,17 @@ scene() {
   printf '[material]\nyoung = "20 kPa"\npoisson = 0.4\n[[fixed]]\nbelow = 0.15\naxis = "z"\n'
 }
 
+# refusal MESSAGES: its first line, and the first defect of a list below it.
+refusal() {
+  awk '/^greenloop: / {
+    sub(/^greenloop: [^:]*: /, "")
+    text = $0
+    if (getline > 0 && sub(/^  - /, "")) { sub(/[:;].*/, ""); text = text " " $0 }
+    print text
+    exit
+  }' "$1" | tr '|' '/'
+}
+
 # attempt MESH NAME KIND KEYS: sets status, seconds and words.
 attempt() {
   local TIMEFORMAT='%U %S'
@@ -30,7 +41,7 @@ attempt() {
   ); } 2>"$out/$2.time"
   status=$(cat "$out/$2.status")
   seconds=$(awk '{ printf "%.0f", $1 + $2 }' "$out/$2.time")
-  words=$(grep -m 1 '^greenloop: ' "$out/$2.err" | sed 's/^greenloop: [^:]*: //' | tr '|' '/')
+  words=$(refusal "$out/$2.err")
   [ "$status" -lt 128 ] || words="longer than $seconds_each s"
   [ "$status" -ne 0 ] || words=
   rm -f "$out/$2.h5"
@@ -48,6 +59,7 @@ for mesh in "$@"; do
   if [ "$status" -eq 0 ]; then
     came=model models=$((models + 1))
   else
+    grep -q 'wrap = "auto"' "$out/$name.err" || first="$first (no wrap offered)"
     attempt "$mesh" "${name}_wrapped" surface 'wrap = "auto"'
     if [ "$status" -eq 0 ]; then
       came="model, wrapped" wrapped=$((wrapped + 1))

@@ -1,5 +1,6 @@
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "formats/testing/synthetic_motion.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/describe.hpp"
 #include "rt_tests/fuzz/doors.hpp"
@@ -20,6 +21,8 @@ class ModelDoor final : public Door {
               encode(synthetic_model({.levels = 3, .epsilon = 0.02, .touchable_above = 0.5})),
               encode(synthetic_model({.levels = 2, .wavelet = layout::Wavelet::equilibrated})),
               encode(crowded_model(8, 4)),
+              encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6})),
+              encode(synthetic_motion({.vertices = 40, .planes = 2, .orbits = 4, .rows = 5, .alternating = true})),
               encode(measured)};
   }
 

@@ -10,6 +10,7 @@
 
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
+#include "formats/testing/synthetic_motion.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/ready_file.hpp"
 #include "rt_tests/fuzz/walk_view.hpp"
@@ -131,6 +132,32 @@ TEST_CASE("verify survives random changes of scalar models, and what it accepts 
                                                   .coarsest_constraint_level = 1,
                                                   .wavelet = layout::Wavelet::equilibrated,
                                                   .vertices = 40}))}));
+}
+
+TEST_CASE("verify survives random changes of impulse response models, and what it accepts is sound") {
+  // an elastostatic one too, since nothing has to increase in the others
+  check_survival(Mutator(
+      {encode(synthetic_model({.levels = 2})), encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6})),
+       encode(synthetic_motion({.vertices = 40, .planes = 2, .orbits = 4, .rows = 5, .alternating = true}))}));
+}
+
+TEST_CASE("walk_view sees orbits and references of impulse responses that verify must prevent") {
+  ModelMutant mutant(encode(synthetic_motion({})));
+  REQUIRE(mutant.verdict().ok());
+  const ModelView view = mutant.view();
+  const auto seen = [&](auto& number, auto wrong) {
+    const auto right = number;
+    number = static_cast<std::remove_reference_t<decltype(number)>>(wrong);
+    const bool found = !walk_view(mutant.bytes(), view);
+    number = right;
+    return found && walk_view(mutant.bytes(), view);
+  };
+  CHECK(seen(mutant.records<layout::OrbitRecord>(layout::SectionKind::orbits)[3].rows, 100'000));
+  CHECK(seen(mutant.records<layout::OrbitRecord>(layout::SectionKind::orbits)[1].next_orbit, 10));
+  CHECK(seen(mutant.records<layout::ReferenceRecord>(layout::SectionKind::references)[5].orbit, 10));
+  CHECK(seen(mutant.records<std::uint32_t>(layout::SectionKind::triangles)[7], 100));
+  CHECK(seen(mutant.records<float>(layout::SectionKind::shape)[7], std::numeric_limits<float>::infinity()));
+  CHECK(seen(mutant.records<std::int16_t>(layout::SectionKind::coordinates)[7], -32768));
 }
 
 TEST_CASE("walk_view sees scalar blocks and scales that verify must prevent") {

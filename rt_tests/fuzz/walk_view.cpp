@@ -18,6 +18,11 @@ class Walk {
   Walk(std::span<const std::byte> file, const ModelView& view) : file_(file), view_(view) {}
 
   bool whole_view() {
+    return view_.problem == layout::Problem::impulse_response ? impulse_view() : elastostatic_view();
+  }
+
+ private:
+  bool elastostatic_view() {
     if (!array(view_.header, 1) || !array(view_.info, 1) || components() != layout::components_of(view_.problem) ||
         !array(view_.base_triangles, triangle_corners()) || !array(view_.provenance.data(), view_.provenance.size())) {
       return false;
@@ -34,7 +39,58 @@ class Walk {
     return vertices() && loads() && ready();
   }
 
- private:
+  // every number of every array is read; indices stay inside
+  bool impulse_view() const {
+    const ImpulseResponseView& view = view_.impulse_response;
+    if (!array(view_.header, 1) || !array(view_.provenance.data(), view_.provenance.size()) || !array(view.info, 1)) {
+      return false;
+    }
+    const layout::ImpulseInfo& info = *view.info;
+    const std::uint64_t references = std::uint64_t{info.rows} * info.impulses;
+    const std::uint64_t successions = std::uint64_t{info.impulses + 1} * info.impulses;
+    if (!array(view.shape, std::uint64_t{3} * info.vertices) || !array(view.quanta, view.blocks()) ||
+        !array(view.triangles, std::uint64_t{3} * info.triangles) || !array(view.orbits.data(), info.orbits) ||
+        !array(view.impulses.data(), info.impulses) || !array(view.successions, successions) ||
+        !array(view.references, references)) {
+      return false;
+    }
+    const auto is_finite = [](float x) { return std::isfinite(x); };
+    const auto leads_on = [&](const layout::OrbitRecord& orbit) {
+      const bool inside = std::uint64_t{orbit.first_row} + orbit.rows <= info.rows && orbit.rows >= 2;
+      return inside && (orbit.next_orbit == layout::none ||
+                        (orbit.next_orbit < info.orbits && orbit.next_row > 0 && orbit.next_row + 1 < info.rows));
+    };
+    return all(view.shape, std::uint64_t{3} * info.vertices, is_finite) && all(view.quanta, view.blocks(), is_finite) &&
+           all(view.triangles, std::uint64_t{3} * info.triangles, [&](auto v) { return v < info.vertices; }) &&
+           all(view.orbits.data(), info.orbits, leads_on) &&
+           all(view.successions, successions, [](auto flag) { return flag <= 1; }) &&
+           all(view.references, references,
+               [&](const auto& reference) {
+                 return reference.orbit == layout::none || reference.orbit < info.orbits;
+               }) &&
+           impulse_groups(view);
+  }
+
+  bool impulse_groups(const ImpulseResponseView& view) const {
+    std::uint32_t modes = 0;
+    for (std::uint32_t q = 0; q < view.levels; ++q) {
+      const ModeGroupView& group = view.group[q];
+      const std::uint64_t of_group = group.counts->modes;
+      modes += group.counts->modes;
+      for (std::uint32_t plane = 0; plane < view.info->planes; ++plane) {
+        const std::uint64_t values = std::uint64_t{view.blocks()} * layout::block_values * of_group;
+        if (!array(group.plane[plane], values) || !all(group.plane[plane], values, [](auto) { return true; }))
+          return false;
+      }
+      const std::uint64_t coordinates = view.info->rows * of_group;
+      if (!array(group.amplitudes, of_group) || !array(group.coordinates, coordinates) ||
+          !all(group.coordinates, coordinates, [](auto x) { return x >= -layout::most_coordinate; })) {
+        return false;
+      }
+    }
+    return modes == view.modes;
+  }
+
   [[nodiscard]] std::uint32_t count(std::uint32_t q) const { return view_.level[q].counts->node_count; }
   [[nodiscard]] std::uint32_t domain(std::uint32_t q) const { return view_.level[q].counts->domain_count; }
   [[nodiscard]] std::uint32_t domain_of_mesh(std::uint32_t q) const { return view_.level[q].domain_begin + domain(q); }

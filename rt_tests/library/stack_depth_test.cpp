@@ -8,9 +8,16 @@
 #include <memory>
 #include <vector>
 
+#include "formats/testing/synthetic_motion.hpp"
+#include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/touching_script.hpp"
+#include "runtime/bound_mesh.hpp"
+#include "runtime/impulse_response.hpp"
+#include "runtime/look.hpp"
+#include "runtime/relief.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
+#include "runtime/testing/split_surface.hpp"
 #include "runtime/testing/test_body.hpp"
 
 namespace greenloop {
@@ -96,6 +103,32 @@ TEST_CASE("a step keeps below the promised depth, whatever it has to do") {
   }
 }
 
+TEST_CASE("a step of mixed contacts keeps below the same depth") {
+  const TestModel model({.levels = 4});
+  TestBody body(model, {.max_contacts = 20, .cached_factors = 2, .max_forces = 4, .mixed_contacts = true});
+  const auto nodes = model.touchable();
+  const std::vector<float> weight(4, 0.25F);
+  const std::vector<Vec3> normal(4, {0, 0, 1});
+  const Mask mask{std::span(nodes).subspan(30, 4), weight};
+  const DirectedMask directed{std::span(nodes).subspan(8, 4), normal};
+  const std::vector<Constraint> contacts = {{nodes[3], {1e-3F, 0, -1e-3F}},
+                                            {0, {1e-3F, 0, 0}, Constraint::Kind::mask},
+                                            {0, {1e-3F, 0, 0}, Constraint::Kind::normal},
+                                            {nodes[8], {1, 0, 0}, Constraint::Kind::force}};
+  std::vector<float> force(12);
+  Elastostatic::Loads loads;
+  loads.masks = {&mask, 1};
+  loads.directed = {&directed, 1};
+  const Elastostatic::Response response{as_vec3(std::span(force)), as_vec4(body.field())};
+  for (const std::uint64_t work : {body.requirement().least_work, any_budget, any_budget}) {
+    Elastostatic::StepReport report;
+    const std::size_t bytes = depth_of([&] { report = body.body().step(contacts, loads, {work}, response); });
+    MESSAGE("deepest stack of a step of mixed contacts: ", bytes, " bytes");
+    CHECK(answered(report.status));
+    CHECK(bytes < promised);
+  }
+}
+
 TEST_CASE("a query of the surface keeps below 1 kB") {
   const TestModel model({.levels = 4});
   const Surface::Requirement need = Surface::required(model.model(), 3);
@@ -117,6 +150,33 @@ TEST_CASE("a query of the surface keeps below 1 kB") {
     CHECK(point.triangle != layout::none);
     CHECK(bytes < 1024);
   }
+}
+
+TEST_CASE("finer pictures and relief keep below 1 kB") {
+  const TestModel model({.levels = 4});
+  const SplitSurface split(model, 3, {2, FinerSurface::Rule::loop});
+  const std::vector<Vec3> vertex(100, Vec3{0.01F, 0.02F, 0.11F});
+  AlignedBytes memory(BoundMesh::required(split.surface, vertex.size()));
+  const auto bound = BoundMesh::create(split.surface, vertex, {memory.data(), memory.size()});
+  REQUIRE(bound);
+  std::vector<Vec4> position(split.finer.vertex_count(2)), normal(position.size()), bound_position(vertex.size());
+  const std::vector<Vec3> slope(position.size());
+  std::vector<std::uint8_t> seen(split.surface.triangle_count(1));
+  ContactBody::Contact contact;
+  contact.node[1] = 1;
+  contact.node[2] = 2;
+  contact.weight[0] = contact.weight[1] = 0.5;
+  contact.normal = contact.force = {0, 0, 1};
+  bool right = false;
+  const std::size_t bytes = depth_of([&] {
+    right = look_at(split.surface, {}, {{0, 0, 1}, {0, 0, -1}}, seen).triangles > 0 &&
+            split.finer.positions(2, {}, position) && split.finer.normals(2, position, normal) &&
+            bound.mesh.positions({}, normal, seen, bound_position) &&
+            relief_friction(split.finer, slope, 0.3, {1e-3, 0, 0}, {&contact, 1}) > 0;
+  });
+  MESSAGE("deepest stack of a finer picture: ", bytes, " bytes");
+  CHECK(right);
+  CHECK(bytes < 1024);
 }
 
 TEST_CASE("a search for candidates keeps below 3 kB") {
@@ -156,6 +216,30 @@ TEST_CASE("a step of tools keeps below what docs/touching.md promises, whatever 
   MESSAGE("deepest stack of a step of tools: ", deepest, " bytes");
   CHECK(deepest > 1000);
   CHECK(deepest < promised_of_tools);
+}
+
+TEST_CASE("a step of impulses keeps below what docs/impulses.md promises") {
+  const ModelFile file = encoded_file(synthetic_motion({.modes = 16, .groups = 3, .planes = 2, .alternating = true}));
+  const Model model = Model::open(file.bytes.span()).model;
+  const ImpulseResponse::Requirement need = ImpulseResponse::required(model, {});
+  AlignedBytes memory(need.bytes);
+  auto created = ImpulseResponse::create(model, {}, {memory.data(), memory.size()});
+  REQUIRE(created);
+  std::vector<float> coordinate(16), velocity(16);
+  std::vector<Vec3> displacement(101), rate(101);
+  ImpulseScript script(model, need, 3);
+  std::size_t deepest = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const ImpulseScript::Cycle cycle = script.next();
+    const std::span<Vec3> moved = std::span(displacement).first(cycle.vertices);
+    deepest =
+        std::max(deepest, depth_of([&] {
+                   static_cast<void>(created.body.step(cycle.impulse, cycle.budget, {coordinate, velocity, moved, {}}));
+                 }));
+  }
+  MESSAGE("deepest stack of a step of impulses: ", deepest, " bytes");
+  CHECK(deepest > 100);
+  CHECK(deepest < 1536);
 }
 
 }  // namespace

@@ -17,10 +17,16 @@
 #include <shared_mutex>
 #include <vector>
 
+#include "formats/testing/synthetic_motion.hpp"
+#include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/minor_faults.hpp"
 #include "rt_tests/harness/touching_script.hpp"
+#include "runtime/bound_mesh.hpp"
+#include "runtime/look.hpp"
+#include "runtime/relief.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
+#include "runtime/testing/split_surface.hpp"
 #include "runtime/testing/test_body.hpp"
 #include "sim_hw/guard/guarded.hpp"
 
@@ -85,6 +91,36 @@ class Touching {
   AlignedBytes memory_;
   ContactBody body_;
   TouchingScript script_;
+};
+
+// impulses on motions, refused ones among them
+class Moving {
+ public:
+  Moving()
+      : file_(encoded_file(synthetic_motion({.planes = 2, .alternating = true}))),
+        model_(Model::open(file_.bytes.span()).model),
+        need_(ImpulseResponse::required(model_, {})),
+        memory_(need_.bytes),
+        body_(ImpulseResponse::create(model_, {}, {memory_.data(), memory_.size()}).body),
+        script_(model_, need_, 3),
+        coordinate_(6),
+        displacement_(101) {}
+
+  ImpulseResponse::StepReport cycle() {
+    const ImpulseScript::Cycle cycle = script_.next();
+    return body_.step(cycle.impulse, cycle.budget,
+                      {coordinate_, {}, std::span(displacement_).first(cycle.vertices), {}});
+  }
+
+ private:
+  ModelFile file_;
+  Model model_;
+  ImpulseResponse::Requirement need_;
+  AlignedBytes memory_;
+  ImpulseResponse body_;
+  ImpulseScript script_;
+  std::vector<float> coordinate_;
+  std::vector<Vec3> displacement_;
 };
 
 TEST_CASE("the allocation guard trips on malloc, new and free") {
@@ -177,6 +213,24 @@ TEST_CASE("no allocation, lock or minor page fault in steps of tools, whatever t
   CHECK(pushed > cycles / 2);
 }
 
+TEST_CASE("no allocation, lock or minor page fault in steps of impulses") {
+  Moving moving;
+  for (int i = 0; i < 100; ++i) moving.cycle();
+  GuardCounts seen;
+  int refused = 0;
+  const std::uint64_t faults = minor_faults();
+  for (int i = 0; i < cycles; ++i) {
+    ImpulseResponse::StepReport report;
+    seen += guarded([&] { report = moving.cycle(); });
+    refused += answered(report.status) ? 0 : 1;
+  }
+  CHECK(minor_faults() == faults);
+  CHECK(seen.allocations == 0);
+  CHECK(seen.locks == 0);
+  CHECK(refused > 0);
+  CHECK(refused < cycles / 2);
+}
+
 TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is made") {
   const TestModel model({.levels = 4});
   AlignedBytes memory(Surface::required(model.model(), 3).bytes);
@@ -192,6 +246,43 @@ TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is 
     const Vec3 position{static_cast<float>(i) * 1e-4F - 0.1F, 0.01F, 0.02F};
     right = right && created.surface.nearest_node(position).node != layout::none &&
             created.surface.nearest_point(position).triangle != layout::none;
+  }
+  mutex_guard::disarm();
+  allocation_guard::disarm();
+  CHECK(right);
+  CHECK(allocation_guard::count() == allocations);
+  CHECK(mutex_guard::count() == locks);
+}
+
+TEST_CASE("no allocation and no lock in finer pictures and relief, nor when they are made") {
+  const TestModel model({.levels = 4});
+  const SplitSurface split(model, 3, {2, FinerSurface::Rule::loop});
+  const FinerSurface::Options options{2, FinerSurface::Rule::midpoint};
+  AlignedBytes finer_memory(FinerSurface::required(split.surface, options));
+  const std::vector<Vec3> vertex(100, Vec3{0.01F, 0.02F, 0.11F});
+  AlignedBytes bound_memory(BoundMesh::required(split.surface, vertex.size()));
+  std::vector<Vec4> position(split.finer.vertex_count(2)), normal(position.size()), bound_position(vertex.size());
+  const std::vector<Vec3> detail(position.size(), Vec3{0, 0.3F, 1});
+  std::vector<Vec3> slope(position.size());
+  std::vector<std::uint8_t> seen(split.surface.triangle_count(1));
+  ContactBody::Contact contact;
+  contact.node[1] = 1;
+  contact.node[2] = 2;
+  contact.weight[0] = contact.weight[1] = 0.5;
+  contact.normal = contact.force = {0, 0, 1};
+  const std::uint64_t allocations = allocation_guard::count();
+  const std::uint64_t locks = mutex_guard::count();
+  allocation_guard::arm();
+  mutex_guard::arm();
+  const auto finer = FinerSurface::create(split.surface, options, {finer_memory.data(), finer_memory.size()});
+  const auto bound = BoundMesh::create(split.surface, vertex, {bound_memory.data(), bound_memory.size()});
+  bool right = bool{finer} && bool{bound};
+  for (int i = 0; i < 100; ++i) {
+    const Look look{{0.01F * static_cast<float>(i), 0, 1}, {0, 0, -1}, 0.5F, 1e-3F};
+    right = right && look_at(split.surface, {}, look, seen).triangles > 0 && split.finer.positions(2, {}, position) &&
+            finer.surface.positions(2, {}, position) && split.finer.normals(2, position, normal) &&
+            bound.mesh.positions({}, normal, seen, bound_position) && relief_slopes(normal, detail, slope) &&
+            relief_friction(split.finer, slope, 0.3, {1e-3, 0, 0}, {&contact, 1}) >= 0;
   }
   mutex_guard::disarm();
   allocation_guard::disarm();
@@ -267,6 +358,12 @@ TEST_CASE("no system call in the loop, by Syscall User Dispatch") {
     touching.cycle();
     system_call_guard::disarm();
   }
+  Moving moving;
+  for (int i = 0; i < cycles; ++i) {
+    system_call_guard::arm();
+    moving.cycle();
+    system_call_guard::disarm();
+  }
   CHECK(system_call_guard::count() == 1);
 }
 
@@ -290,6 +387,7 @@ int strict_child(Work work) {
 TEST_CASE("no system call in the loop, by strict seccomp") {
   Scripted scripted;
   Touching touching;
+  Moving moving;
   const int caught = strict_child([] { static_cast<void>(syscall(SYS_getppid)); });
   REQUIRE(!(WIFEXITED(caught) && WEXITSTATUS(caught) == 99));
   CHECK(WIFSIGNALED(caught));
@@ -297,6 +395,7 @@ TEST_CASE("no system call in the loop, by strict seccomp") {
     for (int i = 0; i < cycles; ++i) {
       scripted.cycle(i);
       touching.cycle();
+      moving.cycle();
     }
   });
   CHECK(WIFEXITED(clean));

@@ -60,6 +60,7 @@ json 0 - greenloop-calibrate c.gloop --cycles 200 --json
 json 0 - greenloop-bench c.gloop --store c.h5 --contacts 1 --rounds 3 --updates 10 --json
 json 0 - greenloop-figures c.h5 --contacts 1 --rounds 3 --json
 json 0 - greenloop-columns cube.toml --records c.csv --json
+json 0 - greenloop-masks 1 --sliding-splits 1 --points 8 --json
 json 1 VIOLATED greenloop-stress c.gloop --cycles 2000 --inject overrun --json
 printf 'junk' >junk.gloop
 json 1 VIOLATED greenloop verify junk.gloop --json

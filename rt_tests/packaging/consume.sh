@@ -6,13 +6,14 @@ source_dir=$1 build=$2 via=$3 version=$4 model=$5
 work=$build/packaging/$via-$version
 rm -rf "$work" && mkdir -p "$work"
 
-# the examples of README.md (C++), docs/loop.md (C), docs/surface.md and docs/touching.md are what the consumers compile
+# the examples of README.md (C++), docs/loop.md (C), docs/surface.md, touching.md and impulses.md are what the consumers
+# compile
 example() {  # example LANGUAGE DOCUMENT: its code in that language
   awk "/^\`\`\`$1\$/ {inside = 1; next} /^\`\`\`\$/ {inside = 0} inside" "$source_dir/$2"
 }
 loop_example_cpp=README.md loop_example_c=docs/loop.md
 for language in cpp c; do
-  for page in surface touching; do
+  for page in surface touching impulses; do
     example $language docs/$page.md >"$work/${page}_example.$language"
     test -s "$work/${page}_example.$language" || { echo "docs/$page.md has no $language block"; exit 1; }
   done
@@ -37,7 +38,8 @@ configure() {
     -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" -DCONSUMER_VIA="$via" \
     -DCMAKE_C_FLAGS="$flags" -DCMAKE_CXX_FLAGS="$flags" \
     -DWANTED_VERSION="$version" -DGREENLOOP_SOURCE="$source_dir" -DREADME_EXAMPLE="$work/readme_example" \
-    -DSURFACE_EXAMPLE="$work/surface_example" -DTOUCHING_EXAMPLE="$work/touching_example"
+    -DSURFACE_EXAMPLE="$work/surface_example" -DTOUCHING_EXAMPLE="$work/touching_example" \
+    -DIMPULSES_EXAMPLE="$work/impulses_example"
 }
 if [ "$model" = refuse ]; then
   if configure >"$work/configure.log" 2>&1; then
@@ -61,6 +63,11 @@ cmp "$work/touched.cpp.txt" "$work/touched.c.txt"
 "$work/build/c_touching_consumer" "$model" >"$work/felt.c.txt"
 test "$(wc -l <"$work/felt.c.txt")" -eq 60
 cmp "$work/felt.cpp.txt" "$work/felt.c.txt"
+motion=$build/recorded_model/recorded_motion.gloop
+"$work/build/impulses_consumer" "$motion" >"$work/shown.cpp.txt"
+"$work/build/c_impulses_consumer" "$motion" >"$work/shown.c.txt"
+test "$(wc -l <"$work/shown.c.txt")" -eq 200
+cmp "$work/shown.cpp.txt" "$work/shown.c.txt"
 for program in consumer_small c_consumer_small; do
   if "$work/build/$program" "$model" 2>"$work/$program.txt" >/dev/null; then exit 1; fi
   grep -q '^status 3 after 0 cycles' "$work/$program.txt"

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -21,6 +23,7 @@
 #include "rt_tests/harness/prices_file.hpp"
 #include "rt_tests/harness/time_of.hpp"
 #include "rt_tests/stress/stress_report.hpp"
+#include "rt_tests/stress/tool_stress.hpp"
 
 namespace {
 
@@ -28,11 +31,14 @@ using greenloop::ElastostaticDriver;
 using greenloop::InjectedFault;
 using greenloop::ScriptKind;
 using greenloop::StressReport;
+using greenloop::ToolScriptKind;
+using greenloop::ToolStressReport;
 
 struct Arguments {
   std::string model;
   greenloop::StressOptions options;
-  bool loads = false;
+  std::string script;
+  bool loads = false, tools = false;
   bool json = false;
   bool count_instructions = false, list_steps = false;
   double rate = 0;
@@ -41,12 +47,20 @@ struct Arguments {
   std::string prices;
 };
 
-std::map<std::string, ScriptKind> script_kinds() {
-  std::map<std::string, ScriptKind> kinds;
-  for (std::size_t i = 0; i < greenloop::contact_script_names.size(); ++i) {
-    kinds[greenloop::contact_script_names[i]] = static_cast<ScriptKind>(i);
-  }
-  return kinds;
+// all names of scripts, of contacts and of tools
+std::vector<std::string> script_names() {
+  std::vector<std::string> names(greenloop::contact_script_names.begin(), greenloop::contact_script_names.end());
+  names.insert(names.end(), greenloop::tool_script_names.begin(), greenloop::tool_script_names.end());
+  return names;
+}
+
+// the script that was asked for, among those of contacts or of tools; none: all of them
+template <class Kind, class Names>
+std::optional<Kind> script_of(const std::string& script, const Names& names, const char* others) {
+  if (script.empty()) return std::nullopt;
+  const auto found = std::find(names.begin(), names.end(), script);
+  if (found == names.end()) throw std::runtime_error("--script " + script + " is one of " + others);
+  return static_cast<Kind>(found - names.begin());
 }
 
 /// An option of names that stand for values.
@@ -67,7 +81,8 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of the scripts")->capture_default_str();
-  add_choice(app, "--script", options.script, script_kinds(), "this script alone; else all, each on a body of its own");
+  app.add_option("--script", arguments.script, "this script alone; else all, each on a body of its own")
+      ->check(CLI::IsMember(script_names()));
   app.add_option("--contacts", options.contacts, "most contacts of a step; else what the model asks for")
       ->check(CLI::Range(1, 4096));
   app.add_option("--factors", options.factors, "cached factors")->check(CLI::Range(1, 1024))->capture_default_str();
@@ -88,6 +103,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--judge-time", arguments.judge_time,
                "fail if a step takes longer, or if this machine cannot tell: it takes a thread that is pinned to one "
                "isolated processor");
+  app.add_flag("--tools", arguments.tools, "rigid tools that touch the body in place of contacts");
   app.add_flag("--loads", arguments.loads, "known forces, masks and gravity beside the contacts of the scripts");
   app.add_flag("--json", arguments.json, "machine-readable result");
   const std::map<std::string, InjectedFault> faults = {{"allocation", InjectedFault::allocation},
@@ -138,7 +154,55 @@ greenloop::StressOptions options_for(const greenloop::Model& model, const Argume
   if (!arguments.prices.empty()) {
     options.prices = greenloop::read_prices(arguments.prices);
   }
+  options.script = script_of<ScriptKind>(arguments.script, greenloop::contact_script_names, "tools: give --tools");
   return options;
+}
+
+double rate_of(const Arguments& arguments, const greenloop::Elastostatic::Intent& intent) {
+  return arguments.rate > 0 ? arguments.rate : double{intent.rate};
+}
+
+double share_of(const Arguments& arguments, const greenloop::Elastostatic::Intent& intent) {
+  return arguments.share > 0 ? arguments.share : double{intent.share};
+}
+
+ToolStressReport stress_tools(const greenloop::Model& model, const Arguments& arguments) {
+  constexpr std::uint32_t usual_contacts = 64;
+  const greenloop::StressOptions& asked = arguments.options;
+  ToolStressReport report;
+  report.model = arguments.model;
+  greenloop::ToolStressOptions& options = report.options;
+  options.cycles = asked.cycles;
+  options.seed = asked.seed;
+  options.script = script_of<ToolScriptKind>(arguments.script, greenloop::tool_script_names, "contacts, not of tools");
+  options.contacts = asked.contacts == 0 ? usual_contacts : asked.contacts;
+  options.factors = asked.factors;
+  options.histogram_bins = asked.histogram_bins;
+  options.fault = asked.fault;
+  greenloop::offline::ProgressBar bar(arguments.json);
+  bar.begin("stress");
+  options.progress = [&](ToolScriptKind kind, std::uint64_t done) {
+    bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  report.result = greenloop::run_tool_stress(model, options);
+  const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
+  report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
+  bar.end(fmt::format("{} cycles", report.result.cycles));
+  const auto intent = greenloop::Elastostatic::intended(model);
+  report.time = greenloop::judge_times(report.result.times, rate_of(arguments, intent), share_of(arguments, intent),
+                                       arguments.judge_time);
+  return report;
+}
+
+template <class Report>
+int hand_out(const Report& report, bool as_json) {
+  if (as_json) {
+    greenloop::print_result(greenloop::json_text(report.json()) + "\n");
+  } else {
+    report.print();
+  }
+  return report.held() ? 0 : 1;
 }
 
 StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
@@ -156,9 +220,8 @@ StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
   report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
   bar.end(fmt::format("{} cycles", report.result.cycles));
   const auto intent = greenloop::Elastostatic::intended(model);
-  const double rate = arguments.rate > 0 ? arguments.rate : double{intent.rate};
-  const double share = arguments.share > 0 ? arguments.share : double{intent.share};
-  report.time = greenloop::judge_times(report.result.times, rate, share, arguments.judge_time);
+  report.time = greenloop::judge_times(report.result.times, rate_of(arguments, intent), share_of(arguments, intent),
+                                       arguments.judge_time);
   report.starved = greenloop::starved_steps<ElastostaticDriver>(model, options, 1600);
   if (arguments.count_instructions) {
     bar.begin("instructions");
@@ -182,14 +245,10 @@ int run(const Arguments& arguments) {
                            std::cout);
     return 0;
   }
+  if (arguments.tools) return hand_out(stress_tools(opened.model, arguments), arguments.json);
   StressReport report = stress(opened.model, arguments);
   report.open_ms = greenloop::time_of(15, [&] { (void)greenloop::Model::open(bytes.span()); }) / 1e3;
-  if (arguments.json) {
-    greenloop::print_result(greenloop::json_text(report.json()) + "\n");
-  } else {
-    report.print();
-  }
-  return report.held() ? 0 : 1;
+  return hand_out(report, arguments.json);
 }
 
 }  // namespace

@@ -2,28 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "sim_hw/control_loop/status_name.hpp"
 
 namespace greenloop {
 namespace {
 
 using nlohmann::json;
-
-struct NamedCount {
-  const char* name;
-  std::uint64_t count;
-};
-
-std::array<NamedCount, 6> named(const Violations& violations) {
-  return {{{"work_overruns", violations.work_overruns},
-           {"wrong_answers", violations.wrong_answers},
-           {"allocations", violations.allocations},
-           {"locks", violations.locks},
-           {"syscalls", violations.system_calls},
-           {"minor_faults", violations.minor_faults}}};
-}
 
 json as_json(const ScriptResult& script) {
   return {{"name", name(script.kind)},
@@ -110,20 +94,7 @@ void print_histogram(const TimeHistogram& times) {
 
 }  // namespace
 
-std::string StressReport::verdict() const {
-  if (result.held()) {
-    return "HELD";
-  }
-  std::string text = "VIOLATED";
-  const char* before = ": ";
-  for (const auto& [name, count] : named(result.violations)) {
-    if (count > 0) {
-      text += fmt::format("{}{} {}", before, name, count);
-      before = ", ";
-    }
-  }
-  return text;
-}
+std::string StressReport::verdict() const { return verdict_of(result.violations); }
 
 std::string StressReport::replay() const {
   if (!result.first_violation) {

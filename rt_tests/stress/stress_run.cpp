@@ -1,22 +1,15 @@
 #include "rt_tests/stress/stress_run.hpp"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
-#include <mutex>
 
 #include "rt_tests/harness/fast_digest.hpp"
 #include "rt_tests/harness/loaded_driver.hpp"
-#include "rt_tests/harness/minor_faults.hpp"
 #include "rt_tests/harness/time_of.hpp"
 #include "rt_tests/stress/force_step.hpp"
+#include "rt_tests/stress/guarded_steps.hpp"
 #include "runtime/hosted/hosted.hpp"
-#include "sim_hw/guard/guarded.hpp"
 
 namespace greenloop {
 namespace {
@@ -47,10 +40,7 @@ class StressRun {
   }
 
   StressResult run() {
-    {
-      const std::lock_guard lock(mutex_);  // so that the guard has looked up the real function, which may allocate
-    }
-    result_.watches_system_calls = system_call_guard::install();
+    result_.watches_system_calls = guarded_.prepare();
     result_.create_ms = time_of(1, [this] { host_.renew(); }) / 1e3;
     warm_up();
     visit_scripts(options_, [this](ScriptKind kind, std::uint64_t cycles) { run_script(kind, cycles); });
@@ -109,7 +99,9 @@ class StressRun {
   void cycle(const ScriptedStep& scripted) {
     const std::uint64_t violations = result_.violations.sum();
     const double begin = thread_microseconds();
-    const StepReport report = guarded_step(scripted);
+    StepReport report;
+    guarded_.run([&] { report = step(scripted); }, [&] { report.work += bounds_.worst_work; },
+                 script_.cycles % GuardedSteps::fault_interval == GuardedSteps::fault_interval - 1, result_.violations);
     const double us = thread_microseconds() - begin;
     result_.times.add(us);
     script_.worst_us = std::max(script_.worst_us, us);
@@ -126,50 +118,6 @@ class StressRun {
     }
     if (!result_.first_violation && result_.violations.sum() > violations) {
       result_.first_violation = {script_.kind, script_.cycles};
-    }
-  }
-
-  StepReport guarded_step(const ScriptedStep& scripted) {
-    const bool faulty = script_.cycles % 100 == 99;
-    if (faulty && options_.fault == InjectedFault::page_fault) {
-      madvise(page_.get(), page_bytes_, MADV_DONTNEED);
-    }
-    StepReport report;
-    const std::uint64_t faults = minor_faults();
-    const GuardCounts seen = guarded([&] {
-      report = step(scripted);
-      if (faulty) {
-        commit_fault(report);
-      }
-    });
-    Violations& violations = result_.violations;
-    violations.minor_faults += minor_faults() - faults;
-    violations.allocations += seen.allocations;
-    violations.locks += seen.locks;
-    violations.system_calls += seen.system_calls;
-    return report;
-  }
-
-  void commit_fault(StepReport& report) {
-    switch (options_.fault) {
-      case InjectedFault::none:
-        break;
-      case InjectedFault::allocation:
-        leak_.reset(new int(1));
-        break;
-      case InjectedFault::lock: {
-        const std::lock_guard lock(mutex_);
-        break;
-      }
-      case InjectedFault::system_call:
-        static_cast<void>(getppid());
-        break;
-      case InjectedFault::page_fault:
-        *static_cast<volatile char*>(page_.get()) = 1;
-        break;
-      case InjectedFault::overrun:
-        report.work += bounds_.worst_work;
-        break;
     }
   }
 
@@ -206,11 +154,7 @@ class StressRun {
   StressResult result_;
   FastDigest script_digest_, digest_;
   ForceStep force_step_;
-  std::unique_ptr<int> leak_;
-  std::mutex mutex_;
-  std::size_t page_bytes_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  std::unique_ptr<char, decltype(&std::free)> page_{static_cast<char*>(std::aligned_alloc(page_bytes_, page_bytes_)),
-                                                    &std::free};
+  GuardedSteps guarded_{options_.fault};
 };
 
 }  // namespace

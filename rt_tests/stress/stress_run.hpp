@@ -9,15 +9,13 @@
 #include "rt_tests/harness/contact_script.hpp"
 #include "rt_tests/harness/dear_sets.hpp"
 #include "rt_tests/harness/driver.hpp"
+#include "rt_tests/stress/guarded_steps.hpp"
 #include "runtime/hosted/hosted.hpp"
 #include "runtime/model.hpp"
 #include "runtime/prices.hpp"
 #include "sim_hw/guard/time_histogram.hpp"
 
 namespace greenloop {
-
-/// A fault put into every hundredth step of a script, to show that the verdict can fail.
-enum class InjectedFault : std::uint8_t { none, allocation, lock, system_call, page_fault, overrun };
 
 struct StressOptions {
   std::uint64_t cycles = 20000;
@@ -30,20 +28,6 @@ struct StressOptions {
   Prices prices{};
   InjectedFault fault = InjectedFault::none;
   std::function<void(ScriptKind, std::uint64_t)> progress = nullptr;  ///< called every so often with the cycles done
-};
-
-/// Steps, or calls in them, that break what the runtime declares.
-struct Violations {
-  std::uint64_t work_overruns = 0;  ///< work above the budget or the declared bound
-  std::uint64_t wrong_answers = 0;  ///< refused what is right, answered what is wrong, not finite, or held ones written
-  std::uint64_t allocations = 0;
-  std::uint64_t locks = 0;
-  std::uint64_t system_calls = 0;  ///< steps with any
-  std::uint64_t minor_faults = 0;
-
-  [[nodiscard]] std::uint64_t sum() const {
-    return work_overruns + wrong_answers + allocations + locks + system_calls + minor_faults;
-  }
 };
 
 /// One script, on a body of its own: the same in any run of its kind, seed, limits and cycles.

@@ -8,7 +8,6 @@ namespace greenloop {
 struct Approach {
   double gap = 0;  ///< m, along the normal; negative: how far back the place has to go
   Double3 normal;  ///< unit, out of the tool: where the tool pushes
-  Double3 motion;  ///< m, of the place against the tool in this step
 };
 
 /// Follows a place of the body from the tool's last placement to the present one, in the tool's frame and straight.
@@ -16,14 +15,14 @@ struct Approach {
 /// through, and is beyond the tool, too. One that enters nothing, or only cuts a corner, has the tool's distance and
 /// normal. The way in is found by steps of the distance, at most most_advances of them (Hart 1996): where these do not
 /// suffice, the plane is that of the tool's point nearest to where they end, which bounds the tool as well. For the
-/// loop; work: approach_work().
+/// loop; work: of the steps that were made, which is added to `work`, at most approach_work().
 [[nodiscard]] Approach approach(const Shape& shape, const Placement& last, const Placement& present,
-                                const Double3& place) noexcept;
+                                const Double3& place, std::uint64_t& work) noexcept;
 
 inline constexpr int most_advances = 16;
-[[nodiscard]] inline std::uint64_t approach_work(const Shape& shape) noexcept {
+[[nodiscard]] inline std::uint64_t approach_work(const Shape& shape, std::uint64_t advances = most_advances) noexcept {
   constexpr std::uint64_t transforms = 120, advance = 30;
-  return transforms + (most_advances + 2) * (advance + shape.distance_work());
+  return transforms + (advances + 2) * (advance + shape.distance_work());
 }
 
 }  // namespace greenloop

@@ -20,7 +20,6 @@ struct Candidate {
   double gap = 0;                         ///< m, along the normal; negative where the point is inside the tool
   Double3 normal;                         ///< unit, out of the tool, on the side that the body was on
   Double3 position;                       ///< m, of the point of the body, displaced
-  Double3 motion;                         ///< m, of that against the tool in this step
 };
 
 }  // namespace greenloop

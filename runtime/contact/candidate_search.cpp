@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "runtime/algebra/merge_sort.hpp"
@@ -58,6 +59,24 @@ std::uint64_t take_work(std::uint64_t room) {
   return take_price + 2 * compare_price * halvings;
 }
 
+std::uint64_t less(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 0; }
+
+// a tool's share of the work, by its points; of one that is left out little
+std::uint64_t weight_of(const Shape& shape, std::uint32_t most_points) {
+  const std::uint32_t points = shape.check() == Shape::Error::none ? shape.point_count() : 0;
+  return 1 + (points <= most_points ? points : 0);
+}
+
+// of a tool's point: so that one that moves a little is not left out
+std::uint64_t least_point_work(const SurfaceSizes& surface, std::uint64_t room) {
+  return Proxy::reserve(surface) + 2 * DeformedSurface::patch_work + take_work(room);
+}
+
+// of a node that is a candidate, at most
+std::uint64_t most_node_work(const DeformedSurface& surface, const Shape& shape, std::uint64_t room) {
+  return node_price + shape.distance_work() + approach_work(shape) + surface.surround_work() + take_work(room);
+}
+
 template <class T>
 void start_all(T* some, std::uint64_t count) {
   for (std::uint64_t i = 0; some != nullptr && i < count; ++i) new (some + i) T;
@@ -108,12 +127,19 @@ CandidateSearch::Created CandidateSearch::create(const Limits& limits, std::span
 }
 
 CandidateSearch::Found CandidateSearch::find(const DeformedSurface& surface, std::span<const Tool> tools,
-                                             std::uint64_t& work) noexcept {
+                                             std::uint64_t& work, std::uint64_t most) noexcept {
   count_ = 0;
   found_ = {};
   for (std::uint32_t i = 0; i <= limits_.max_candidates; ++i) order_[i] = i;
   const auto heeded = static_cast<std::uint32_t>(std::min<std::size_t>(tools.size(), limits_.max_tools));
-  for (std::uint32_t t = 0; t < heeded; ++t) look(surface, tools[t], t, work);
+  const std::uint64_t most_looking = less(most, list_work(limits_.max_candidates, limits_.max_candidates));
+  std::uint64_t weights = 0;
+  for (const Tool& tool : tools.first(heeded)) weights += weight_of(tool.shape, limits_.max_points);
+  for (std::uint32_t t = 0; t < heeded; ++t) {
+    const std::uint64_t weight = weight_of(tools[t].shape, limits_.max_points);
+    look(surface, tools[t], t, work, work + less(most_looking, work) / weights * weight);
+    weights -= weight;
+  }
   merge_sort(count_, order_, spare_,
              [this](std::uint32_t a, std::uint32_t b) { return comes_before(candidate_[a], candidate_[b]); });
   for (std::uint32_t i = 0; i < count_; ++i) listed_[i] = candidate_[order_[i]];
@@ -128,16 +154,32 @@ std::uint64_t CandidateSearch::find_work(const DeformedSurface& surface, std::sp
   std::uint64_t work = list_work(limits_.max_candidates, limits_.max_candidates);
   for (const Tool& tool : tools.first(heeded)) {
     const std::uint64_t box = box_price + tool.shape.distance_work();
-    const std::uint64_t node =
-        node_price + tool.shape.distance_work() + approach_work(tool.shape) + surface.surround_work() + taken;
-    work += tool_price + surface.box_count() * box + surface.node_count() * node +
+    work += tool_price + surface.box_count() * box +
+            surface.node_count() * most_node_work(surface, tool.shape, limits_.max_candidates) +
             limits_.max_points * (Proxy::move_work(surface) + taken);
   }
   return work;
 }
 
-void CandidateSearch::look(const DeformedSurface& surface, const Tool& tool, std::uint32_t number,
-                           std::uint64_t& work) noexcept {
+std::uint64_t CandidateSearch::least_find_work(const Limits& limits, const SurfaceSizes& surface) noexcept {
+  const std::uint64_t point = least_point_work(surface, limits.max_candidates);
+  return list_work(limits.max_candidates, limits.max_candidates) +
+         limits.max_tools * (tool_price + (limits.max_points + std::uint64_t{1}) * point);
+}
+
+std::uint64_t CandidateSearch::usual_find_work(const Limits& limits, const SurfaceSizes& surface) noexcept {
+  constexpr std::uint64_t advances = 3, patches = 2, boxes = 80;
+  const Shape simple = Shape::plane();
+  const std::uint64_t node = node_price + simple.distance_work() + approach_work(simple, advances) +
+                             surface.surround_work() + take_work(limits.max_candidates);
+  return least_find_work(limits, surface) +
+         limits.max_tools * (limits.max_points * patches * DeformedSurface::patch_work +
+                             boxes * (box_price + simple.distance_work())) +
+         limits.max_candidates * node;
+}
+
+void CandidateSearch::look(const DeformedSurface& surface, const Tool& tool, std::uint32_t number, std::uint64_t& work,
+                           std::uint64_t most) noexcept {
   work += tool_price;
   ToolState& state = tool_[number];
   const Placed placed = place(tool.pose);
@@ -152,66 +194,77 @@ void CandidateSearch::look(const DeformedSurface& surface, const Tool& tool, std
     state.last = placed.placement;
     start_all(proxy_ + std::size_t{limits_.max_points} * number, state.points);
   }
-  const Step step{surface, tool.shape, state.last, placed.placement, number};
-  if (tool.shape.kind() != Shape::Kind::point) look_at_nodes(step, work);
-  look_at_points(step, work);
+  const Step step{surface, tool.shape, state.last, placed.placement, number, work, most};
+  const bool all_points = look_at_points(step);
+  const bool all_nodes = tool.shape.kind() == Shape::Kind::point || look_at_nodes(step);
+  found_.unfinished += all_points && all_nodes ? 0 : 1;
   state.has_history = true;
   state.last = placed.placement;
 }
 
 // A place in a box is never farther from the box's middle than half its diagonal, and the middle is on its way never
-// farther from its end than the way is long: what the tool does not come near by as much cannot be near.
-void CandidateSearch::look_at_nodes(const Step& step, std::uint64_t& work) noexcept {
+// farther from its end than the way is long: what the tool does not come near by as much cannot be near. False if the
+// work did not suffice.
+bool CandidateSearch::look_at_nodes(const Step& step) noexcept {
+  const std::uint64_t most = less(step.most, most_node_work(step.surface, step.shape, limits_.max_candidates));
   const double radius = step.shape.bounding_radius();
-  const auto comes_near = [&](const Double3& place, double reach) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  // m, how much too far away a ball is, in which there may be nodes
+  const auto beyond = [&](const Double3& place, double reach) {
     const Double3 to = step.present.to_tool(place);
     const double near = limits_.margin + reach + norm(to - step.last.to_tool(place));
-    return norm(to) - radius <= near && step.shape.distance(to).distance <= near;
+    return norm(to) - radius <= near ? step.shape.distance(to).distance - near : far;
   };
-  const auto enters = [&](const TriangleBox& box) {
-    work += box_price + step.shape.distance_work();
+  const auto box_beyond = [&](const TriangleBox& box) {
+    if (step.work > most) return far;
+    step.work += box_price + step.shape.distance_work();
     const Double3 low{box.low[0], box.low[1], box.low[2]}, high{box.high[0], box.high[1], box.high[2]};
-    return comes_near(0.5 * (low + high), 0.5 * norm(high - low));
+    return beyond(0.5 * (low + high), 0.5 * norm(high - low));
   };
-  step.surface.visit(enters, [&](std::uint32_t patch) {
+  step.surface.visit_nearer_first(box_beyond, [&](std::uint32_t patch) {
     for (const std::uint32_t node : step.surface.own_nodes_of(patch)) {
-      if (!step.surface.is_touchable(node)) continue;
-      work += node_price + step.shape.distance_work();
-      if (comes_near(step.surface.position(node), 0)) look_at_node(step, node, work);
+      if (!step.surface.is_touchable(node) || step.work > most) continue;
+      step.work += node_price + step.shape.distance_work();
+      if (beyond(step.surface.position(node), 0) <= 0) look_at_node(step, node);
     }
   });
+  return step.work <= most;
 }
 
-void CandidateSearch::look_at_node(const Step& step, std::uint32_t node, std::uint64_t& work) noexcept {
+void CandidateSearch::look_at_node(const Step& step, std::uint32_t node) noexcept {
   const Double3 position = step.surface.position(node);
-  const Approach near = approach(step.shape, step.last, step.present, position);
-  work += approach_work(step.shape);
+  const Approach near = approach(step.shape, step.last, step.present, position, step.work);
   if (!(near.gap <= limits_.margin)) return;
-  if (!(dot(step.surface.node_normal(node, work), near.normal) <= most_away)) return;
+  if (!(dot(step.surface.node_normal(node, step.work), near.normal) <= most_away)) return;
   take({.node = {node, layout::none, layout::none},
         .weight = {1, 0, 0},
         .tool = step.tool,
         .gap = near.gap,
         .normal = near.normal,
-        .position = position,
-        .motion = near.motion});
-  work += take_work(limits_.max_candidates);
+        .position = position});
+  step.work += take_work(limits_.max_candidates);
 }
 
-void CandidateSearch::look_at_points(const Step& step, std::uint64_t& work) noexcept {
-  for (std::uint32_t i = 0; i < step.shape.point_count(); ++i) {
+// false if the work did not suffice for one of them; nodes have as large a share as all points
+bool CandidateSearch::look_at_points(const Step& step) noexcept {
+  const std::uint64_t points = step.shape.point_count(), taken = take_work(limits_.max_candidates);
+  const std::uint64_t least = least_point_work(step.surface.sizes(), limits_.max_candidates);
+  bool all = true;
+  for (std::uint32_t i = 0; i < points; ++i) {
     Proxy& proxy = proxy_[std::size_t{limits_.max_points} * step.tool + i];
     const double margin = limits_.margin + step.shape.point_radius();
-    proxy.move(step.surface, step.present.to_model(step.shape.point(i)), margin, work);
+    const std::uint64_t share = std::max(less(step.most, step.work) / (2 * points - i), least);
+    proxy.move(step.surface, step.present.to_model(step.shape.point(i)), margin, step.work, step.work + share - taken);
     if (proxy.point().triangle != layout::none && proxy.height() <= margin) take_point(step, i, proxy);
-    work += take_work(limits_.max_candidates);
+    step.work += taken;
+    all = all && !proxy.is_left_out();
   }
+  return all;
 }
 
 void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Proxy& proxy) noexcept {
   const auto& [a, b, c] = step.surface.triangle(proxy.point().triangle).node;
   const double* w = proxy.point().weight;
-  const Double3 motion = step.present.to_tool(proxy.position()) - step.last.to_tool(proxy.position());
   take({.node = {a, b, c},
         .weight = {w[0], w[1], w[2]},
         .triangle = proxy.point().triangle,
@@ -219,8 +272,7 @@ void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Pr
         .feature = point,
         .gap = proxy.height() - step.shape.point_radius(),
         .normal = -proxy.normal(),
-        .position = proxy.position(),
-        .motion = step.present.turned(motion)});
+        .position = proxy.position()});
 }
 
 // While there are too many, those in order_ are a heap with the shallowest first, which goes; its slot is the next to

@@ -29,6 +29,7 @@ class CandidateSearch {
     std::span<const Candidate> candidates;  ///< by tool; of each its nodes, increasing, then its points; until the next
     std::uint32_t left_out = 0;             ///< candidates for which there was no room: the deepest were kept
     Candidate deepest_left_out;             ///< of use if there are any
+    std::uint32_t unfinished = 0;           ///< tools that were not looked at as a whole, for lack of work
   };
 
   /// Of no use before `create`.
@@ -43,9 +44,19 @@ class CandidateSearch {
   /// stays as it was. A tool without history, or with another number of points than in the last step, is placed where
   /// it is. Of equally deep candidates that of the earlier tool goes first, of its nodes before its points, the one of
   /// the smaller number. For the loop; work: what was looked at is added to `work`, at most find_work(); the boxes,
-  /// nodes and triangles that the tools come near, as a rule.
-  [[nodiscard]] Found find(const DeformedSurface& surface, std::span<const Tool> tools, std::uint64_t& work) noexcept;
+  /// nodes and triangles that the tools come near, as a rule. It never goes beyond `most`, at least least_find_work
+  /// more than `work`: a tool's points come first, then nodes, nearer parts of the surface before others, each with a
+  /// share of what is left. Points for which it does not suffice stay as they are (Proxy::move); nodes are left out.
+  [[nodiscard]] Found find(const DeformedSurface& surface, std::span<const Tool> tools, std::uint64_t& work,
+                           std::uint64_t most = all_work) noexcept;
   [[nodiscard]] std::uint64_t find_work(const DeformedSurface& surface, std::span<const Tool> tools) const noexcept;
+
+  /// Work units that `find` has to be given, for any tools within the limits. Constant work.
+  [[nodiscard]] static std::uint64_t least_find_work(const Limits& limits, const SurfaceSizes& surface) noexcept;
+
+  /// What suffices for as many candidates as there is room for, of tools that each touch one part of a body without
+  /// leaping, and that are no polyhedra of many faces. Constant work.
+  [[nodiscard]] static std::uint64_t usual_find_work(const Limits& limits, const SurfaceSizes& surface) noexcept;
 
   /// Of the last step. For the loop.
   [[nodiscard]] ToolFault fault(std::uint32_t tool) const noexcept { return tool_[tool].fault; }
@@ -69,13 +80,16 @@ class CandidateSearch {
     const Shape& shape;
     Placement last, present;
     std::uint32_t tool;
+    std::uint64_t& work;
+    std::uint64_t most;
   };
 
   void carve(Arena& arena) noexcept;
-  void look(const DeformedSurface& surface, const Tool& tool, std::uint32_t number, std::uint64_t& work) noexcept;
-  void look_at_nodes(const Step& step, std::uint64_t& work) noexcept;
-  void look_at_node(const Step& step, std::uint32_t node, std::uint64_t& work) noexcept;
-  void look_at_points(const Step& step, std::uint64_t& work) noexcept;
+  void look(const DeformedSurface& surface, const Tool& tool, std::uint32_t number, std::uint64_t& work,
+            std::uint64_t most) noexcept;
+  [[nodiscard]] bool look_at_nodes(const Step& step) noexcept;
+  void look_at_node(const Step& step, std::uint32_t node) noexcept;
+  [[nodiscard]] bool look_at_points(const Step& step) noexcept;
   void take_point(const Step& step, std::uint32_t point, const Proxy& proxy) noexcept;
   void take(const Candidate& candidate) noexcept;
 

@@ -146,7 +146,7 @@ bool has(const Surface::Triangle& triangle, const Surface::Triangle& of, const T
 }  // namespace
 
 TrianglePoint cast(const DeformedSurface& surface, const Double3& from, const Double3& to, const TrianglePoint& left,
-                   std::uint64_t& work) noexcept {
+                   std::uint64_t& work, std::uint64_t most) noexcept {
   work += SurfacePrices::query;
   const double slack = relative_slack * surface.extent();
   Segment segment{from, to};
@@ -154,6 +154,7 @@ TrianglePoint cast(const DeformedSurface& surface, const Double3& from, const Do
   const BoxTest test(segment, slack);
   Cast way(surface, segment, slack);
   const auto meets = [&](const TriangleBox& box) {
+    if (work > most) return false;
     work += SurfacePrices::box;
     return test.meets(box);
   };

@@ -37,6 +37,33 @@ double extent_of(const TriangleBox& box) {
   return sum;
 }
 
+// what the surface of a level will have, but no arrays
+SurfaceParts counted_parts(const ModelView& view, std::uint32_t level) {
+  SurfaceParts parts;
+  parts.level = level;
+  parts.base_triangles = view.level[0].counts->base_triangle_count;
+  parts.node_count[level] = view.level[level].node_begin + view.level[level].counts->node_count;
+  Arena counting;
+  parts.tree.carve(counting, parts.base_triangles << (2 * level));
+  return parts;
+}
+
+// triangles, at every level: nodes that halve an edge have no more than six
+std::uint64_t most_around_node(const ModelView& view) {
+  constexpr std::uint32_t batch = 256;
+  const std::uint32_t corners = 3 * view.level[0].counts->base_triangle_count;
+  const std::uint32_t nodes = view.level[0].node_begin + view.level[0].counts->node_count;
+  std::uint32_t most = 6;
+  for (std::uint32_t first = 0; first < nodes; first += batch) {
+    std::uint32_t count[batch] = {};
+    for (std::uint32_t k = 0; k < corners; ++k) {
+      const std::uint32_t place = view.base_triangles[k] - first;
+      if (place < batch) most = std::max(most, ++count[place]);
+    }
+  }
+  return most;
+}
+
 // Between unit vectors, to 1e-13: with its tangent halved three times the series of the arc tangent needs few terms,
 // and none of it is left to a library.
 double angle_between(const Double3& a, const Double3& b) {
@@ -54,8 +81,7 @@ double angle_between(const Double3& a, const Double3& b) {
 
 void DeformedSurface::carve(Arena& arena, const SurfaceParts& parts) noexcept {
   parts_ = &parts;
-  const std::uint32_t depth = parts.tree.depth();
-  const std::uint32_t patches = std::uint32_t{1} << (depth > halvings_within ? depth - halvings_within : 0);
+  const std::uint32_t patches = patch_count(parts);
   const std::uint64_t corners = 3 * std::uint64_t{triangle_count()};
   first_patch_ = patches - 1;
   boxes_ = arena.take<TriangleBox>(box_count());
@@ -65,18 +91,20 @@ void DeformedSurface::carve(Arena& arena, const SurfaceParts& parts) noexcept {
   around_ = arena.take<std::uint32_t>(corners);
 }
 
+std::uint32_t DeformedSurface::patch_count(const SurfaceParts& parts) noexcept {
+  const std::uint32_t depth = parts.tree.depth();
+  return std::uint32_t{1} << (depth > halvings_within ? depth - halvings_within : 0);
+}
+
 std::size_t DeformedSurface::required(const Surface& surface) noexcept { return bytes_of(surface.parts()); }
 
 std::size_t DeformedSurface::required(const Model& model, std::uint32_t level) noexcept {
-  const ModelView& view = model.view();
-  if (level >= view.levels) return 0;
-  SurfaceParts parts;
-  parts.level = level;
-  parts.base_triangles = view.level[0].counts->base_triangle_count;
-  parts.node_count[level] = view.level[level].node_begin + view.level[level].counts->node_count;
-  Arena counting;
-  parts.tree.carve(counting, parts.base_triangles << (2 * level));
-  return bytes_of(parts);
+  return level < model.level_count() ? bytes_of(counted_parts(model.view(), level)) : 0;
+}
+
+SurfaceSizes DeformedSurface::sizes(const Model& model, std::uint32_t level) noexcept {
+  const SurfaceParts parts = counted_parts(model.view(), level);
+  return {std::uint64_t{parts.base_triangles} << (2 * level), patch_count(parts), most_around_node(model.view())};
 }
 
 std::size_t DeformedSurface::bytes_of(const SurfaceParts& parts) noexcept {
@@ -176,11 +204,6 @@ bool DeformedSurface::update(std::span<const Vec4> displacement, std::uint64_t& 
   return true;
 }
 
-std::uint64_t DeformedSurface::update_work() const noexcept {
-  return SurfacePrices::query + nodes_[first_patch_].end * SurfacePrices::node +
-         (first_patch_ + std::uint64_t{1}) * SurfacePrices::patch;
-}
-
 Double3 DeformedSurface::position(const TrianglePoint& point) const noexcept {
   const auto& [a, b, c] = triangle(point.triangle).node;
   return point.weight[0] * position(a) + point.weight[1] * position(b) + point.weight[2] * position(c);
@@ -236,8 +259,8 @@ ClosestSurfacePoint DeformedSurface::closest_in(std::uint32_t t, const Double3& 
   return {{t, {point.weight[0], point.weight[1], point.weight[2]}}, point.squared_distance};
 }
 
-ClosestSurfacePoint DeformedSurface::closest(const Double3& from, std::uint32_t guess,
-                                             std::uint64_t& work) const noexcept {
+ClosestSurfacePoint DeformedSurface::closest(const Double3& from, std::uint32_t guess, std::uint64_t& work,
+                                             std::uint64_t most) const noexcept {
   Reach reach(from, extent_);
   ClosestSurfacePoint best;
   const auto look = [&](std::uint32_t t) {
@@ -252,6 +275,7 @@ ClosestSurfacePoint DeformedSurface::closest(const Double3& from, std::uint32_t 
   work += SurfacePrices::query;
   if (guess < triangle_count()) look(guess);
   const auto within = [&](double squared_distance) {
+    if (work > most) return false;
     work += SurfacePrices::box;
     return reach.covers(squared_distance);
   };

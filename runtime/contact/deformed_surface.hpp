@@ -26,9 +26,29 @@ struct SurfacePrices {
   static constexpr std::uint64_t query = 100;     ///< a question, whatever is found
   static constexpr std::uint64_t box = 145;       ///< a box that is looked at
   static constexpr std::uint64_t triangle = 260;  ///< a triangle
-  static constexpr std::uint64_t node = 13;       ///< a node of a patch whose box is made anew
+  static constexpr std::uint64_t boxed = 16;      ///< a triangle whose patch's box is made anew
   static constexpr std::uint64_t patch = 65;      ///< such a box, and one above it
   static constexpr std::uint64_t neighbour = 12;  ///< a triangle around a node
+};
+
+/// No limit of a query's work.
+inline constexpr std::uint64_t all_work = ~std::uint64_t{0};
+
+/// What bounds the work of queries: known before there is a surface.
+struct SurfaceSizes {
+  std::uint64_t triangles = 0, patches = 0;
+  std::uint64_t most_around = 0;  ///< triangles around a node
+
+  /// Of making all boxes anew.
+  [[nodiscard]] std::uint64_t update_work() const noexcept {
+    return SurfacePrices::query + triangles * SurfacePrices::boxed + patches * SurfacePrices::patch;
+  }
+  /// Of finding the triangles around a point, at most.
+  [[nodiscard]] std::uint64_t around_work() const noexcept { return most_around * SurfacePrices::neighbour; }
+  /// Of a normal, at most.
+  [[nodiscard]] std::uint64_t surround_work() const noexcept {
+    return SurfacePrices::query + most_around * SurfacePrices::triangle + around_work();
+  }
 };
 
 /// The surface of a Surface's own level, displaced. Its triangles stand in *patches* of at most 16 that are neighbours,
@@ -46,15 +66,22 @@ class DeformedSurface {
   [[nodiscard]] static std::size_t required(const Surface& surface) noexcept;
   [[nodiscard]] static std::size_t required(const Model& model, std::uint32_t level) noexcept;
 
+  /// Of the surface that Surface::create makes of a model and a level, and of this one. Start-up; linear in the base
+  /// triangles for every 256 nodes of the base.
+  [[nodiscard]] static SurfaceSizes sizes(const Model& model, std::uint32_t level) noexcept;
+  [[nodiscard]] SurfaceSizes sizes() const noexcept {
+    return {triangle_count(), first_patch_ + std::uint64_t{1}, most_around_};
+  }
+
   /// Carves `memory`, 64-byte aligned, with the routine that `required` counts with; the surface is at rest. Start-up;
   /// linear in the triangles.
   [[nodiscard]] static Created create(const Surface& surface, std::span<std::byte> memory) noexcept;
 
   /// From here on the surface is displaced by this, x y z 0 in m for each node and perhaps more of them; empty: it is
   /// at rest. The numbers must stay as they are until the next update. With too few of them nothing changes, and it is
-  /// false. For the loop; work: update_work(), which is added to `work`, linear in the nodes.
+  /// false. For the loop; work: update_work(), which is added to `work`, linear in the triangles.
   bool update(std::span<const Vec4> displacement, std::uint64_t& work) noexcept;
-  [[nodiscard]] std::uint64_t update_work() const noexcept;
+  [[nodiscard]] std::uint64_t update_work() const noexcept { return sizes().update_work(); }
 
   [[nodiscard]] std::uint32_t node_count() const noexcept { return parts_->node_count[parts_->level]; }
   [[nodiscard]] std::uint32_t triangle_count() const noexcept { return parts_->base_triangles << (2 * parts_->level); }
@@ -80,11 +107,8 @@ class DeformedSurface {
   [[nodiscard]] Double3 triangle_normal(std::uint32_t t) const noexcept;
   [[nodiscard]] Double3 node_normal(std::uint32_t node, std::uint64_t& work) const noexcept;
   [[nodiscard]] Double3 normal(const TrianglePoint& point, std::uint64_t& work) const noexcept;
-  [[nodiscard]] std::uint64_t surround_work() const noexcept {
-    return SurfacePrices::query + most_around_ * SurfacePrices::triangle + around_work();
-  }
-  /// Of finding the triangles around a point, at most.
-  [[nodiscard]] std::uint64_t around_work() const noexcept { return most_around_ * SurfacePrices::neighbour; }
+  [[nodiscard]] std::uint64_t surround_work() const noexcept { return sizes().surround_work(); }
+  [[nodiscard]] std::uint64_t around_work() const noexcept { return sizes().around_work(); }
 
   /// Around the whole surface.
   [[nodiscard]] const TriangleBox& box() const noexcept { return boxes_[0]; }
@@ -95,9 +119,11 @@ class DeformedSurface {
 
   /// The point nearest to a finite position (m), of equally near triangles in the first; exact up to rounding. The
   /// triangle `guess`, if it is not none, is looked at first, which saves work and changes nothing else. For the loop;
-  /// work: what was looked at is added to `work`; at most closest_work(), which is all boxes and all triangles.
-  [[nodiscard]] ClosestSurfacePoint closest(const Double3& position, std::uint32_t guess,
-                                            std::uint64_t& work) const noexcept;
+  /// work: what was looked at is added to `work`; at most closest_work(), which is all boxes and all triangles. Once
+  /// `work` is above `most` the search is cut: the point is the nearest of those that were looked at, if any. Then
+  /// `work` is above `most` by no more than patch_work.
+  [[nodiscard]] ClosestSurfacePoint closest(const Double3& position, std::uint32_t guess, std::uint64_t& work,
+                                            std::uint64_t most = all_work) const noexcept;
   [[nodiscard]] std::uint64_t closest_work() const noexcept {
     return SurfacePrices::query + box_count() * SurfacePrices::box +
            (triangle_count() + std::uint64_t{1}) * SurfacePrices::triangle;
@@ -110,6 +136,10 @@ class DeformedSurface {
   template <class Enters, class Look>
   void visit(Enters enters, Look look) const noexcept;
   [[nodiscard]] std::uint64_t box_count() const noexcept { return 2 * std::uint64_t{first_patch_} + 1; }
+
+  /// The same, of boxes with beyond(box) <= 0 inside others of which that holds, the less of two halves first.
+  template <class Beyond, class Look>
+  void visit_nearer_first(Beyond beyond, Look look) const noexcept;
 
   /// The triangles of a patch, and those of its nodes that no patch before it has.
   [[nodiscard]] std::span<const std::uint32_t> triangles_of(std::uint32_t patch) const noexcept {
@@ -129,11 +159,18 @@ class DeformedSurface {
   static constexpr std::uint32_t halvings_within = 2;  ///< of the tree, between a patch and its leaves
   static constexpr std::uint32_t most_in_patch = TriangleTree::leaf << halvings_within;
 
+ public:
+  /// What a query takes at least, and goes beyond a limit by at most: a box with its triangles.
+  static constexpr std::uint64_t patch_work =
+      2 * SurfacePrices::query + SurfacePrices::box + (most_in_patch + 1) * SurfacePrices::triangle;
+
+ private:
   /// Places in node_: its own, those that a patch before has too, in this order.
   struct Nodes {
     std::uint32_t begin, own_end, end;
   };
 
+  [[nodiscard]] static std::uint32_t patch_count(const SurfaceParts& parts) noexcept;
   [[nodiscard]] static std::size_t bytes_of(const SurfaceParts& parts) noexcept;
   void carve(Arena& arena, const SurfaceParts& parts) noexcept;
   void list_nodes(bool* is_owned) noexcept;
@@ -173,6 +210,24 @@ void DeformedSurface::visit(Enters enters, Look look) const noexcept {
       waiting[count++] = 2 * box + 2;
       waiting[count++] = 2 * box + 1;
     }
+  }
+}
+
+template <class Beyond, class Look>
+void DeformedSurface::visit_nearer_first(Beyond beyond, Look look) const noexcept {
+  std::uint32_t waiting[32];
+  std::uint32_t count = 0;
+  if (beyond(boxes_[0]) <= 0) waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t box = waiting[--count];
+    if (box >= first_patch_) {
+      look(box);
+      continue;
+    }
+    const double left = beyond(boxes_[2 * box + 1]), right = beyond(boxes_[2 * box + 2]);
+    const std::uint32_t nearer = left <= right ? 2 * box + 1 : 2 * box + 2;
+    if (!((left <= right ? right : left) > 0)) waiting[count++] = 4 * box + 3 - nearer;
+    if (!((left <= right ? left : right) > 0)) waiting[count++] = nearer;
   }
 }
 

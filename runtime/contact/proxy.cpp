@@ -1,6 +1,7 @@
 #include "runtime/contact/proxy.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "runtime/contact/cast.hpp"
 
@@ -16,15 +17,29 @@ bool is_inside_triangle(const TrianglePoint& point) {
 
 }  // namespace
 
-void Proxy::move(const DeformedSurface& surface, const Double3& to, double margin, std::uint64_t& work) noexcept {
-  if (is_placed_) {
-    if (!is_held_) enter(surface, to, work);
-    if (is_held_) follow(surface, to, work);
+void Proxy::move(const DeformedSurface& surface, const Double3& to, double margin, std::uint64_t& work,
+                 std::uint64_t most) noexcept {
+  const Proxy before = *this;
+  const std::uint64_t kept = reserve(surface.sizes());
+  const bool has_gone = most >= kept && work <= most - kept && go({surface, work, most - kept}, to, margin);
+  if (!has_gone) *this = before;
+  is_left_out_ = !has_gone;
+  if (has_gone) {
+    is_placed_ = true;
+    last_ = to;
+  } else if (!is_held_) {
+    height_ = std::numeric_limits<double>::infinity();
+    return;
   }
-  if (!is_held_) settle(surface, to, margin, work);
-  is_placed_ = true;
-  last_ = to;
   if (point_.triangle != layout::none) measure(surface, to, work);
+}
+
+bool Proxy::go(const Query& query, const Double3& to, double margin) noexcept {
+  if (is_placed_) {
+    if (!is_held_ && !enter(query, to)) return false;
+    if (is_held_ && !follow(query, to)) return false;
+  }
+  return is_held_ || settle(query, to, margin);
 }
 
 std::uint64_t Proxy::move_work(const DeformedSurface& surface) noexcept {
@@ -38,51 +53,56 @@ double Proxy::side(const DeformedSurface& surface, const Double3& of, std::uint6
 }
 
 // whether the surface has moved over the tool's point since the last step; then point_ is where it did
-bool Proxy::was_overtaken(const DeformedSurface& surface, std::uint64_t& work) noexcept {
+bool Proxy::was_overtaken(const Query& query) noexcept {
   if (point_.triangle == layout::none) {
-    if (!surface.is_near(last_, 0)) return false;
-    point_ = surface.closest(last_, layout::none, work).point;
+    if (!query.surface.is_near(last_, 0)) return false;
+    point_ = query.surface.closest(last_, layout::none, query.work, query.most).point;
+    if (query.is_cut()) return false;
   }
-  return side(surface, last_, work) < 0;
+  return side(query.surface, last_, query.work) < 0;
 }
 
-void Proxy::enter(const DeformedSurface& surface, const Double3& to, std::uint64_t& work) noexcept {
-  if (was_overtaken(surface, work)) {
-    is_held_ = true;
-    return;
-  }
-  const TrianglePoint entered = cast(surface, last_, to, {}, work);
-  if (entered.triangle == layout::none) return;
+bool Proxy::enter(const Query& query, const Double3& to) noexcept {
+  is_held_ = was_overtaken(query);
+  if (is_held_ || query.is_cut()) return is_held_;
+  const TrianglePoint entered = cast(query.surface, last_, to, {}, query.work, query.most);
+  if (query.is_cut()) return false;
+  if (entered.triangle == layout::none) return true;
   is_held_ = true;
   point_ = entered;
+  return true;
 }
 
 // where the tool's point is outside again, it is let go, unless on its way from the surface it enters another part
-void Proxy::follow(const DeformedSurface& surface, const Double3& to, std::uint64_t& work) noexcept {
+bool Proxy::follow(const Query& query, const Double3& to) noexcept {
   for (int landing = 0; landing < most_landings; ++landing) {
-    is_nearest_ = slide(surface, to, work);
-    if (!is_nearest_ || !(side(surface, to, work) >= 0)) return;
-    const TrianglePoint entered = cast(surface, surface.position(point_), to, point_, work);
+    is_nearest_ = slide(query, to);
+    if (!is_nearest_ || !(side(query.surface, to, query.work) >= 0)) return true;
+    const TrianglePoint entered =
+        cast(query.surface, query.surface.position(point_), to, point_, query.work, query.most);
+    if (query.is_cut()) return false;
     if (entered.triangle == layout::none) {
       is_held_ = false;
-      return;
+      return true;
     }
     point_ = entered;
     is_nearest_ = false;
   }
+  return true;
 }
 
 // to the place nearest to the tool's point among all that ever nearer ones lead to; false if there are too many
-bool Proxy::slide(const DeformedSurface& surface, const Double3& to, std::uint64_t& work) noexcept {
+bool Proxy::slide(const Query& query, const Double3& to) noexcept {
+  const DeformedSurface& surface = query.surface;
   ClosestSurfacePoint best = surface.closest_in(point_.triangle, to);
-  work += SurfacePrices::triangle;
+  query.work += SurfacePrices::triangle;
   bool is_nearest = false;
-  for (std::uint32_t i = 0; i < most_slides && !is_nearest; ++i) {
+  for (std::uint32_t i = 0; i < most_slides && !is_nearest && !query.is_cut(); ++i) {
     const TrianglePoint here = best.point;
     is_nearest = true;
-    work += surface.around_work();
+    query.work += surface.around_work();
     surface.visit_around(here, [&](std::uint32_t t) {
-      work += SurfacePrices::triangle;
+      query.work += SurfacePrices::triangle;
       const ClosestSurfacePoint there = surface.closest_in(t, to);
       if (!(there.squared_distance < best.squared_distance)) return;
       best = there;
@@ -93,14 +113,16 @@ bool Proxy::slide(const DeformedSurface& surface, const Double3& to, std::uint64
   return is_nearest;
 }
 
-void Proxy::settle(const DeformedSurface& surface, const Double3& to, double margin, std::uint64_t& work) noexcept {
-  if (!surface.is_near(to, margin)) {
+bool Proxy::settle(const Query& query, const Double3& to, double margin) noexcept {
+  if (!query.surface.is_near(to, margin)) {
     point_ = {};
-    return;
+    return true;
   }
-  point_ = surface.closest(to, point_.triangle, work).point;
+  point_ = query.surface.closest(to, point_.triangle, query.work, query.most).point;
+  if (query.is_cut()) return false;
   is_nearest_ = true;
-  is_held_ = side(surface, to, work) < 0;
+  is_held_ = side(query.surface, to, query.work) < 0;
+  return true;
 }
 
 void Proxy::measure(const DeformedSurface& surface, const Double3& to, std::uint64_t& work) noexcept {

@@ -8,7 +8,7 @@ void Grips::carve(Arena& arena, std::uint32_t contacts) noexcept {
 }
 
 void Grips::begin_step() noexcept {
-  for (std::uint32_t i = 0; i < count_; ++i) grip_[i].is_candidate = false;
+  for (std::uint32_t i = 0; i < count_; ++i) grip_[i].stays = false;
 }
 
 Grip* Grips::find(std::uint64_t key) noexcept {
@@ -22,6 +22,14 @@ void Grips::turn() noexcept {
   made_ = last;
   count_ = made_count_;
   made_count_ = 0;
+}
+
+void Grips::keep(std::uint32_t tool, std::uint32_t room) noexcept {
+  for (std::uint32_t i = 0; i < count_ && made_count_ < room; ++i) {
+    if (tool_of_key(grip_[i].key) != tool) continue;
+    add(grip_[i]);
+    made_[made_count_ - 1].force = {};
+  }
 }
 
 void Grips::forget(std::uint32_t tool) noexcept {

@@ -10,17 +10,24 @@
 
 namespace greenloop {
 
-/// What a contact keeps from one step to the next.
+/// What a candidate keeps from one step to the next.
 struct Grip {
   std::uint64_t key = 0;  ///< grip_key of its candidate
-  Double3 anchor;         ///< m, where it touches the tool, in the tool's frame
-  Vec3 force;             ///< N, on the body
+  bool touches = false;
+  Double3 anchor;  ///< m, where it touches the tool, in the tool's frame
+  Vec3 force;      ///< N, on the body
   bool sticks = false;
-  bool is_candidate = false;  ///< of the present step again
-  Vec3 shift;                 ///< m, of the body's point by all that acts
+  bool stays = false;  ///< of the present step again, the same point of the body
+  Double3 shift;       ///< m, of the body's point by all that acts
   // of the body's point
   std::uint32_t node[3] = {layout::none, layout::none, layout::none};
   double weight[3] = {};
+
+  [[nodiscard]] bool is_at(const Candidate& candidate) const noexcept {
+    bool same = true;
+    for (int k = 0; k < 3; ++k) same = same && node[k] == candidate.node[k] && weight[k] == candidate.weight[k];
+    return same;
+  }
 };
 
 /// Which contact a candidate is: increasing in the order of CandidateSearch::find.
@@ -33,13 +40,13 @@ constexpr std::uint64_t grip_key(const Candidate& candidate) {
 /// The tool that it is of.
 constexpr std::uint64_t tool_of_key(std::uint64_t key) { return key >> 33; }
 
-/// The contacts of the last answer that had a force, in the order of their keys.
+/// The candidates of the last answer, in the order of their keys.
 class Grips {
  public:
   /// Room for so many; null while `arena` counts.
   void carve(Arena& arena, std::uint32_t contacts) noexcept;
 
-  /// None is a candidate of the present step so far. Linear.
+  /// None stays in the present step so far. Linear.
   void begin_step() noexcept;
 
   /// The grip of a candidate, or null; asked in the order of their keys since `begin`. For the loop; work: linear in
@@ -50,6 +57,10 @@ class Grips {
   /// Takes the next step's in, in the order of their keys, then puts them in the place of the last one's.
   void add(const Grip& grip) noexcept { made_[made_count_++] = grip; }
   void turn() noexcept;
+
+  /// Takes over what a tool holds on to, without force, while there are no more than `room` in all; among `add`, by
+  /// tool. For the loop; linear in the grips.
+  void keep(std::uint32_t tool, std::uint32_t room) noexcept;
 
   /// Lets go of what a tool has. Linear.
   void forget(std::uint32_t tool) noexcept;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "runtime/contact/candidate_search.hpp"
 #include "runtime/contact/deformed_surface.hpp"
@@ -20,16 +21,21 @@ struct TouchedBody {
   DeformedSurface deformed;
   CandidateSearch search;
   std::uint32_t nodes = 0, max_contacts = 0, max_tools = 0;
-  double mean_edge = 0;          ///< m
-  std::uint64_t least_work = 0;  ///< units, of the elastic body's answer
-  float rigid_softness = 0;      ///< m/N
+  double mean_edge = 0;           ///< m
+  std::uint64_t least_work = 0;   ///< units of a step
+  std::uint64_t search_work = 0;  ///< units that a search for candidates may take
+  float rigid_softness = 0;       ///< m/N
 
   Tool* tool = nullptr;                     ///< [max_tools] of this step
-  Placement* placement = nullptr;           ///< [max_tools] the same
+  Placement* placement = nullptr;           ///< [max_tools] the same, after the answer where its spring lets it be
+  Double3* sag = nullptr;                   ///< [max_tools] m, of the last answer
+  std::span<const float> factor;            ///< [nodes] on coefficients of friction, or empty
+  ToolPoint* point = nullptr;               ///< [max_contacts] of the last answer
   Candidate* candidate = nullptr;           ///< [max_contacts] of this step, by their keys
   UnilateralContact* contact = nullptr;     ///< [max_contacts] the same
   Double3* rest_place = nullptr;            ///< [max_contacts] m, where each stands at rest
-  Vec3* force_before = nullptr;             ///< [max_contacts] N, in the last answer
+  Double3* last_place = nullptr;            ///< [max_contacts] m, where each stood in the last answer
+  Vec3* force_before = nullptr;             ///< [max_contacts] N, in it
   EnergyContact* energy_contact = nullptr;  ///< [2 * max_contacts] of this step and the last
   EnergyAccount account;
   ContactBody::Energy energy;

@@ -180,7 +180,7 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.older_force = arena.take<float>(std::uint64_t{3} * sizes.counts.max_contacts);
   body.solution = arena.take<Float4>(padded_order(3 * sizes.set_columns) / 4);
   body.force = arena.take_zeroed<Float4>(view.domain_count);
-  if (sizes.counts.takes_loads() || sizes.counts.max_points > 0) {
+  if (sizes.counts.takes_loads() || sizes.counts.max_points > 0 || sizes.counts.mixed_contacts) {
     body.loads = carve_loads(arena, view, sizes);
   }
   body.cache.carve<3>(arena, sizes.counts.cached_factors, sizes.set_columns, sizes.counts.keeps_capacitance);
@@ -188,7 +188,10 @@ void carve(Arena& arena, const ModelView& view, const BodySizes& sizes, Body& bo
   body.last.carve(arena, sizes.counts.max_contacts, view.node_count);
   body.glide.carve(arena, sizes.counts.max_contacts, sizes.counts.glide_cycles);
   if (sizes.counts.iterations > 0) {
-    body.unilateral.carve(arena, sizes.counts.max_contacts, view.node_count);
+    body.unilateral.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.prices);
+  }
+  if (sizes.counts.mixed_contacts) {
+    body.mixed.carve(arena, sizes.counts.max_contacts, view.node_count, sizes.counts.glide_cycles);
   }
   body.accepted = arena.take<Accepted>(1);
   body.plan = arena.take<Plan>(1);

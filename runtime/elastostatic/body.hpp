@@ -12,6 +12,7 @@
 #include "runtime/elastostatic/glide.hpp"
 #include "runtime/elastostatic/known_forces.hpp"
 #include "runtime/elastostatic/last_answer.hpp"
+#include "runtime/elastostatic/mixed_contacts.hpp"
 #include "runtime/elastostatic/requirement.hpp"
 #include "runtime/elastostatic/unilateral.hpp"
 #include "runtime/factor/factor_cache.hpp"
@@ -82,10 +83,13 @@ struct Body {
   FactorCache cache;
   FactorJob job;  ///< the factor of a finer level
   LastAnswer last;
-  bool answered = false;   ///< `planned` is the set of the last answer
-  bool is_loaded = false;  ///< something but contacts acts in the step
+  bool answered = false;       ///< `planned` is the set of the last answer
+  bool pushed = false;         ///< the last answer is that of unilateral contacts
+  std::uint32_t surfaces = 0;  ///< how many
+  bool is_loaded = false;      ///< something but contacts acts in the step
   Glide glide;
   UnilateralScratch unilateral;  ///< without room unless unilateral contacts are allowed
+  MixedScratch mixed;            ///< without room unless mixed contacts are
   // of a step, kept off the stack
   Accepted* accepted = nullptr;
   Plan* plan = nullptr;

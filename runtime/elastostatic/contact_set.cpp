@@ -12,7 +12,11 @@ bool finite(const Constraint& contact) {
   return std::isfinite(contact.value[0]) && std::isfinite(contact.value[1]) && std::isfinite(contact.value[2]);
 }
 
-bool names_node(const Constraint& constraint) { return constraint.kind != Constraint::Kind::pattern; }
+using Kind = Constraint::Kind;
+
+bool names_node(Kind kind) { return kind == Kind::hold || kind == Kind::force; }
+
+bool names_mask(Kind kind) { return kind == Kind::pattern || kind == Kind::mask; }
 
 Status check_node(std::uint32_t node, std::uint32_t node_count, const NodeFacts* facts) {
   if (node >= node_count) {
@@ -21,10 +25,15 @@ Status check_node(std::uint32_t node, std::uint32_t node_count, const NodeFacts*
   return facts[node].touchable ? Status::ok : Status::held_not_touchable;
 }
 
-Status check_mask(const Mask& mask, std::uint32_t node_count, const NodeFacts* facts) {
-  for (std::size_t k = 0; k < mask.node.size(); ++k) {
-    const Status node = check_node(mask.node[k], node_count, facts);
-    if (node != Status::ok || !std::isfinite(mask.weight[k])) {
+bool finite(float weight) { return std::isfinite(weight); }
+bool finite(const Vec3& part) { return std::isfinite(part.x) && std::isfinite(part.y) && std::isfinite(part.z); }
+
+template <class Part>
+Status check_parts(std::span<const std::uint32_t> nodes, std::span<const Part> parts, std::uint32_t node_count,
+                   const NodeFacts* facts) {
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Status node = check_node(nodes[k], node_count, facts);
+    if (node != Status::ok || !finite(parts[k])) {
       return node != Status::ok ? node : Status::held_not_finite;
     }
   }
@@ -38,17 +47,14 @@ bool take(std::size_t count, std::uint32_t& left) {
   return enough;
 }
 
-// left: of the bounds
-Status check_pattern(const Constraint& constraint, std::uint32_t node_count, const NodeFacts* facts,
-                     ConstraintBounds& left) {
-  if (constraint.node >= left.masks.size()) {
+// left: nodes that there is room for
+template <class Part>
+Status check_pattern(const Constraint& constraint, std::span<const std::uint32_t> nodes, std::span<const Part> parts,
+                     std::uint32_t node_count, const NodeFacts* facts, std::uint32_t& left) {
+  if (nodes.empty() || parts.size() != nodes.size() || !take(nodes.size(), left)) {
     return Status::held_out_of_range;
   }
-  const Mask& mask = left.masks[constraint.node];
-  if (mask.node.empty() || mask.weight.size() != mask.node.size() || !take(mask.node.size(), left.forces)) {
-    return Status::held_out_of_range;
-  }
-  return finite(constraint) ? check_mask(mask, node_count, facts) : Status::held_not_finite;
+  return finite(constraint) ? check_parts(nodes, parts, node_count, facts) : Status::held_not_finite;
 }
 
 Status check_contact(const Constraint& contact, std::uint32_t node_count, const NodeFacts* facts) {
@@ -62,37 +68,56 @@ Status check_contact(const Constraint& contact, std::uint32_t node_count, const 
   return facts[contact.node].marked ? Status::held_duplicate : Status::ok;
 }
 
-// where forces are known; what `node` and `value` are follows from the kind
+bool is_known(Kind kind, const ConstraintBounds& bounds) {
+  switch (kind) {
+    case Kind::hold:
+      return true;
+    case Kind::normal:
+    case Kind::mask:
+      return bounds.mixed;
+    case Kind::force:
+    case Kind::pattern:
+    case Kind::along:
+      return bounds.forces > 0;
+  }
+  return false;
+}
+
+// of a kind that is known; what `node` and `value` are follows from it
 Status check_constraint(const Constraint& constraint, std::uint32_t node_count, const NodeFacts* facts,
                         ConstraintBounds& left) {
-  if (constraint.kind == Constraint::Kind::pattern) {
-    return check_pattern(constraint, node_count, facts, left);
+  std::uint32_t& room = is_contact(constraint) ? left.contacts : left.forces;
+  if (names_node(constraint.kind)) {
+    const Status status = check_contact(constraint, node_count, facts);
+    return status != Status::ok || take(1, room) ? status : Status::held_out_of_range;
   }
-  const bool holds = constraint.kind == Constraint::Kind::hold;
-  if (!holds && constraint.kind != Constraint::Kind::force) {
-    return Status::held_unsupported;
+  if (names_mask(constraint.kind)) {
+    const Mask mask = constraint.node < left.masks.size() ? left.masks[constraint.node] : Mask{};
+    return check_pattern(constraint, mask.node, mask.weight, node_count, facts, room);
   }
-  const Status status = check_contact(constraint, node_count, facts);
-  const bool room = status != Status::ok || take(1, holds ? left.contacts : left.forces);
-  return room ? status : Status::held_out_of_range;
+  const DirectedMask mask = constraint.node < left.directed.size() ? left.directed[constraint.node] : DirectedMask{};
+  return check_pattern(constraint, mask.node, mask.part, node_count, facts, room);
 }
 
 CheckedContacts check_all(std::span<const Constraint> constraints, std::uint32_t node_count, NodeFacts* facts,
-                          ConstraintBounds bounds) {
+                          const ConstraintBounds& bounds) {
   CheckedContacts result;
+  ConstraintBounds left = bounds;
   std::size_t checked = 0;
   for (; checked < constraints.size(); ++checked) {
-    result.status = check_constraint(constraints[checked], node_count, facts, bounds);
+    result.status = is_known(constraints[checked].kind, bounds)
+                        ? check_constraint(constraints[checked], node_count, facts, left)
+                        : Status::held_unsupported;
     if (result.status != Status::ok) {
       result.refused = static_cast<std::uint32_t>(checked);
       break;
     }
-    if (names_node(constraints[checked])) {
+    if (names_node(constraints[checked].kind)) {
       facts[constraints[checked].node].marked = true;
     }
   }
   for (std::size_t i = 0; i < checked; ++i) {
-    if (names_node(constraints[i])) {
+    if (names_node(constraints[i].kind)) {
       facts[constraints[i].node].marked = false;
     }
   }
@@ -112,14 +137,14 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
 }
 
 CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
-                               ConstraintBounds bounds) noexcept {
-  if (bounds.forces > 0) {
+                               const ConstraintBounds& bounds) noexcept {
+  if (bounds.forces > 0 || bounds.mixed) {
     return check_all(contacts, node_count, facts, bounds);
   }
   CheckedContacts result;
   std::size_t checked = 0;
   for (; checked < contacts.size(); ++checked) {
-    const bool holds = contacts[checked].kind == Constraint::Kind::hold;
+    const bool holds = contacts[checked].kind == Kind::hold;
     const bool room = checked < bounds.contacts;
     result.status = !holds  ? Status::held_unsupported
                     : !room ? Status::held_out_of_range

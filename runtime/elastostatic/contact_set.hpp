@@ -25,6 +25,12 @@ struct NodeFacts {
 /// Facts of every node; facts: [node_count]. Start-up; linear in nodes.
 void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept;
 
+/// Whether a displacement is known, and the force sought.
+constexpr bool is_contact(const Constraint& constraint) {
+  return constraint.kind == Constraint::Kind::hold || constraint.kind == Constraint::Kind::normal ||
+         constraint.kind == Constraint::Kind::mask;
+}
+
 /// What check_contacts finds: the first fault and the contact that has it, by its place among them.
 struct CheckedContacts {
   Status status = Status::ok;
@@ -36,17 +42,19 @@ constexpr std::uint64_t check_contacts_work(const Prices& prices, std::uint64_t 
   return priced(1, prices.step) + priced(contacts, prices.checked_contact);
 }
 
-/// What a body takes in a step.
+/// What a body takes in a step. Nodes of masks count each time.
 struct ConstraintBounds {
   std::uint32_t contacts = 0;
-  std::uint32_t forces = 0;     ///< nodes with known ones, those of masks each time; 0: the kinds are refused
+  std::uint32_t forces = 0;     ///< nodes with known ones; 0: the kinds are refused
   std::span<const Mask> masks;  ///< that there are
+  std::span<const DirectedMask> directed{};
+  bool mixed = false;  ///< contacts may be of kinds normal and mask
 };
 
 /// Refuses constraints of kinds that are not known, out of range, not touchable, not finite, nodes named twice, and
 /// more than `bounds` has; the first at fault decides.
 CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
-                               ConstraintBounds bounds) noexcept;
+                               const ConstraintBounds& bounds) noexcept;
 
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;

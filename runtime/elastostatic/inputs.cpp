@@ -1,5 +1,7 @@
 #include "runtime/elastostatic/inputs.hpp"
 
+#include <algorithm>
+
 #include "runtime/elastostatic/known_forces.hpp"
 #include "runtime/elastostatic/unilateral.hpp"
 
@@ -16,6 +18,35 @@ Status check_surfaces(const Body& body, std::size_t surfaces, const Elastostatic
     return Status::held_out_of_range;
   }
   return body.counts.iterations == 0 && surfaces > 0 ? Status::held_unsupported : check_loads(body, loads);
+}
+
+bool is_mixed(const Constraint& constraint) {
+  return is_contact(constraint) && constraint.kind != Constraint::Kind::hold;
+}
+
+// nodes of the contacts, those of masks each time
+std::uint64_t count_corners(std::span<const Constraint> constraints, const Masks& masks) {
+  std::uint64_t count = 0;
+  for (const Constraint& constraint : constraints) {
+    const std::uint32_t number = constraint.node;
+    if (constraint.kind == Constraint::Kind::mask && number < masks.scalar.size()) {
+      count += masks.scalar[number].node.size();
+    } else if (constraint.kind == Constraint::Kind::normal && number < masks.directed.size()) {
+      count += masks.directed[number].node.size();
+    } else {
+      count += is_contact(constraint) ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+// checked contacts of which some are mixed
+void take_mixed(Body& body, const Masks& masks, Contacts& contacts) {
+  MixedScratch& scratch = body.mixed;
+  contacts.mixed_counts = list_mixed(contacts.all, masks, scratch);
+  contacts.held = {scratch.hold, contacts.mixed_counts.holds};
+  contacts.force = scratch.hold_force;
+  contacts.mixed = &scratch;
 }
 
 }  // namespace
@@ -60,13 +91,24 @@ void accept_loaded(Body& body, std::span<const Constraint> constraints, const El
     accepted.checked.status = acting;
     return;
   }
-  const std::uint32_t most = body.counts.max_forces;
-  const std::uint64_t forces = most > 0 ? count_forces(constraints, loads.masks) : 0;
-  accepted.work = check_loaded_work(body.counts.prices, constraints.size(), forces < most ? forces : most);
-  accepted.checked =
-      check_contacts(constraints, body.view->node_count, body.facts, {body.counts.max_contacts, most, loads.masks});
+  const ModelCounts& counts = body.counts;
+  const Masks masks{loads.masks, loads.directed};
+  const bool mixed = counts.mixed_contacts && std::any_of(constraints.begin(), constraints.end(), is_mixed);
+  const std::uint64_t forces = counts.max_forces > 0 ? count_forces(constraints, masks) : 0;
+  accepted.work =
+      check_loaded_work(counts.prices, constraints.size(), forces < counts.max_forces ? forces : counts.max_forces);
+  if (mixed) {
+    const std::uint64_t corners = count_corners(constraints, masks);
+    accepted.work += list_mixed_work(counts.prices, constraints.size(),
+                                     corners < counts.max_contacts ? corners : counts.max_contacts);
+  }
+  accepted.checked = check_contacts(constraints, body.view->node_count, body.facts,
+                                    {counts.max_contacts, counts.max_forces, masks.scalar, masks.directed, mixed});
   if (accepted.checked.status == Status::ok && !take_loads(body, constraints, loads, force, accepted.contacts)) {
     accepted.checked.status = Status::held_overflow;
+  }
+  if (accepted.checked.status == Status::ok && mixed) {
+    take_mixed(body, masks, accepted.contacts);
   }
 }
 
@@ -81,6 +123,8 @@ void accept_surfaces(Body& body, std::span<const UnilateralContact> surfaces, co
   const std::uint32_t most = body.counts.max_contacts;
   const Prices& prices = body.counts.prices;
   UnilateralScratch& scratch = body.unilateral;
+  scratch.held = 0;
+  body.surfaces = static_cast<std::uint32_t>(surfaces.size());
   std::uint32_t nodes = 0;
   accepted.work = list_unilateral_work(prices, surfaces.size(), most) + check_loaded_work(prices, most, 0);
   checked = list_unilateral(surfaces, body.view->node_count, most, scratch, nodes);

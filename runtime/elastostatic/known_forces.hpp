@@ -27,9 +27,14 @@ struct KnownForces {
   [[nodiscard]] ColumnForces on_columns() const noexcept { return {count, column, force}; }
 };
 
-/// Entries that the known forces of some constraints have, of masks that there are. For the loop; work: a unit a
-/// constraint.
-[[nodiscard]] std::uint64_t count_forces(std::span<const Constraint> constraints, std::span<const Mask> masks) noexcept;
+/// The masks that constraints name.
+struct Masks {
+  std::span<const Mask> scalar;
+  std::span<const DirectedMask> directed;
+};
+
+/// Entries that the known forces of some constraints have. For the loop; work: a unit a constraint.
+[[nodiscard]] std::uint64_t count_forces(std::span<const Constraint> constraints, const Masks& masks) noexcept;
 
 /// Work units of checking constraints and loads and of list_forces; forces: nodes with known ones, those of masks each
 /// time.
@@ -38,9 +43,9 @@ constexpr std::uint64_t check_loaded_work(const Prices& prices, std::uint64_t co
          priced(constraints + forces, prices.force_column);
 }
 
-/// Lists the known forces among checked constraints, and the others in `held`; returns how many those are. Whether the
-/// forces overflow is left to the caller: their magnitudes are added to `sum`. For the loop.
-std::uint32_t list_forces(std::span<const Constraint> constraints, std::span<const Mask> masks, float stiffness,
+/// Lists the known forces among checked constraints, and the nodes that are held in `held`; returns how many those are.
+/// Whether the forces overflow is left to the caller: their magnitudes are added to `sum`. For the loop.
+std::uint32_t list_forces(std::span<const Constraint> constraints, const Masks& masks, float stiffness,
                           KnownForces& forces, Constraint* held, float& sum) noexcept;
 
 /// Resolves them at a level. For the loop; work: Prices::resolved_contact each.

@@ -42,6 +42,19 @@ bool take_model_loads(const Body& body, const Elastostatic::Loads& loads, LoadSt
   return sum <= FLT_MAX / 4;
 }
 
+void hand_out_holds(const Contacts& contacts, float scale, std::span<Vec3> force) {
+  const float* next = contacts.force;
+  for (std::size_t i = 0; i < contacts.all.size(); ++i) {
+    const float* const known = contacts.all[i].value;
+    const bool holds = is_hold(contacts.all[i]);
+    const bool directed = contacts.all[i].kind == Constraint::Kind::along;
+    force[i] = holds      ? Vec3{scale * next[0], scale * next[1], scale * next[2]}
+               : directed ? Vec3{known[0], 0, 0}
+                          : Vec3{known[0], known[1], known[2]};
+    next += holds ? 3 : 0;
+  }
+}
+
 }  // namespace
 
 Status check_loads(const Body& body, const Elastostatic::Loads& loads) noexcept {
@@ -77,7 +90,8 @@ bool take_loads(Body& body, std::span<const Constraint> constraints, const Elast
   state.forces.count = state.amounts = 0;
   float sum = 0;
   if (!std::all_of(constraints.begin(), constraints.end(), is_hold)) {
-    const std::uint32_t holds = list_forces(constraints, loads.masks, loads.stiffness, state.forces, state.held, sum);
+    const std::uint32_t holds =
+        list_forces(constraints, {loads.masks, loads.directed}, loads.stiffness, state.forces, state.held, sum);
     contacts = {constraints, {state.held, holds}, state.held_force};
   }
   const bool bounded = take_model_loads(body, loads, state) && sum <= body.force_limit;
@@ -115,15 +129,12 @@ std::uint64_t displace_by_loads(const Body& body) noexcept {
 void hand_out_forces(const Body& body, const Contacts& contacts, std::span<Vec3> force,
                      Elastostatic::StepReport& report) noexcept {
   const float scale = body.stiffness;
-  if (contacts.held.size() == contacts.all.size() && scale == 1) {
+  if (contacts.mixed != nullptr) {
+    hand_out_mixed(contacts.all, *contacts.mixed, scale, force);
+  } else if (contacts.held.size() == contacts.all.size() && scale == 1) {
     return;
-  }
-  const float* next = contacts.force;
-  for (std::size_t i = 0; i < contacts.all.size(); ++i) {
-    const float* const known = contacts.all[i].value;
-    const bool holds = is_hold(contacts.all[i]);
-    force[i] = holds ? Vec3{scale * next[0], scale * next[1], scale * next[2]} : Vec3{known[0], known[1], known[2]};
-    next += holds ? 3 : 0;
+  } else {
+    hand_out_holds(contacts, scale, force);
   }
   report.details.level_difference *= scale;
   report.details.switch_work *= scale;

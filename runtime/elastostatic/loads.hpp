@@ -20,7 +20,12 @@ struct Contacts {
   ContactAnswer* found = nullptr;  ///< null: they are held
   std::uint32_t corner_count = 0;
 
-  [[nodiscard]] bool are_held() const { return found == nullptr; }
+  // if some hold masks, or along directions alone: null if none does
+  MixedScratch* mixed = nullptr;
+  MixedCounts mixed_counts{};
+
+  /// Each by itself and in all directions.
+  [[nodiscard]] bool are_held() const { return found == nullptr && mixed == nullptr; }
   /// Of unilateral ones, which each count as one at least.
   [[nodiscard]] std::uint32_t corners() const {
     const auto contacts = static_cast<std::uint32_t>(surfaces.size());

@@ -68,6 +68,7 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
   plan.counts.columns = body.planned.columns;
   plan.counts.corners = task.contacts.empty() ? 0 : task.corners;
   plan.counts.iterations = task.iterations;
+  plan.counts.rows = task.rows;
   plan.forces = force_work(body.counts.prices, plan.counts);
   plan.cached = body.planned.columns > 0 ? body.cache.find(body.planned.all()) : nullptr;
   plan.work += resolve_work(body.counts, plan.counts);

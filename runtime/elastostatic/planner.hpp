@@ -15,6 +15,7 @@ struct Wants {
   std::uint32_t finest_displaced = 0;  ///< level of the nodes that are displaced
   std::uint32_t corners = 0;           ///< as of SetCounts
   std::uint32_t iterations = 0;
+  std::uint32_t rows = 0;
 };
 
 /// How a step will be answered. Its contacts are resolved in body.planned, whose coefficients are touched if a field is

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/elastostatic/known_forces.hpp"
+#include "runtime/elastostatic/mixed_contacts.hpp"
 #include "runtime/elastostatic/planner.hpp"
 #include "runtime/elastostatic/unilateral.hpp"
 #include "runtime/wavelet/domain.hpp"
@@ -28,7 +29,8 @@ void count_model(const ModelView& view, const Elastostatic::Limits& limits, Body
   counts.max_points = limits.max_points;
   counts.model_loads = limits.model_loads ? static_cast<std::uint32_t>(view.loads.size()) : 0;
   counts.iterations = limits.iterations;
-  counts.keeps_capacitance = limits.keep_capacitance || limits.iterations > 0;
+  counts.mixed_contacts = limits.mixed_contacts;
+  counts.keeps_capacitance = limits.keep_capacitance || limits.iterations > 0 || limits.mixed_contacts;
   for (std::uint32_t q = 0; q < view.levels; ++q) {
     if (q > 0) {
       sizes.lifting[q] = count_lifting(view, q);
@@ -66,22 +68,30 @@ std::uint64_t functional_of(const ModelView& view, const ReachBound& reach) {
 // of checking constraints, and of listing the known forces among them
 std::uint64_t check_work(const Elastostatic::Limits& limits, const ModelCounts& counts) {
   const std::uint64_t constraints = std::uint64_t{limits.max_contacts} + limits.max_forces;
-  const std::uint64_t listing =
+  const std::uint64_t unilateral =
       limits.iterations > 0 ? list_unilateral_work(counts.prices, limits.max_contacts, limits.max_contacts) : 0;
-  return listing + (counts.takes_loads() || limits.max_points > 0 || limits.iterations > 0
-                        ? check_loaded_work(counts.prices, constraints, limits.max_forces)
-                        : check_contacts_work(counts.prices, constraints));
+  const std::uint64_t mixed =
+      limits.mixed_contacts ? list_mixed_work(counts.prices, constraints, limits.max_contacts) : 0;
+  const bool loaded = counts.takes_loads() || limits.max_points > 0;
+  return larger(unilateral, mixed) + (loaded || limits.iterations > 0 || limits.mixed_contacts
+                                          ? check_loaded_work(counts.prices, constraints, limits.max_forces)
+                                          : check_contacts_work(counts.prices, constraints));
 }
 
-// of holds and of unilateral contacts, whichever is more
+// of holds, mixed contacts and unilateral ones, whichever is more
 std::uint64_t most_force_work(const ModelCounts& counts, SetCounts set, std::uint32_t iterations) {
-  const std::uint64_t holds = force_work(counts.prices, set);
-  if (iterations == 0) {
-    return holds;
-  }
-  set.iterations = iterations;
+  std::uint64_t most = force_work(counts.prices, set);
   set.corners = counts.max_contacts;
-  return larger(holds, force_work(counts.prices, set));
+  if (counts.mixed_contacts) {
+    set.rows = std::uint64_t{3} * counts.max_contacts;
+    most = larger(most, force_work(counts.prices, set));
+  }
+  if (iterations > 0) {
+    set.rows = 0;
+    set.iterations = iterations;
+    most = larger(most, force_work(counts.prices, set));
+  }
+  return most;
 }
 
 // by constraint level

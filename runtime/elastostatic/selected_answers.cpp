@@ -210,4 +210,36 @@ std::uint64_t Elastostatic::stiffness(const MeshPoint& point, std::span<const Ma
   return work == 0 ? 1 : work;
 }
 
+std::uint64_t Elastostatic::local_model(std::span<const ToolPoint> points, std::uint32_t tools,
+                                        std::uint32_t components, float length, LocalModel& model) noexcept {
+  Body& body = *body_;
+  const bool sized =
+      tools >= 1 && tools <= LocalModel::most_tools && (components == 3 || components == 6) && length > 0;
+  if (!body.pushed || points.size() != body.surfaces || !sized) {
+    return 0;
+  }
+  UnilateralScratch& scratch = body.unilateral;
+  for (std::uint32_t i = 0; i < scratch.held; ++i) {
+    scratch.point[i] = points[scratch.contact[i]];
+    if (scratch.point[i].tool >= tools) {
+      return 0;
+    }
+  }
+  const std::uint64_t work =
+      scratch.builder.build(scratch.problem, {scratch.point, scratch.held}, tools, components, length, model);
+  // what is kept is of the model's own stiffness
+  for (std::uint32_t r = 0; r < 6 * tools; ++r) {
+    model.wrench[r] *= body.stiffness;
+    for (std::uint32_t c = 0; c < components * tools; ++c) {
+      model.change[c][r] *= body.stiffness;
+    }
+  }
+  return work;
+}
+
+std::uint64_t Elastostatic::local_model_work(std::uint32_t contacts, std::uint32_t tools,
+                                             std::uint32_t components) const noexcept {
+  return LocalModelBuilder::work(body_->counts.prices, contacts, tools, components);
+}
+
 }  // namespace greenloop

@@ -5,6 +5,7 @@
 #include "runtime/compliance/selected_columns.hpp"
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/elastostatic/glide.hpp"
+#include "runtime/elastostatic/mixed_contacts.hpp"
 #include "runtime/elastostatic/unilateral.hpp"
 #include "runtime/factor/factor_cache.hpp"
 #include "runtime/wavelet/domain.hpp"
@@ -64,6 +65,7 @@ std::uint64_t solve_work(const Prices& prices, std::uint64_t contacts, std::uint
 
 std::uint64_t force_work(const Prices& prices, const SetCounts& set) noexcept {
   const std::uint64_t solving = set.corners == 0 ? solve_work(prices, set.contacts, set.columns)
+                                : set.rows > 0   ? mixed_work(prices, set.corners, set.rows)
                                                  : unilateral_work(prices, set.corners, set.iterations);
   return solving + Glide::blend_work(prices, set.contacts);
 }

@@ -18,6 +18,7 @@ struct ModelCounts : FactorCounts {
   std::uint32_t glide_cycles = 1;
   std::uint32_t iterations = 0;
   bool forces_only = false;
+  bool mixed_contacts = false;
   std::uint32_t max_forces = 0;   ///< known ones
   std::uint32_t model_loads = 0;  ///< that may act
   std::uint32_t max_points = 0;   ///< of selected answers

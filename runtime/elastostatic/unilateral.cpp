@@ -8,7 +8,7 @@ namespace {
 float dot3(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 bool all_finite(const UnilateralContact& c) {
-  float sum = c.friction + c.softness;
+  float sum = c.friction + c.softness + c.mount;
   for (int r = 0; r < 3; ++r) {
     sum += std::fabs(c.value[r]) + std::fabs(c.normal[r]) + std::fabs(c.force[r]) + std::fabs(c.weight[r]);
   }
@@ -36,8 +36,9 @@ Status check_unilateral(const UnilateralContact& c, std::uint32_t node_count, st
     weighted = weighted && c.weight[k] > 0;
   }
   const bool stands = corners > 0 ? weighted && weights <= whole : c.softness > 0;
-  return square >= least && square <= most && c.friction >= 0 && c.softness >= 0 && stands ? Status::ok
-                                                                                           : Status::held_bad_surface;
+  return square >= least && square <= most && c.friction >= 0 && c.softness >= 0 && c.mount >= 0 && stands
+             ? Status::ok
+             : Status::held_bad_surface;
 }
 
 std::span<const UnilateralCorner> corners_of(const UnilateralScratch& scratch, std::uint32_t contact) {
@@ -87,6 +88,19 @@ ContactCandidate candidate_of(const UnilateralSet& all, const UnilateralScratch&
   return candidate;
 }
 
+void add_softness(float softness, Block<3>& block) {
+  block.column[0] += Float4{softness, 0, 0, 0};
+  block.column[1] += Float4{0, softness, 0, 0};
+  block.column[2] += Float4{0, 0, softness, 0};
+}
+
+// Of a tool that hangs on a spring: its contacts give way together. The lesser of two is positive definite if they
+// differ.
+float mount_between(const UnilateralContact& a, const UnilateralContact& b) {
+  const float lesser = a.mount < b.mount ? a.mount : b.mount;
+  return a.tool == b.tool ? lesser : 0;
+}
+
 // the contacts that are held as candidates, and the compliance between them; how many
 std::uint32_t gather(const UnilateralSet& all, const Factor& factor, std::uint32_t stride, UnilateralScratch& scratch) {
   std::uint32_t count = 0;
@@ -101,16 +115,16 @@ std::uint32_t gather(const UnilateralSet& all, const Factor& factor, std::uint32
   }
   for (std::uint32_t j = 0; j < count; ++j) {
     Block<3>* const column = scratch.compliance.column(j);
+    const UnilateralContact& contact = all.contacts[scratch.contact[j]];
     for (std::uint32_t i = 0; i <= j; ++i) {
       column[i] = block_between(all, factor, stride, scratch, scratch.contact[i], scratch.contact[j]);
+      const float mount = mount_between(all.contacts[scratch.contact[i]], contact);
+      if (mount > 0) add_softness(mount * all.stiffness, column[i]);
     }
     // of the surface itself, whose forces are not over the stiffness scale
-    const float softness = all.contacts[scratch.contact[j]].softness * all.stiffness;
-    column[j].column[0] += Float4{softness, 0, 0, 0};
-    column[j].column[1] += Float4{0, softness, 0, 0};
-    column[j].column[2] += Float4{0, 0, softness, 0};
+    add_softness(contact.softness * all.stiffness, column[j]);
   }
-  return count;
+  return scratch.held = count;
 }
 
 void add_to_columns(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t count,
@@ -131,7 +145,8 @@ void add_to_columns(const UnilateralSet& all, const UnilateralScratch& scratch, 
 
 }  // namespace
 
-void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes) noexcept {
+void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes,
+                              const Prices& prices) noexcept {
   hold = arena.take<Constraint>(contacts);
   corner = arena.take<UnilateralCorner>(contacts);
   begin = arena.take<std::uint32_t>(contacts + 1);
@@ -143,7 +158,9 @@ void UnilateralScratch::carve(Arena& arena, std::uint32_t contacts, std::uint32_
   gap = arena.take<Vec4>(contacts);
   state = arena.take<ContactState>(contacts);
   compliance.block = arena.take<Block<3>>(ContactCompliance::size(contacts));
-  problem.carve(arena, contacts);
+  problem.carve(arena, contacts, prices);
+  builder.carve(arena, contacts);
+  point = arena.take<ToolPoint>(contacts);
   for (std::uint32_t node = 0; hold_of_node != nullptr && node < nodes; ++node) {
     hold_of_node[node] = UnilateralContact::none;
   }
@@ -202,7 +219,7 @@ std::uint64_t gather_unilateral_work(const Prices& prices, std::uint64_t corners
 }
 
 std::uint64_t unilateral_work(const Prices& prices, std::uint64_t corners, std::uint64_t iterations) noexcept {
-  return gather_unilateral_work(prices, corners) + iterations * ContactProblem::least_work(corners);
+  return gather_unilateral_work(prices, corners) + iterations * ContactProblem::least_work(prices, corners);
 }
 
 ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, std::uint32_t stride,

@@ -8,6 +8,7 @@
 #include "runtime/elastostatic/contact_set.hpp"
 #include "runtime/factor/factor.hpp"
 #include "runtime/friction/contact_problem.hpp"
+#include "runtime/friction/local_model.hpp"
 #include "runtime/memory/arena.hpp"
 #include "runtime/prices.hpp"
 #include "runtime/vec.hpp"
@@ -28,15 +29,18 @@ struct UnilateralScratch {
   std::uint32_t* hold_of_node = nullptr;  ///< [nodes] none between uses
   float* hold_force = nullptr;            ///< [3 * corners] N, over the stiffness scale
   std::uint32_t* contact = nullptr;       ///< [contacts] those that columns hold
+  std::uint32_t held = 0;                 ///< how many these are, in the last answer
   ContactCandidate* candidate = nullptr;  ///< [contacts] of these
   Vec4* force = nullptr;                  ///< [contacts] N, of these
   Vec4* gap = nullptr;                    ///< [contacts] m, of these
   ContactState* state = nullptr;          ///< [contacts] of these
   ContactCompliance compliance;           ///< between these
   ContactProblem problem;
+  LocalModelBuilder builder;
+  ToolPoint* point = nullptr;  ///< [contacts] of these
 
   /// Arrays out of `arena`, for so many contacts with as many corners in all; null while it counts.
-  void carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes) noexcept;
+  void carve(Arena& arena, std::uint32_t contacts, std::uint32_t nodes, const Prices& prices) noexcept;
 };
 
 /// Work units of list_unilateral.

@@ -269,6 +269,9 @@ TEST_CASE("a surface without a unit normal, with negative friction or without a 
   refused([](UnilateralContact& c) { c.weight[0] = 0; }, Status::held_bad_surface);
   refused([](UnilateralContact& c) { c.node[0] = UnilateralContact::none; }, Status::held_bad_surface);
   refused([](UnilateralContact& c) { c.force[2] = nan; }, Status::held_not_finite);
+  auto far = good;
+  far[3].value[0] = 1e30F;
+  CHECK(body.step(far).status == Status::held_unsolved);
   PushedBody holds_only(model, {.max_contacts = 8});
   CHECK(holds_only.step(good).status == Status::held_unsupported);
   CHECK(body.step(good).status == Status::ok);

@@ -25,8 +25,9 @@ struct FactorCounts {
 struct SetCounts {
   std::uint64_t contacts = 0;
   std::uint64_t columns = 0;
-  std::uint64_t corners = 0;     ///< of unilateral contacts, at least one each; 0: contacts are held
-  std::uint64_t iterations = 0;  ///< that solve for them, at least
+  std::uint64_t corners = 0;     ///< of unilateral or mixed contacts, at least one each; 0: nodes are held
+  std::uint64_t iterations = 0;  ///< that solve for unilateral ones, at least
+  std::uint64_t rows = 0;        ///< that mixed ones hold; 0: they are not mixed
   // what follows only if a field is wanted or a factor is to be made
   std::uint64_t coefficients = 0;  ///< that the columns touch, none counted twice
   std::uint64_t visits = 0;        ///< of touching them

@@ -228,17 +228,18 @@ void ContactNewton::linearise(const ContactPoints& points, const Float4* force, 
   }
 }
 
-void ContactNewton::respond(const ContactPoints& points, const Terms& terms, Float4* displacement,
-                            Float4* force) noexcept {
+std::uint32_t ContactNewton::respond(const ContactPoints& points, const Terms& terms, Float4* displacement,
+                                     Float4* force) noexcept {
   for (std::uint32_t i = 0; i < points.count; ++i) {
     force[i] = Float4{};
     vector_[0][i] = -law(points.contact[i], frozen_[i], displacement[i], force[i]);
   }
-  static_cast<void>(add_solution(points, terms, force));
+  const std::uint32_t used = add_solution(points, terms, force);
   multiply(points.compliance, points.count, force, direction_);
   for (std::uint32_t i = 0; i < points.count; ++i) {
     displacement[i] += direction_[i];
   }
+  return used;
 }
 
 }  // namespace greenloop

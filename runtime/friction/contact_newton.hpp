@@ -55,8 +55,9 @@ class ContactNewton {
   void linearise(const ContactPoints& points, const Float4* force, const Float4* displacement) noexcept;
 
   /// After `linearise`: what forces and displacements change by when gaps do, [count] each, while no contact changes
-  /// its state; displacement: the gaps' change, becomes that of the displacements. For the loop; work: as of `step`.
-  void respond(const ContactPoints& points, const Terms& terms, Float4* displacement, Float4* force) noexcept;
+  /// its state; displacement: the gaps' change, becomes that of the displacements. Returns how many vectors were
+  /// used. For the loop; work: as of `step`.
+  std::uint32_t respond(const ContactPoints& points, const Terms& terms, Float4* displacement, Float4* force) noexcept;
 
  private:
   struct Triangle;

@@ -16,7 +16,8 @@ bool finite(Float4 v) { return dot3(v, v) <= FLT_MAX; }
 
 }  // namespace
 
-void ContactProblem::carve(Arena& arena, std::uint32_t candidates) noexcept {
+void ContactProblem::carve(Arena& arena, std::uint32_t candidates, const Prices& prices) noexcept {
+  prices_ = prices;
   contact_ = arena.take<FrictionContact>(candidates);
   multiplier_ = arena.take<float>(candidates);
   gap_ = arena.take<Float4>(candidates);
@@ -105,19 +106,19 @@ bool ContactProblem::newton(float accuracy, std::uint64_t work, ContactAnswer& a
   float last = FLT_MAX;
   std::uint32_t steps = 0;
   for (float here = residual(); here < last * (2.0F / 3) && steps < most_steps; here = residual()) {
-    const std::uint64_t needed = answer.work + newton_work(count, 0) + projection_work(count);
-    const std::uint64_t vectors = work > needed ? (work - needed) / vector_work(count) : 0;
+    const std::uint64_t needed = answer.work + newton_work(prices_, count, 0) + projection_work(prices_, count);
+    const std::uint64_t vectors = work > needed ? (work - needed) / vector_work(prices_, count) : 0;
     if (vectors == 0 || (steps > 0 && here <= 0.9F * accuracy)) break;
     last = steps++ == 0 ? FLT_MAX : here;
     terms.reduction = std::min(std::max(0.1F * accuracy / here, 0.01F), 0.1F);
     terms.vectors = static_cast<std::uint32_t>(std::min<std::uint64_t>(vectors, ContactNewton::most_vectors));
-    answer.work += newton_work(count, newton_.step(points_, terms, force_, displacement_));
+    answer.work += newton_work(prices_, count, newton_.step(points_, terms, force_, displacement_));
   }
   if (steps == 0) {
     return false;
   }
   project();
-  answer.work += projection_work(count);
+  answer.work += projection_work(prices_, count);
   judge(answer);
   return true;
 }
@@ -128,22 +129,22 @@ void ContactProblem::iterate(const ContactAccuracy& accuracy, std::uint64_t work
     sweep();
     judge(answer);
     ++answer.iterations;
-    answer.work += sweep_work(points_.count);
+    answer.work += sweep_work(prices_, points_.count);
   } while (answer.residual > accuracy.residual && answer.iterations < accuracy.iterations &&
            newton(accuracy.residual, work, answer) && answer.residual > accuracy.residual &&
-           answer.work + sweep_work(points_.count) <= work);
+           answer.work + sweep_work(prices_, points_.count) <= work);
 }
 
-void ContactProblem::respond(Float4* displacement, Float4* force) noexcept {
+std::uint64_t ContactProblem::respond(Float4* displacement, Float4* force) noexcept {
   const ContactNewton::Terms terms{.weight = 1, .reduction = 1e-3F, .vectors = ContactNewton::most_vectors};
-  newton_.respond(points_, terms, displacement, force);
+  return newton_work(prices_, points_.count, newton_.respond(points_, terms, displacement, force));
 }
 
 ContactAnswer ContactProblem::solve(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
                                     const ContactAccuracy& accuracy, std::uint64_t work, std::span<Vec4> force,
                                     std::span<ContactState> states, std::span<Vec4> displacements) noexcept {
   ContactAnswer answer;
-  answer.work = candidates.size() * setup_price;
+  answer.work = setup_work(prices_, candidates.size());
   answer.valid = set(candidates, compliance, force);
   if (answer.valid) {
     iterate(accuracy, work, answer);

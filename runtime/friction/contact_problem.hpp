@@ -8,6 +8,7 @@
 #include "runtime/friction/contact_newton.hpp"
 #include "runtime/friction/friction.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/prices.hpp"
 #include "runtime/vec.hpp"
 
 namespace greenloop {
@@ -49,18 +50,18 @@ class ContactProblem {
  public:
   static constexpr std::uint32_t most_candidates = 256;
 
-  /// Arrays out of `arena`; null while it counts. candidates: 1 .. most_candidates.
-  void carve(Arena& arena, std::uint32_t candidates) noexcept;
+  /// Arrays out of `arena`; null while it counts. candidates: 1 .. most_candidates. prices: of what `solve` counts.
+  void carve(Arena& arena, std::uint32_t candidates, const Prices& prices = {}) noexcept;
 
   /// Work units that `solve` needs at least for so many candidates: setting up and one pair of sweeps.
-  static constexpr std::uint64_t least_work(std::uint64_t candidates) {
-    return candidates * setup_price + sweep_work(candidates);
+  static constexpr std::uint64_t least_work(const Prices& prices, std::uint64_t candidates) {
+    return setup_work(prices, candidates) + sweep_work(prices, candidates);
   }
 
   /// The most that a pair of sweeps and the Newton steps after it take.
-  static constexpr std::uint64_t iteration_work(std::uint64_t candidates) {
-    return sweep_work(candidates) + most_steps * newton_work(candidates, ContactNewton::most_vectors) +
-           projection_work(candidates);
+  static constexpr std::uint64_t iteration_work(const Prices& prices, std::uint64_t candidates) {
+    return sweep_work(prices, candidates) + most_steps * newton_work(prices, candidates, ContactNewton::most_vectors) +
+           projection_work(prices, candidates);
   }
 
   /// force: [candidates] N, where the iteration begins, the last answer or 0; becomes the answer, the one of the least
@@ -84,8 +85,8 @@ class ContactProblem {
   }
 
   /// Work units of `respond`, at most.
-  static constexpr std::uint64_t response_work(std::uint64_t candidates) {
-    return newton_work(candidates, ContactNewton::most_vectors);
+  static constexpr std::uint64_t response_work(const Prices& prices, std::uint64_t candidates) {
+    return newton_work(prices, candidates, ContactNewton::most_vectors);
   }
 
   /// After `solve` with a valid answer: freezes its contacts in their states for `respond`, until the next `solve`. For
@@ -93,34 +94,31 @@ class ContactProblem {
   void linearise() noexcept { newton_.linearise(points_, best_force_, best_displacement_); }
 
   /// What forces change by when gaps do, to a thousandth. displacement: [candidates] m, the gaps' change, becomes that
-  /// of the displacements. force: [candidates] N. For the loop.
-  void respond(Float4* displacement, Float4* force) noexcept;
+  /// of the displacements. force: [candidates] N. Returns the work units that it took. For the loop.
+  std::uint64_t respond(Float4* displacement, Float4* force) noexcept;
 
  private:
   static constexpr std::uint32_t most_steps = 8;  ///< of Newton between sweeps
 
-  // instructions
-  static constexpr std::uint64_t block_price = 13;        ///< a block in one direction
-  static constexpr std::uint64_t setup_price = 350;       ///< a candidate
-  static constexpr std::uint64_t sweep_price = 850;       ///< a candidate's own problem twice, and its natural map
-  static constexpr std::uint64_t projection_price = 200;  ///< a candidate in its cone, and its natural map
-  static constexpr std::uint64_t newton_price = 600;      ///< a candidate, frozen and thawed
-  static constexpr std::uint64_t vector_price = 350;      ///< a candidate in one vector more
-
-  static constexpr std::uint64_t half_work(std::uint64_t candidates) {
-    return candidates * candidates / 2 * block_price;
+  // blocks of half the matrix, in one direction
+  static constexpr std::uint64_t half_work(const Prices& prices, std::uint64_t candidates) {
+    return priced(candidates * candidates / 2, prices.law_block);
   }
-  static constexpr std::uint64_t sweep_work(std::uint64_t candidates) {
-    return 4 * half_work(candidates) + candidates * sweep_price;
+  static constexpr std::uint64_t setup_work(const Prices& prices, std::uint64_t candidates) {
+    return priced(candidates, prices.law);
   }
-  static constexpr std::uint64_t projection_work(std::uint64_t candidates) {
-    return 2 * half_work(candidates) + candidates * projection_price;
+  static constexpr std::uint64_t sweep_work(const Prices& prices, std::uint64_t candidates) {
+    return 4 * half_work(prices, candidates) + priced(candidates, prices.swept_law);
   }
-  static constexpr std::uint64_t vector_work(std::uint64_t candidates) {
-    return 2 * half_work(candidates) + candidates * vector_price;
+  static constexpr std::uint64_t projection_work(const Prices& prices, std::uint64_t candidates) {
+    return 2 * half_work(prices, candidates) + priced(candidates, prices.projected_law);
   }
-  static constexpr std::uint64_t newton_work(std::uint64_t candidates, std::uint64_t vectors) {
-    return 4 * half_work(candidates) + candidates * newton_price + vectors * vector_work(candidates);
+  static constexpr std::uint64_t vector_work(const Prices& prices, std::uint64_t candidates) {
+    return 2 * half_work(prices, candidates) + priced(candidates, prices.law_vector);
+  }
+  static constexpr std::uint64_t newton_work(const Prices& prices, std::uint64_t candidates, std::uint64_t vectors) {
+    return 4 * half_work(prices, candidates) + priced(candidates, prices.frozen_law) +
+           vectors * vector_work(prices, candidates);
   }
 
   [[nodiscard]] bool set(std::span<const ContactCandidate> candidates, const ContactCompliance& compliance,
@@ -132,6 +130,7 @@ class ContactProblem {
   [[nodiscard]] bool newton(float accuracy, std::uint64_t work, ContactAnswer& answer) noexcept;
   void iterate(const ContactAccuracy& accuracy, std::uint64_t work, ContactAnswer& answer) noexcept;
 
+  Prices prices_;
   ContactPoints points_;
   FrictionContact* contact_ = nullptr;
   float* multiplier_ = nullptr;  ///< see local_force

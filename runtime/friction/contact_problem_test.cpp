@@ -393,7 +393,7 @@ TEST_CASE("any work allowed gives forces in the cones, costs no more, and gives 
   const std::vector<double> gap = gaps(patch, {sphere_radius, 4e-5});
   float last = 2;
   for (std::uint64_t part = 0; part <= 32; ++part) {
-    const std::uint64_t work = ContactProblem::least_work(64) + part * ContactProblem::iteration_work(64) / 16;
+    const std::uint64_t work = ContactProblem::least_work({}, 64) + part * ContactProblem::iteration_work({}, 64) / 16;
     ContactBench first(patch);
     ContactBench second(patch);
     for (ContactBench* bench : {&first, &second}) {

@@ -2,18 +2,18 @@
 
 #include <span>
 
-#include "runtime/vec.hpp"
+#include "runtime/algebra/double3.hpp"
 
 namespace greenloop {
 
 /// What a contact point did in a step. A point that was no candidate in the step before had no force then.
 struct EnergyContact {
-  Vec4 normal;      ///< unit, out of the tool
-  Vec4 force;       ///< of the tool on the body, N
-  Vec4 last_force;  ///< at the step before
-  Vec4 shift;       ///< displacement by all contact forces, m
-  Vec4 last_shift;
-  Vec4 way;  ///< of the tool's point there in this step, m
+  Double3 normal;      ///< unit, out of the tool
+  Double3 force;       ///< of the tool on the body, N
+  Double3 last_force;  ///< at the step before
+  Double3 shift;       ///< displacement by all contact forces, m
+  Double3 last_shift;
+  Double3 way;  ///< of the tool's point there in this step, m
 };
 
 /// The energy of the contacts since the beginning, J, in double precision: stored + dissipated + lost - in is
@@ -32,58 +32,6 @@ struct EnergyAccount {
 
   /// Adds a step. contacts: all with a force now or at the step before. For the loop, linear in them.
   void add(std::span<const EnergyContact> contacts) noexcept;
-};
-
-/// A device that holds its force for a period, and how late that force is.
-struct SampledLoop {
-  double period = 0;   ///< s
-  double delay = 0;    ///< s, from a position's measurement to its force, beyond the hold
-  double damping = 0;  ///< N s/m, of the device itself
-};
-
-/// The largest stiffness, N/m, that such a loop may render with a virtual damping, N s/m, and be passive against any
-/// hand: damping > stiffness (period / 2 + delay) + |virtual damping| (Colgate & Schenkel 1997, with their delay of
-/// half a period made longer). Zero if there is none.
-[[nodiscard]] double passive_stiffness(const SampledLoop& loop, double virtual_damping = 0) noexcept;
-
-/// The stiffness, N/m, of a virtual coupling between device and tool in series with which a body of any stiffness is as
-/// soft as `limit`, or softer: `limit` itself. With one of a known stiffness it may be stiffer; infinite if that is
-/// below the limit.
-[[nodiscard]] double coupling_stiffness(double body, double limit) noexcept;
-
-/// Keeps a sampled loop passive by what it observes: the energy that has gone through the device to the hand may not
-/// exceed what came from it and a reserve (Hannaford & Ryu 2002, as a tank: Franken et al. 2011). A force that would
-/// draw more is braked along the motion.
-class EnergyTank {
- public:
-  struct Settings {
-    bool enabled = true;
-    double period = 1e-3;      ///< s
-    double reserve = 1e-5;     ///< J, what the hand may get beyond what it gave
-    double most_damping = 10;  ///< N s/m, with which it is braked at most: below 2 device masses a period
-  };
-
-  EnergyTank() = default;
-  explicit EnergyTank(const Settings& settings) noexcept : settings_(settings), level_(settings.reserve) {}
-
-  /// One sample: where the device is, m, and what force on the hand is wanted, N; returns the force to render until the
-  /// next. stored: J, what the contacts store now: more than that and the reserve the tank does not keep, so that what
-  /// friction took away does not pay for a later growth. Not enabled, it only observes. For the loop, constant work.
-  [[nodiscard]] Vec3 step(const Vec3& position, const Vec3& force, double stored) noexcept;
-
-  [[nodiscard]] double level() const noexcept { return level_; }          ///< J, below 0: overdrawn
-  [[nodiscard]] double drained() const noexcept { return drained_; }      ///< J, of braking so far
-  [[nodiscard]] double delivered() const noexcept { return delivered_; }  ///< J, net, to the hand so far
-
- private:
-  Settings settings_;
-  double level_ = 0;
-  double drained_ = 0;
-  double delivered_ = 0;
-  bool begun_ = false;
-  Vec3 position_;
-  Vec3 force_;    ///< rendered since the last sample
-  Vec3 braking_;  ///< its part that brakes
 };
 
 }  // namespace greenloop

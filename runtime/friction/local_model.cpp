@@ -90,9 +90,11 @@ void LocalModelBuilder::move(std::span<const ToolPoint> points, std::uint32_t to
   }
 }
 
-LocalModel LocalModelBuilder::build(ContactProblem& problem, std::span<const ToolPoint> points, std::uint32_t tools,
-                                    std::uint32_t components, float length) noexcept {
-  LocalModel model{.tools = tools, .components = components, .length = length, .range = FLT_MAX};
+std::uint64_t LocalModelBuilder::build(ContactProblem& problem, std::span<const ToolPoint> points, std::uint32_t tools,
+                                       std::uint32_t components, float length, LocalModel& model) noexcept {
+  model = {.tools = tools, .components = components, .length = length, .range = FLT_MAX};
+  if (points.empty()) return 1;
+  std::uint64_t work = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     gradients_[i] = {};
     add(-problem.contact(i).force, load(points[i].lever), model.wrench + std::size_t{6} * points[i].tool);
@@ -100,7 +102,7 @@ LocalModel LocalModelBuilder::build(ContactProblem& problem, std::span<const Too
   problem.linearise();
   for (std::uint32_t c = 0; c < tools * components; ++c) {
     move(points, c / components, c % components);
-    problem.respond(gap_, force_);
+    work += problem.respond(gap_, force_);
     const float unit = c % components < 3 ? 1 : 1 / (length * length);
     for (std::size_t i = 0; i < points.size(); ++i) {
       add(-force_[i], load(points[i].lever), model.change[c] + std::size_t{6} * points[i].tool);
@@ -117,7 +119,7 @@ LocalModel LocalModelBuilder::build(ContactProblem& problem, std::span<const Too
   for (std::size_t i = 0; i < points.size(); ++i) {
     model.range = std::min(model.range, state_range(problem.contact(i), gradients_[i]));
   }
-  return model;
+  return work;
 }
 
 }  // namespace greenloop

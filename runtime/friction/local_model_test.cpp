@@ -38,7 +38,7 @@ struct Dragged {
     }
     tool.step(gap, Vector3d::Zero(), tight);
     answer = tool.step(gap, Vector3d(way, 0, 0), tight);
-    model = builder->build(bench.problem(), points, 1, 6, turn_length);
+    builder->build(bench.problem(), points, 1, 6, turn_length, model);
   }
 
   // of the body on the tool
@@ -168,7 +168,7 @@ FastLoopError fast_loop_error(double speed) {
     }
     if (k % rate == 0) {
       slow.tool.step(gaps(place(k)), place(k) - place(k - rate));
-      slow.model = slow.builder->build(slow.bench.problem(), slow.points, 1, 6, turn_length);
+      slow.builder->build(slow.bench.problem(), slow.points, 1, 6, turn_length, slow.model);
     }
   }
   return error;

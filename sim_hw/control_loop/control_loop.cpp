@@ -26,12 +26,56 @@ void ControlLoop::cycle(const DeviceState& state) noexcept {
     report_.work = 0;
     return;
   }
-  field_is_new_ = state.cycle % setup_.field_every == 0;
+  between_ = state.cycle % setup_.fast != 0;
+  if (between_) {
+    field_is_new_ = false;
+    return follow();
+  }
+  const bool starves = setup_.starved.work > 0 && state.cycle / 1000 % 4 == 3;
+  budget_ = starves ? setup_.starved : setup_.budget;
+  field_is_new_ = state.cycle / setup_.fast % setup_.field_every == 0;
   if (state.cycle == setup_.overrun_cycle) {
     overrun();
   } else {
-    report_ = body_->step(tools(), loads_, setup_.budget);
+    report_ = body_->step(tools(), loads_, budget_);
   }
+  keep();
+}
+
+/// What the cycles until the next step go by.
+void ControlLoop::keep() noexcept {
+  for (std::size_t t = 0; t < answers().size(); ++t) felt_[t] = {answers()[t].force, answers()[t].torque};
+  if (setup_.fast == 1) return;
+  local_work_ = body_->local_model(false, static_cast<float>(setup_.probe_radius), local_);
+  if (local_work_ == 0) local_.tools = 0;
+  for (std::size_t t = 0; t < tool_count_; ++t) stepped_at_[t] = tool_[t].tool.pose.position;
+}
+
+/// Between two steps. Where a step was refused, what was felt stays.
+void ControlLoop::follow() noexcept {
+  report_.work = report_.touching_work = 0;
+  if (local_.tools == 0 || local_.tools != tool_count_) return;
+  std::array<float, LocalModel::most_components> motion{}, wrench{};
+  for (std::size_t t = 0; t < tool_count_; ++t) {
+    const Double3 moved = tool_[t].tool.pose.position - stepped_at_[t];
+    motion[3 * t] = static_cast<float>(moved.x);
+    motion[3 * t + 1] = static_cast<float>(moved.y);
+    motion[3 * t + 2] = static_cast<float>(moved.z);
+  }
+  const std::span<const float> all = std::span(motion).first(3 * tool_count_);
+  local_.evaluate(all, std::span(wrench).first(6 * tool_count_));
+  in_range_ = local_.motion_length(all) <= local_.range;
+  for (std::size_t t = 0; t < tool_count_; ++t) {
+    const float* const w = wrench.data() + 6 * t;
+    const float* const at_step = local_.wrench + 6 * t;
+    const Double3 force{w[0], w[1], w[2]};
+    const bool pulls = dot(force, {at_step[0], at_step[1], at_step[2]}) <= 0;
+    felt_[t] = pulls ? Wrench{} : Wrench{force, {w[3], w[4], w[5]}};
+  }
+}
+
+void ControlLoop::refer() noexcept {
+  if (setup_.reference != nullptr) setup_.reference->step(tools(), loads_, setup_.budget);
 }
 
 /// False, with the tools as they were, if a number is not finite.
@@ -51,6 +95,7 @@ bool ControlLoop::read(const DeviceState& state) noexcept {
       tool.tool.pose.quaternion[i] = static_cast<double>(measured.orientation[i]) / ToolState::unit;
     }
     tool.friction = setup_.friction;
+    tool.compliance = setup_.compliance;
   }
   if (setup_.gravity) {
     loads_.gravity = {static_cast<float>(state.gravity[0]), static_cast<float>(state.gravity[1]),
@@ -66,26 +111,30 @@ void ControlLoop::overrun() noexcept {
   do {
     report_ = body_->step(tools(), loads_, unlimited);
     work += std::max<std::uint64_t>(report_.work, 1);
-  } while (work <= setup_.budget.work);
+  } while (work <= budget_.work);
   report_.work = work;
 }
 
 void ControlLoop::answer(LoopCommand& command) noexcept {
-  for (const ContactBody::Contact& contact : contacts()) digest_.add(std::as_bytes(std::span(&contact.force, 1)));
+  if (between_) {
+    digest_.add(std::as_bytes(std::span(felt_).first(tool_count_)));
+  } else {
+    for (const ContactBody::Contact& contact : contacts()) digest_.add(std::as_bytes(std::span(&contact.force, 1)));
+  }
   if (field_is_new_) digest_.add(std::as_bytes(field()));
   command.cycle = cycle_;
   command.work = static_cast<std::int64_t>(report_.work);
-  command.budget = static_cast<std::int64_t>(setup_.budget.work);
+  command.budget = static_cast<std::int64_t>(budget_.work);
   command.level = static_cast<std::int32_t>(report_.constraint_level);
   command.field_level = static_cast<std::int32_t>(report_.field_level);
   command.status = static_cast<std::int32_t>(report_.status);
   command.digest = static_cast<std::int64_t>(digest_.value());
   command.num_tools = static_cast<std::uint32_t>(tool_count_);
   for (std::size_t t = 0; t < tool_count_; ++t) {
-    const bool known = t < answers().size();
-    put(command.tools[t].force, known ? answers()[t].force : Double3{});
-    put(command.tools[t].torque, known ? answers()[t].torque : Double3{});
+    put(command.tools[t].force, felt_[t].force);
+    put(command.tools[t].torque, felt_[t].torque);
   }
+  command.stored = energy().stored;
   command.num_contacts = static_cast<std::uint32_t>(std::min<std::size_t>(contacts().size(), command.max_contacts));
   for (std::size_t i = 0; i < command.num_contacts; ++i) {
     const ContactBody::Contact& contact = contacts()[i];

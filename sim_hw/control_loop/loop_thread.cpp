@@ -40,6 +40,7 @@ void LoopThread::run_cycle() {
   commands_.put(command_);
   allocation_guard::disarm();
   allocations_ = allocation_guard::count();
+  loop_->refer();
   log_->add(*loop_, state_.cycle, static_cast<double>(end - begin) / 1000);
 }
 

@@ -31,6 +31,8 @@ namespace greenloop {
       return "held_unsupported";
     case Status::held_bad_surface:
       return "held_bad_surface";
+    case Status::held_unsolved:
+      return "held_unsolved";
     case Status::held_illegal_impulse:
       return "held_illegal_impulse";
   }

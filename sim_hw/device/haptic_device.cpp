@@ -1,7 +1,9 @@
 #include "sim_hw/device/haptic_device.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "sim_hw/device/encoder.hpp"
@@ -27,9 +29,10 @@ Double3 Tilt::at(double time) const {
   return norm(down) * direction;
 }
 
-HapticDevice::HapticDevice(DeviceSetup setup) : setup_(std::move(setup)), arrival_(setup_.faults) {
+HapticDevice::HapticDevice(DeviceSetup setup) : setup_(std::move(setup)), arrival_(setup_.faults), tank_(setup_.tank) {
   for (std::size_t p = 0; p < setup_.motion.size(); ++p) hands_.emplace_back(setup_.hand, handle_target(p, 0));
   motor_force_.resize(hands_.size());
+  rendering_.resize(static_cast<std::size_t>(setup_.delay) + 1, {motor_force_, 0});
   state_.num_tools = static_cast<std::uint32_t>(hands_.size());
   state_.resolution = Coupling::resolution * setup_.coupling.motion_scale;
   state_.origin[0] = setup_.origin.x;
@@ -42,23 +45,51 @@ void HapticDevice::apply(const LoopCommand& command) {
   const std::int64_t cycle = state_.cycle;
   summary_.digest = command.digest;
   summary_.late_injected += arrival_.injected(cycle);
-  if (!arrival_.late(cycle, command.work, command.budget)) {
-    for (std::size_t p = 0; p < hands_.size(); ++p) {
-      const double(&force)[3] = command.tools[p].force;
-      motor_force_[p] = setup_.coupling.force_scale * Double3{force[0], force[1], force[2]};
-    }
-  }
-  const double time = static_cast<double>(cycle) * setup_.period;
-  for (std::size_t p = 0; p < hands_.size(); ++p) {
-    const HandTarget target{handle_target(p, time), handle_target(p, time + 0.5 * setup_.period),
-                            handle_target(p, time + setup_.period)};
-    hands_[p].advance(target, motor_force_[p], setup_.period);
-  }
+  if (!arrival_.late(cycle, command.work, command.budget)) receive(command);
+  render();
+  move();
   ++summary_.cycles;
   summary_.late = arrival_.late_count();
   summary_.stopped = arrival_.must_stop();
   state_.cycle = cycle + 1;
   measure();
+}
+
+/// Into what is under way at its end.
+void HapticDevice::receive(const LoopCommand& command) {
+  Rendering& last = rendering_.back();
+  for (std::size_t p = 0; p < hands_.size(); ++p) {
+    const double(&force)[3] = command.tools[p].force;
+    last.force[p] = setup_.coupling.force_scale * Double3{force[0], force[1], force[2]};
+  }
+  last.stored = setup_.coupling.energy_scale() * command.stored;
+}
+
+void HapticDevice::render() {
+  std::array<Double3, max_tools> handle;
+  for (std::size_t p = 0; p < hands_.size(); ++p) {
+    handle[p] = encoder_value(state_.tools[p].position, Coupling::resolution);
+  }
+  motor_force_ = rendering_.front().force;
+  tank_.step(std::span(handle).first(hands_.size()), motor_force_, rendering_.front().stored);
+  summary_.overdrawn = 0 - tank_.lowest();
+  summary_.drained = tank_.drained();
+  if (rendering_.size() > 1) {
+    rendering_.pop_front();
+    rendering_.push_back(rendering_.back());
+  }
+}
+
+void HapticDevice::move() {
+  const double time = static_cast<double>(state_.cycle) * setup_.period;
+  for (std::size_t p = 0; p < hands_.size(); ++p) {
+    const HandTarget target{handle_target(p, time), handle_target(p, time + 0.5 * setup_.period),
+                            handle_target(p, time + setup_.period)};
+    const Double3 from = hands_[p].position();
+    hands_[p].advance(target, motor_force_[p], setup_.period);
+    summary_.delivered += dot(motor_force_[p], hands_[p].position() - from);
+  }
+  summary_.delivered_most = std::max(summary_.delivered_most, summary_.delivered);
 }
 
 void HapticDevice::measure() {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
+#include "runtime/passivity.hpp"
 #include "sim_hw/body/body_surface.hpp"
 #include "sim_hw/device/command_arrival.hpp"
 #include "sim_hw/device/hand.hpp"
@@ -19,7 +21,11 @@ struct Coupling {
   static constexpr double resolution = 1e-5;  ///< m of the handle per encoder count
 
   double motion_scale = 1;  ///< m of the body per m of the handle
-  double force_scale = 1;   ///< N on the handle per N on the probe, at most 1
+  double force_scale = 1;   ///< N on the handle per N on the probe
+
+  /// What a stiffness of the body is at the handle, and an energy.
+  [[nodiscard]] double stiffness_scale() const { return force_scale * motion_scale; }
+  [[nodiscard]] double energy_scale() const { return force_scale / motion_scale; }
 };
 
 /// The whole body within reach; the force scaled down until a rigid sphere pressed into a half-space of the model's
@@ -35,6 +41,11 @@ struct DeviceSummary {
   std::int64_t retransmits = 0;    ///< states sent again because no answer came
   std::int64_t digest = 0;         ///< of the last command received
   bool stopped = false;            ///< too many late commands in a row
+  // J, of the handles
+  double delivered = 0;       ///< by the motors to the hands, net
+  double delivered_most = 0;  ///< the most of it at any time, from 0: what the loop has made of nothing
+  double overdrawn = 0;       ///< the most that went out beyond what the contacts stored and a reserve
+  double drained = 0;         ///< by the tank's braking
 };
 
 /// How the device, and with it the body's frame, is turned against gravity: upright, or to one side and back.
@@ -54,6 +65,8 @@ struct DeviceSetup {
   double period = 1e-3;     ///< s
   std::int64_t cycles = 0;  ///< how many the run has
   InjectedFaults faults;
+  std::int64_t delay = 0;  ///< cycles that a command is rendered later than its own
+  EnergyTank::Settings tank{.enabled = false};
   Tilt gravity;
 };
 
@@ -74,13 +87,24 @@ class HapticDevice {
   [[nodiscard]] DeviceSummary& summary() { return summary_; }
 
  private:
+  /// What a command says, at the handles.
+  struct Rendering {
+    std::vector<Double3> force;  ///< N
+    double stored = 0;           ///< J
+  };
+
+  void receive(const LoopCommand& command);
+  void render();
+  void move();
   void measure();
   [[nodiscard]] Double3 handle_target(std::size_t probe, double time) const;
 
   DeviceSetup setup_;
   CommandArrival arrival_;
   std::vector<Hand> hands_;
-  std::vector<Double3> motor_force_;  ///< N on the handle, held
+  std::deque<Rendering> rendering_;   ///< held from one cycle to the next, then those that are under way
+  std::vector<Double3> motor_force_;  ///< N on the handle
+  EnergyTank tank_;
   DeviceState state_{};
   DeviceSummary summary_;
 };

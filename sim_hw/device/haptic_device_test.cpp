@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "sim_hw/device/encoder.hpp"
 
@@ -36,6 +37,52 @@ TEST_CASE("a constant force moves the hand to where the spring balances it, as f
   HapticDevice device(still(2000));
   while (!device.finished()) device.apply(push(device.state().cycle, 3));
   CHECK(std::abs(height(device) - 3 / HandParameters{}.stiffness) <= 0.5 * Coupling::resolution + 1e-12);
+}
+
+TEST_CASE("a delayed command is rendered so many cycles later") {
+  DeviceSetup setup = still(100);
+  setup.delay = 3;
+  HapticDevice late(setup), prompt(still(100));
+  std::vector<double> path[2];
+  for (std::int64_t k = 0; k < 50; ++k) {
+    const double force = k < 10 ? 5 : -2;
+    late.apply(push(k, force));
+    prompt.apply(push(k, force));
+    path[0].push_back(height(late));
+    path[1].push_back(height(prompt));
+  }
+  for (std::size_t k = 0; k + 3 < 50; ++k) CHECK(path[0][k + 3] == path[1][k]);
+  CHECK(path[0][2] == 0);
+  CHECK(path[1][30] != 0);
+}
+
+/// A spring in the loop, felt by a device that nobody holds: the energy that it makes, J.
+DeviceSummary on_a_spring(double stiffness, bool tank) {
+  constexpr double stretched = 2e-3;
+  DeviceSetup setup = still(4000);
+  setup.hand = hand_of(Holder::absent);
+  setup.motion = {
+      MotionScript({{0.1, {Double3{0, 0, stretched}, Double3{}}, {}, {}}, {10, {Double3{}}, {}, {}}}, 10.1)};
+  setup.tank = {.enabled = tank, .most_damping = 25};
+  HapticDevice device(setup);
+  for (std::int64_t k = 0; k < 4000; ++k) {
+    LoopCommand command = push(k, -stiffness * height(device));
+    command.stored = 0.5 * stiffness * height(device) * height(device);
+    device.apply(command);
+  }
+  return device.summary();
+}
+
+TEST_CASE("a spring that is too stiff for its rate makes energy, which a tank brakes; a softer one is left alone") {
+  const double bound = passive_stiffness({1e-3, 0, HandParameters::device_damping});
+  // what is in the spring at the start comes out, and what the hold makes, which the device's damping takes
+  const double begun = 0.5 * 0.5 * bound * 2e-3 * 2e-3;
+  const DeviceSummary soft = on_a_spring(0.5 * bound, false);
+  CHECK(soft.delivered_most <= 3 * begun);
+  const DeviceSummary wild = on_a_spring(3 * bound, false), tamed = on_a_spring(3 * bound, true);
+  CHECK(wild.delivered_most > 1);
+  CHECK(tamed.delivered_most < 1.05 * 6 * begun);
+  CHECK(tamed.drained > 0);
 }
 
 TEST_CASE("the scales of the coupling apply to motion and force") {

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -41,12 +44,12 @@ class Track {
   void wait(double duration) { move(duration, {}); }
 
   void press_in(const TouchPlace& place) {
-    move(0.8, {place.centre + (0.5 * depth_) * place.outward});
+    move(0.8, {over(place)});
     move(1.0, {pressed(place)});
   }
 
   void lift(const TouchPlace& place) {
-    move(1.0, {place.centre + (0.5 * depth_) * place.outward});
+    move(1.0, {over(place)});
     move(0.8, {above(place)});
   }
 
@@ -185,6 +188,62 @@ void pinch(Track& first, Track& second, const Pair& places) {
   }
 }
 
+/// Whole numbers, the same everywhere (Marsaglia's xorshift).
+class Dice {
+ public:
+  /// 0 .. sides - 1.
+  std::size_t roll(std::size_t sides) {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    state_ ^= state_ << 17;
+    return static_cast<std::size_t>((state_ >> 11) % sides);
+  }
+  /// From `low` to `high` in steps of a sixteenth.
+  double between(double low, double high) { return low + (high - low) * static_cast<double>(roll(17)) / 16; }
+
+ private:
+  std::uint64_t state_ = 0x9e3779b97f4a7c15;
+};
+
+// presses at a place, drags aside and lets go
+void touch_somewhere(Track& track, const TouchPlace& place, Dice& dice) {
+  const Double3 tangent = perpendicular(place.outward), other = cross(place.outward, tangent);
+  const auto beside = [&](double depth) {
+    const double most = 1.5 * track.depth();
+    return place.centre - (depth * track.depth()) * place.outward + dice.between(-most, most) * tangent +
+           dice.between(-most, most) * other;
+  };
+  const double pace = dice.between(0.1, 0.8);
+  track.travel(track.above(place));
+  track.move(0.3, {track.over(place)});
+  track.move(pace, {beside(dice.between(0.2, 1))});
+  for (std::size_t times = dice.roll(4); times > 0; --times) {
+    const Double3 turned = dice.between(-0.2, 0.2) * place.outward;
+    track.turn(dice.between(0.1, 0.8), {beside(dice.between(0.2, 1))}, turned);
+    if (dice.roll(3) == 0) track.wait(0.3);
+  }
+  track.turn(pace, {track.over(place)}, {});
+  track.move(0.3, {track.above(place)});
+}
+
+// everything, for so many seconds
+void at_random(Track& first, Track* second, const std::vector<TouchPlace>& places, const std::optional<Pair>& pair,
+               double seconds) {
+  Dice dice;
+  while (first.elapsed() < seconds) {
+    const bool holds = second != nullptr && pair && dice.roll(6) == 0;
+    if (holds) {
+      const double later = std::max(first.elapsed(), second->elapsed());
+      first.wait(later - first.elapsed());
+      second->wait(later - second->elapsed());
+      (dice.roll(2) == 0 ? pinch : grasp)(first, *second, *pair);
+      continue;
+    }
+    Track& track = second != nullptr && second->elapsed() < first.elapsed() ? *second : first;
+    touch_somewhere(track, places[dice.roll(places.size())], dice);
+  }
+}
+
 /// Probes beyond the two of the scripts, each with a place of its own where there are as many.
 void press_beside(std::vector<Track>& tracks, const BodySurface& surface, const ProbeSize& probe, std::size_t probes) {
   constexpr int times = 3;
@@ -217,9 +276,10 @@ ProbeSize probe_size(const BodySurface& surface) {
 std::vector<MotionScript> make_script(Script script, const BodySurface& surface, const ProbeSize& probe, double seconds,
                                       std::size_t probes) {
   const std::vector<TouchPlace> places = touch_places(surface, probe.radius, 3);
-  const bool wants_pair = script == Script::grasp || script == Script::pinch || script == Script::all;
+  const bool wants_pair =
+      script == Script::random || script == Script::grasp || script == Script::pinch || script == Script::all;
   const auto pair = wants_pair && probes > 1 ? opposing_places(surface, probe.radius) : std::nullopt;
-  if (wants_pair && script != Script::all && !pair) {
+  if (wants_pair && script != Script::all && script != Script::random && !pair) {
     throw std::runtime_error("--script " + std::string(script_names[static_cast<std::size_t>(script)]) +
                              ": there are no two probes, or no two places that they could hold; use press");
   }
@@ -251,11 +311,15 @@ std::vector<MotionScript> make_script(Script script, const BodySurface& surface,
     case Script::tilt:
       press(first, {places.front()});
       break;
+    case Script::random:
     case Script::grasp:
     case Script::pinch:
       break;
   }
-  if (pair) {
+  if (script == Script::random) {
+    if (pair) tracks.emplace_back(surface, probe).begin_above((*pair)[1]);
+    at_random(tracks[0], pair ? &tracks[1] : nullptr, touch_places(surface, probe.radius, 12), pair, seconds);
+  } else if (pair) {
     tracks.emplace_back(surface, probe).begin_above((*pair)[1]);
     (script == Script::pinch ? pinch : grasp)(tracks[0], tracks[1], *pair);
   }

@@ -73,6 +73,29 @@ TEST_CASE("every script goes as deep as it should, moves without jumps, and begi
   }
 }
 
+TEST_CASE("the random script is as long as asked for, touches in many places with both hands, and is the same again") {
+  const BodySurface surface = sphere(-0.2);
+  const ProbeSize probe = probe_size(surface);
+  constexpr double long_run = 120;
+  const auto motions = make_script(Script::random, surface, probe, long_run);
+  const auto again = make_script(Script::random, surface, probe, long_run);
+  REQUIRE(motions.size() == 2);
+  for (std::size_t p = 0; p < 2; ++p) {
+    int touches = 0;
+    bool was_in = false;
+    for (double time = 0; time < long_run; time += 0.01) {
+      const Double3 centre = motions[p].target(time).centre;
+      const double depth = penetration(surface, probe, centre);
+      CHECK(depth <= 1.5 * probe.depth);
+      touches += depth > 0 && !was_in ? 1 : 0;
+      was_in = depth > 0;
+      CHECK(norm(centre - motions[p].target(time + 0.001).centre) < 0.01);
+      CHECK(centre == again[p].target(time).centre);
+    }
+    CHECK(touches > 10);
+  }
+}
+
 TEST_CASE("grasping comes from opposite sides") {
   const BodySurface surface = sphere(-0.2);
   const ProbeSize probe = probe_size(surface);

@@ -30,6 +30,7 @@ struct LoopCommand {
   std::int32_t level = 0;        ///< constraint level of the answer
   std::int32_t field_level = 0;  ///< finest level of detail in the field
   std::int32_t status = 0;       ///< greenloop::Status
+  double stored = 0;             ///< J, what the contacts strain the body with
   std::int64_t digest = 0;       ///< FNV-1a 64 over all responses up to this one, as two's complement
   std::uint32_t num_tools = 0;   ///< 0..max_tools
   ToolForce tools[max_tools] = {};

@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/output/json_text.hpp"
@@ -14,12 +16,14 @@
 #include "formats/output/streams.hpp"
 #include "sim_hw/session/interruption.hpp"
 #include "sim_hw/session/session.hpp"
+#include "sim_hw/session/stability.hpp"
 #include "sim_hw/session/verdict.hpp"
 
 namespace {
 
 struct Outputs {
-  std::string trace, snapshot;
+  std::string trace, snapshot, stability;
+  std::size_t stability_steps = 8;
   bool json = false, judge_time = false;
 };
 
@@ -37,9 +41,14 @@ void read_delay(const std::string& text, greenloop::InjectedFaults& faults) {
   }
 }
 
-greenloop::Script read_script(const std::string& name) {
-  const auto* found = std::find(std::begin(greenloop::script_names), std::end(greenloop::script_names), name);
-  return static_cast<greenloop::Script>(found - std::begin(greenloop::script_names));
+template <std::size_t count>
+std::size_t place_of(const std::string& name, const std::string_view (&names)[count]) {
+  return static_cast<std::size_t>(std::find(std::begin(names), std::end(names), name) - std::begin(names));
+}
+
+template <std::size_t count>
+std::vector<std::string> all_of(const std::string_view (&names)[count]) {
+  return {std::begin(names), std::end(names)};
 }
 
 greenloop::Transport read_transport(const std::string& name) {
@@ -56,10 +65,12 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
   app.add_option("--share", options.share, "Of a period that a cycle may take (default: the model's, or all of it)")
       ->check(CLI::Range(0.001, 1.0));
   app.add_option_function<std::string>(
-         "--script", [&options](const std::string& name) { options.script = read_script(name); },
+         "--script",
+         [&options](const std::string& name) {
+           options.script = static_cast<greenloop::Script>(place_of(name, greenloop::script_names));
+         },
          "What the hands do (default: all)")
-      ->check(CLI::IsMember(
-          std::vector<std::string>(std::begin(greenloop::script_names), std::end(greenloop::script_names))));
+      ->check(CLI::IsMember(all_of(greenloop::script_names)));
   app.add_option("--friction", options.friction, "Coulomb's coefficient between tools and body")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
@@ -70,6 +81,29 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
   app.add_option("--starve", options.starve, "Multiplies the budget")
       ->capture_default_str()
       ->check(CLI::Range(1e-9, 1.0));
+  app.add_option_function<std::string>(
+         "--passive",
+         [&options](const std::string& name) {
+           options.passive = static_cast<greenloop::Passive>(place_of(name, greenloop::passive_names));
+         },
+         "tank: what would make energy is braked; coupling: a spring between hands and tools; none (default)")
+      ->check(CLI::IsMember(all_of(greenloop::passive_names)));
+  app.add_option_function<std::string>(
+         "--hand",
+         [&options](const std::string& name) {
+           options.hand = static_cast<greenloop::Holder>(place_of(name, greenloop::holder_names));
+         },
+         "Who holds the handles (default: person)")
+      ->check(CLI::IsMember(all_of(greenloop::holder_names)));
+  app.add_option("--gain", options.gain, "Of the force on the handles")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1e3));
+  app.add_option("--delay", options.delay, "Cycles from a state to the rendering of its command, beyond its own")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000));
+  app.add_option("--fast-rate", options.fast_rate,
+                 "Of a loop that evaluates the body's local model between steps, a multiple of the rate (Hz)")
+      ->check(CLI::Range(greenloop::least_rate, greenloop::most_rate));
   app.add_option_function<std::string>(
          "--transport", [&options](const std::string& name) { options.transport = read_transport(name); },
          "udpm: two processes in a network namespace; memq: one; auto (default): udpm where permitted")
@@ -96,6 +130,13 @@ void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs
   declare_faults(app, options);
   app.add_option("--trace", outputs.trace, "Writes one line per cycle to this CSV file");
   app.add_option("--snapshot", outputs.snapshot, "Writes the field of the largest force to this CSV file");
+  app.add_option(
+      "--stability", outputs.stability,
+      "Runs no script: writes to this CSV file at which rates, delays and stiffnesses a pressed ball comes to "
+      "rest, and the analytic bound");
+  app.add_option("--stability-steps", outputs.stability_steps, "Stiffnesses for each rate and delay")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 100));
   app.add_flag("--judge-time", outputs.judge_time,
                "Fail if a cycle takes longer than its share of the period, or if this machine cannot tell: it takes a "
                "program that is pinned to one isolated processor");
@@ -105,18 +146,43 @@ void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs
 void require_outputs(const greenloop::SessionOptions& options, const Outputs& outputs) {
   greenloop::CommandFiles files{.inputs = {{"the model", options.model}}, .outputs = {}};
   if (!outputs.trace.empty()) files.outputs.push_back({"the trace", outputs.trace});
+  if (!outputs.stability.empty()) files.outputs.push_back({"the stability map", outputs.stability});
   if (!outputs.snapshot.empty()) files.outputs.push_back({"the snapshot", outputs.snapshot});
   greenloop::require_writable(files);
 }
 
-int run(const greenloop::SessionOptions& options, const Outputs& outputs) {
+int map_stability(const greenloop::SessionOptions& options, const Outputs& outputs) {
+  const auto cells = greenloop::stability_map(options, outputs.stability_steps);
+  greenloop::write_stability(outputs.stability, cells);
+  std::size_t below = 0, above = 0, stable_below = 0, stable_above = 0;
+  for (const greenloop::StabilityCell& cell : cells) {
+    const bool passive = cell.stiffness <= cell.bound;
+    ++(passive ? below : above);
+    if (cell.stable()) ++(passive ? stable_below : stable_above);
+  }
+  if (outputs.json) {
+    const nlohmann::ordered_json json{{"stability", outputs.stability}, {"cells", cells.size()},
+                                      {"within_bound", below},          {"stable_within_bound", stable_below},
+                                      {"beyond_bound", above},          {"stable_beyond_bound", stable_above}};
+    greenloop::print_result(greenloop::json_text(json) + "\n");
+  } else {
+    greenloop::print_result(outputs.stability + ": of " + std::to_string(below) + " loops within the bound " +
+                            std::to_string(stable_below) + " come to rest, of " + std::to_string(above) +
+                            " beyond it " + std::to_string(stable_above) + "\n");
+  }
+  return stable_below == below ? 0 : 1;
+}
+
+int run(greenloop::SessionOptions options, const Outputs& outputs) {
   require_outputs(options, outputs);
+  options.keep_records = !outputs.trace.empty();
+  if (!outputs.stability.empty()) return map_stability(options, outputs);
   greenloop::await_interruption();
   const greenloop::SessionResult result = greenloop::run_session(options);
   const greenloop::Verdict verdict = greenloop::judge(result, outputs.judge_time);
   if (!outputs.trace.empty()) {
     const std::uint32_t columns = std::max(result.tools, 2U);  // a second probe that is not there reads zero
-    result.log.write_trace(outputs.trace, columns, 1 / result.rate, result.budget);
+    result.log.write_trace(outputs.trace, columns, result.device_period);
   }
   if (!outputs.snapshot.empty()) result.log.write_snapshot(outputs.snapshot);
   if (outputs.json) {

@@ -275,6 +275,84 @@ TEST_CASE("friction holds what slides, and without it nothing is dissipated") {
   CHECK(rough["energy"]["dissipated"] > 1e-4);
 }
 
+TEST_CASE("a tank and a coupling are felt where they are needed, in both transports alike") {
+  const Words wild{"--transport", "memq", "--hand", "absent", "--gain", "40", "--delay", "4", "--script", "press"};
+  const auto with = [&](const std::string& passive) {
+    Words words = wild;
+    words.insert(words.end(), {"--passive", passive});
+    return run_json(words);
+  };
+  const auto none = with("none"), tank = with("tank"), coupling = with("coupling");
+  CHECK(none["passive"] == "none");
+  CHECK(none["hand"] == "absent");
+  CHECK(none["delay"] == 4);
+  CHECK(none["gain"] == 40.0);
+  CHECK(none["energy"]["drained"] == 0.0);
+  CHECK(none["energy"]["delivered_most"] > 0);
+  CHECK(tank["energy"]["drained"] > 0);
+  CHECK(tank["energy"]["delivered_most"] < 0.2 * none["energy"]["delivered_most"].get<double>());
+  CHECK(coupling["energy"]["delivered_most"] < 0.5 * none["energy"]["delivered_most"].get<double>());
+  Words words = wild;
+  words.insert(words.end(), {"--passive", "tank"});
+  words[1] = "auto";
+  CHECK(run_json(words)["digest"] == tank["digest"]);
+  const auto calm = run_json({"--transport", "memq", "--passive", "tank"});
+  CHECK(calm["energy"]["delivered_most"] <= 1e-4);
+  CHECK(calm["misses"] == 0);
+}
+
+TEST_CASE("a faster loop between steps feels what stepping as fast would, better than a force that is held") {
+  const auto json = run_json({"--transport", "memq", "--fast-rate", "4000", "--script", "press"});
+  const auto& fast = json["fast"];
+  CHECK(json["cycles"] == 4000);
+  CHECK(json["rate"] == 1000.0);
+  CHECK(json["misses"] == 0);
+  CHECK(json["allocations"] == 0);
+  CHECK(fast["rate"] == 4000.0);
+  CHECK(fast["cycles"] > 200);
+  CHECK(fast["in_range"] > 0);
+  CHECK(fast["local_work"] > 0);
+  // few contacts, whose slips of a whole period differ from those of a quarter
+  CHECK(fast["error_rms"] < fast["held_error_rms"]);
+  CHECK(fast["error_rms"] < fast["step_error_rms"].get<double>() + 0.01);
+  const ProgramRun odd = run_text({"--fast-rate", "2500"});
+  CHECK(odd.exit_status == 1);
+  CHECK(contains(odd.errors, "no multiple"));
+  CHECK(run_text({"--fast-rate", "2000", "--tools", "4"}).exit_status == 1);
+}
+
+TEST_CASE("at random, starved and with lost messages, no energy comes out of nothing") {
+  const ProgramRun run = run_program(GREENLOOP_LOOP, {workspace().model(), "--transport", "memq", "--script", "random",
+                                                      "--seconds", "8", "--passive", "tank", "--json"});
+  REQUIRE(run.exit_status == 0);
+  const auto json = nlohmann::json::parse(run.output);
+  CHECK(json["late_injected"] == 8000 / 97);
+  CHECK(json["misses"] == 0);
+  CHECK(json["contact_cycles"] > 1000);
+  CHECK(json["energy"]["handled"] > 0);
+  CHECK(json["energy"]["delivered_most"] <= 1e-4);
+}
+
+TEST_CASE("a stability map has loops on both sides of the bound, and those within it come to rest") {
+  const std::string map = workspace().file("stability.csv");
+  const ProgramRun run = run_text({"--stability", map, "--stability-steps", "2", "--hand", "absent", "--json"});
+  INFO(run.output << run.errors);
+  REQUIRE(run.exit_status == 0);
+  const auto json = nlohmann::json::parse(run.output);
+  CHECK(json["cells"] == 30);
+  CHECK(json["within_bound"] == 15);
+  CHECK(json["stable_within_bound"] == 15);
+  CHECK(json["beyond_bound"] == 15);
+  CHECK(json["stable_beyond_bound"] <= 3);
+  std::ifstream lines(map);
+  std::string line;
+  std::getline(lines, line);
+  CHECK(line == "rate,delay,stiffness,bound,early,late,largest,stable");
+  int count = 0;
+  while (std::getline(lines, line)) ++count;
+  CHECK(count == 30);
+}
+
 TEST_CASE("a field now and then costs less and changes the digest") {
   const auto always = run_json({"--transport", "memq"});
   const auto seldom = run_json({"--transport", "memq", "--field", "16"});

@@ -8,6 +8,7 @@
 
 #include "runtime/contact_body.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"
+#include "sim_hw/session/agreement.hpp"
 #include "sim_hw/session/device_process.hpp"
 #include "sim_hw/session/hosted_contact_body.hpp"
 #include "sim_hw/session/interruption.hpp"
@@ -18,52 +19,6 @@
 
 namespace greenloop {
 namespace {
-
-/// Units; 0: none is asked for.
-std::uint64_t budget_of(const SessionOptions& options, const Model& model) {
-  const Elastostatic::Intent intent = Elastostatic::intended(model);
-  const std::uint64_t whole = options.budget != 0 ? options.budget : intent.budget.work;
-  return static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve));
-}
-
-/// Room for the contacts of the scene, and, if there is budget for them, for more: what lies under a tool without being
-/// pushed takes some, too.
-ContactBody::Limits limits_of(const Model& model, std::uint32_t contacts) {
-  ContactBody::Limits limits;
-  limits.elastostatic = Elastostatic::intended(model).limits;
-  limits.elastostatic.max_contacts = contacts;
-  limits.elastostatic.iterations = 64;
-  limits.elastostatic.model_loads = true;
-  limits.max_tools = max_tools;
-  return limits;
-}
-
-struct Agreement {
-  ContactBody::Limits limits;
-  Budget budget;
-  std::uint64_t least_work = 0;
-};
-
-Agreement agree(const SessionOptions& options, const Model& model) {
-  constexpr std::uint32_t usual = 64;
-  const std::uint32_t intended = std::min(Elastostatic::intended(model).limits.max_contacts, LoopCommand::max_contacts);
-  Agreement agreement;
-  for (std::uint32_t contacts = std::max(intended, usual);; contacts = std::max(contacts / 2, intended)) {
-    agreement.limits = limits_of(model, contacts);
-    const auto need = Elastostatic::required(model, agreement.limits.elastostatic);
-    agreement.least_work = need.least_work;
-    const std::uint64_t asked = budget_of(options, model);
-    agreement.budget.work =
-        asked != 0 ? asked
-                   : static_cast<std::uint64_t>(
-                         std::floor(static_cast<double>(need.worst_work[model.level_count() - 1]) * options.starve));
-    if (agreement.budget.work >= need.least_work) return agreement;
-    if (contacts == intended) break;
-  }
-  throw std::runtime_error("budget: " + std::to_string(agreement.budget.work) +
-                           " units per cycle cannot hold even the coarsest answer; the least budget of this model is " +
-                           std::to_string(agreement.least_work));
-}
 
 double rate_of(const SessionOptions& options, const Elastostatic::Intent& intent) {
   const double rate = options.rate.value_or(intent.rate);
@@ -86,10 +41,23 @@ Double3 gravity_of(const BodySurface& surface) {
   return y >= x ? Double3{0, held.y > 0 ? earth : -earth, 0} : Double3{held.x > 0 ? earth : -earth, 0, 0};
 }
 
+/// Cycles of the device for each step of the body.
+std::int64_t steps_between(const SessionOptions& options, double rate) {
+  const double ratio = options.fast_rate.value_or(rate) / rate;
+  const auto whole = static_cast<std::int64_t>(std::llround(ratio));
+  if (whole < 1 || std::abs(ratio - static_cast<double>(whole)) > 1e-9) {
+    throw std::runtime_error("--fast-rate: " + std::to_string(*options.fast_rate) + " Hz is no multiple of the " +
+                             std::to_string(rate) + " Hz of the loop");
+  }
+  return whole;
+}
+
+/// rate: of the device.
 DeviceSetup device_setup(const SessionOptions& options, double rate, const BodySurface& surface,
                          const layout::Info& info) {
   constexpr double round_seconds = 10;
-  const double rounds = std::max(1.0, std::floor(options.seconds / round_seconds + 0.5));
+  const bool random = options.script == Script::random;
+  const double rounds = random ? 1 : std::max(1.0, std::floor(options.seconds / round_seconds + 0.5));
   const ProbeSize probe = probe_size(surface);
   DeviceSetup setup;
   const Double3 down = gravity_of(surface);
@@ -97,12 +65,27 @@ DeviceSetup device_setup(const SessionOptions& options, double rate, const BodyS
                    options.seconds / rounds};
   setup.motion = make_script(options.script, surface, probe, options.seconds / rounds, options.tools);
   setup.coupling = coupling(info, surface, probe, setup.hand);
+  setup.coupling.force_scale *= options.gain;
+  setup.hand = hand_of(options.hand);
+  setup.delay = options.delay;
+  setup.tank = {.enabled = options.passive == Passive::tank,
+                .period = 1 / rate,
+                .most_damping = 0.5 * hand_of(Holder::absent).mass * rate};
   setup.origin = surface.centre;
   setup.period = 1 / rate;
   setup.cycles = std::llround(options.seconds * rate);
   setup.faults = options.faults;
-  if (options.script == Script::lose_messages && setup.faults.loss_every == 0) setup.faults.loss_every = 10;
+  const std::int64_t lost = options.script == Script::lose_messages ? 10 : random ? 97 : 0;
+  if (setup.faults.loss_every == 0) setup.faults.loss_every = lost;
   return setup;
+}
+
+/// m/N of the body, of the softest virtual coupling that any body needs: at the handle as stiff as the loop may be.
+double coupling_compliance(const SessionOptions& options, const DeviceSetup& setup) {
+  if (options.passive != Passive::coupling) return 0;
+  const double delay = static_cast<double>(setup.delay) * setup.period;
+  const double limit = passive_stiffness({setup.period, delay, HandParameters::device_damping});
+  return setup.coupling.stiffness_scale() / limit;
 }
 
 /// Decides before the run; `transport_reason` says why it is not two processes.
@@ -179,16 +162,30 @@ SessionResult run_session(const SessionOptions& options) {
   result.least_work = agreement.least_work;
   result.budget = agreement.budget;
   const BodySurface surface = body_surface(model);
-  HapticDevice device(device_setup(options, result.rate, surface, *model.view().info));
+  const std::int64_t fast = steps_between(options, result.rate);
+  const double device_rate = static_cast<double>(fast) * result.rate;
+  const DeviceSetup setup = device_setup(options, device_rate, surface, *model.view().info);
+  HapticDevice device(setup);
   result.tools = device.state().num_tools;
-  result.cycles_asked = std::llround(options.seconds * result.rate);
-  result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count());
+  if (fast > 1 && result.tools > LocalModel::most_tools) {
+    throw std::runtime_error("--fast-rate: a local model has at most 3 tools; give --tools 3 or less");
+  }
+  result.device_period = setup.period;
+  result.cycles_asked = setup.cycles;
+  result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count(), options.keep_records);
 
   HostedContactBody body(model, agreement.limits);
+  std::optional<HostedContactBody> reference;
+  if (fast > 1) reference.emplace(model, agreement.limits);
+  const Budget tenth{std::max(result.budget.work / 10, agreement.least_work)};
   ControlLoop loop(body.body(), {.probe_radius = probe_size(surface).radius,
                                  .friction = options.friction,
+                                 .compliance = coupling_compliance(options, setup),
                                  .gravity = gravity,
                                  .budget = result.budget,
+                                 .starved = options.script == Script::random ? tenth : Budget{},
+                                 .fast = fast,
+                                 .reference = reference ? &reference->body() : nullptr,
                                  .field_every = options.field_every,
                                  .overrun_cycle = options.overrun_cycle});
   choose_transport(options, result);

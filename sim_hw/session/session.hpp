@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "sim_hw/control_loop/run_log.hpp"
 #include "sim_hw/device/haptic_device.hpp"
@@ -12,6 +13,11 @@
 namespace greenloop {
 
 enum class Transport { automatic, udpm, memq };
+
+/// How the loop is kept from making energy: docs/device_loop.md, "Passivity".
+enum class Passive { none, tank, coupling };
+
+inline constexpr std::string_view passive_names[] = {"none", "tank", "coupling"};
 
 inline constexpr double least_rate = 100, most_rate = 1e5;  // Hz; the hand's integration needs 100
 
@@ -26,16 +32,23 @@ struct SessionOptions {
   double friction = 0.3;     ///< Coulomb's coefficient of the tools, 0 or more
   std::uint64_t budget = 0;  ///< units per cycle; 0: the model's own, or else the worst case of its finest level
   double starve = 1;         ///< (0, 1], of the budget
+  Passive passive = Passive::none;
+  Holder hand = Holder::person;
+  double gain = 1;                  ///< > 0, of the force on the handles
+  std::int64_t delay = 0;           ///< 0..1000 cycles, from a state to the rendering of its command
+  std::optional<double> fast_rate;  ///< Hz, a multiple of the rate: of a loop between the body's steps
   Transport transport = Transport::automatic;
   std::int64_t field_every = 1;
   InjectedFaults faults;
   std::int64_t overrun_cycle = -1;
+  bool keep_records = false;  ///< of every cycle, for a trace
 };
 
 /// A run that came to its end, well or badly.
 struct SessionResult {
-  double rate = 0;   ///< Hz
-  double share = 1;  ///< of a period
+  double rate = 0;           ///< Hz
+  double device_period = 0;  ///< s, of a cycle of the device, which is the loop's unless there is a fast one
+  double share = 1;          ///< of a period
   std::int64_t cycles_asked = 0;
   Budget budget;
   std::uint64_t least_work = 0;

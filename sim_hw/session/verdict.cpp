@@ -9,26 +9,13 @@
 namespace greenloop {
 namespace {
 
-StepTime step_time(const std::vector<CycleRecord>& records) {
-  std::vector<double> time;
-  time.reserve(records.size());
-  for (const CycleRecord& record : records) time.push_back(record.cpu_us);
+StepTime step_time(std::vector<float> time) {
   if (time.empty()) return {};
   std::sort(time.begin(), time.end());
   const auto quantile = [&](double q) {
-    return time[static_cast<std::size_t>(q * static_cast<double>(time.size() - 1))];
+    return static_cast<double>(time[static_cast<std::size_t>(q * static_cast<double>(time.size() - 1))]);
   };
-  return {time.front(), quantile(0.5), quantile(0.99), time.back()};
-}
-
-double largest_force_step(const std::vector<CycleRecord>& records) {
-  double largest = 0;
-  for (std::size_t k = 1; k < records.size(); ++k) {
-    for (std::size_t p = 0; p < max_tools; ++p) {
-      largest = std::max(largest, norm(records[k].hand_force[p] - records[k - 1].hand_force[p]));
-    }
-  }
-  return largest;
+  return {quantile(0), quantile(0.5), quantile(0.99), quantile(1)};
 }
 
 nlohmann::ordered_json vector_json(const Double3& v) { return {v.x, v.y, v.z}; }
@@ -44,10 +31,24 @@ nlohmann::ordered_json tools_json(const CycleRecord& record, std::uint32_t tools
   return json;
 }
 
+// N: errors against stepping the body at the fast rate
+nlohmann::ordered_json fast_json(const FastLoop& fast, double rate) {
+  return {{"rate", rate},
+          {"cycles", fast.cycles},
+          {"in_range", fast.in_range},
+          {"error_rms", FastLoop::relative(fast.error_square, fast.square)},
+          {"held_error_rms", FastLoop::relative(fast.held_square, fast.square)},
+          {"step_error_rms", FastLoop::relative(fast.step_error_square, fast.step_square)},
+          {"error_max", fast.error_most},
+          {"held_error_max", fast.held_most},
+          {"force_max", fast.force_most},
+          {"local_work", fast.work_most}};
+}
+
 // bins of a microsecond up to the period: beyond it every time is late
 TimeHistogram histogram(const SessionResult& result) {
   TimeHistogram times(static_cast<std::size_t>(1e6 / result.rate) + 1);
-  for (const CycleRecord& record : result.log.records()) times.add(record.cpu_us);
+  for (const float us : result.log.cpu_us()) times.add(static_cast<double>(us));
   return times;
 }
 
@@ -67,24 +68,12 @@ std::string levels_text(const Verdict& verdict) {
 
 Verdict judge(const SessionResult& result, bool judge_time) {
   Verdict verdict;
-  verdict.cycles = static_cast<std::int64_t>(result.log.records().size());
-  for (const CycleRecord& record : result.log.records()) {
-    if (record.missed(result.budget)) {
-      if (verdict.misses++ == 0) verdict.first_miss = record.cycle;
-    }
-    verdict.worst_work = std::max(verdict.worst_work, record.report.work);
-    verdict.contact_cycles += record.contacts > 0;
-    verdict.contacts_max = std::max(verdict.contacts_max, record.contacts);
-    if (record.total_force() >= verdict.force_max) verdict.strongest = record;
-    verdict.force_max = std::max(verdict.force_max, record.total_force());
-    verdict.residual_max = std::max(verdict.residual_max, static_cast<double>(record.report.residual));
-    verdict.fall_throughs += record.fell_through;
-    verdict.worst_touching = std::max(verdict.worst_touching, record.report.touching_work);
-    ++verdict.levels_used[record.report.constraint_level];
+  static_cast<RunTally&>(verdict) = result.log.tally();
+  for (std::uint32_t level = 0; level < verdict.at_level.size(); ++level) {
+    if (verdict.at_level[level] > 0) verdict.levels_used[level] = verdict.at_level[level];
   }
-  verdict.force_step_max = largest_force_step(result.log.records());
-  if (verdict.cycles > 0) verdict.energy = result.log.records().back().energy;
-  verdict.step_us = step_time(result.log.records());
+  verdict.energy = verdict.last.energy;
+  verdict.step_us = step_time(result.log.cpu_us());
   verdict.time = judge_times(histogram(result), result.rate, result.share, judge_time);
   verdict.complete = verdict.cycles == result.cycles_asked && result.device.cycles == result.cycles_asked &&
                      result.device.digest == result.loop_digest && !result.device.stopped;
@@ -96,6 +85,7 @@ Verdict judge(const SessionResult& result, bool judge_time) {
 nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResult& result, const Verdict& verdict) {
   nlohmann::ordered_json levels = nlohmann::ordered_json::array();
   for (const auto& [level, cycles] : verdict.levels_used) levels.push_back({{"level", level}, {"cycles", cycles}});
+  const DeviceSummary& device = result.device;
   nlohmann::ordered_json json{
       {"passed", verdict.passed()},
       {"verdict", verdict.held ? "HELD" : "VIOLATED"},
@@ -124,7 +114,16 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
         {"stored", verdict.energy.stored},
         {"dissipated", verdict.energy.dissipated},
         {"lost", verdict.energy.lost},
-        {"generated", verdict.energy.generated}}},
+        {"generated", verdict.energy.generated},
+        {"handled", verdict.handled},
+        {"delivered", device.delivered},
+        {"delivered_most", device.delivered_most},
+        {"overdrawn", device.overdrawn},
+        {"drained", device.drained}}},
+      {"passive", passive_names[static_cast<std::size_t>(options.passive)]},
+      {"hand", holder_names[static_cast<std::size_t>(options.hand)]},
+      {"delay", options.delay},
+      {"gain", options.gain},
       {"residual_max", verdict.residual_max},
       {"force_step_max", verdict.force_step_max},
       {"fall_throughs", verdict.fall_throughs},
@@ -139,6 +138,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
       {"processes", result.processes},
       {"retransmits", result.device.retransmits},
   };
+  if (options.fast_rate) json["fast"] = fast_json(verdict.fast, *options.fast_rate);
   if (result.interruption != 0) json["interrupted_by"] = result.interruption;
   if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
   return json;
@@ -159,6 +159,17 @@ std::string to_text(const SessionOptions& options, const SessionResult& result, 
       options.friction, verdict.residual_max, verdict.force_step_max, verdict.fall_throughs);
   text += fmt::format("  energy     {:.3g} J in, {:.3g} J stored, {:.3g} J by friction, {:.2g} J generated\n",
                       verdict.energy.in, verdict.energy.stored, verdict.energy.dissipated, verdict.energy.generated);
+  text += fmt::format(
+      "  hand       {}, passive {}: {:.2g} J out of nothing at the handles, {:.2g} J overdrawn, {:.2g} J braked\n",
+      holder_names[static_cast<std::size_t>(options.hand)], passive_names[static_cast<std::size_t>(options.passive)],
+      result.device.delivered_most, result.device.overdrawn, result.device.drained);
+  if (options.fast_rate) {
+    const FastLoop& fast = verdict.fast;
+    text += fmt::format("  fast       {} Hz, {} of {} cycles in range, off by {:.2g} % (held: {:.2g} %) of the force\n",
+                        *options.fast_rate, fast.in_range, fast.cycles,
+                        100 * FastLoop::relative(fast.error_square, fast.square),
+                        100 * FastLoop::relative(fast.held_square, fast.square));
+  }
   text += fmt::format("  work       at most {} of {} units per cycle ({:.1f} %); the least budget is {}\n",
                       verdict.worst_work, result.budget.work,
                       100 * static_cast<double>(verdict.worst_work) / static_cast<double>(result.budget.work),

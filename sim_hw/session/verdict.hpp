@@ -16,19 +16,7 @@ struct StepTime {
 };
 
 /// What a run showed.
-struct Verdict {
-  std::int64_t cycles = 0;
-  std::int64_t misses = 0;       ///< cycles that spent more than their budget or had to hold the last response
-  std::int64_t first_miss = -1;  ///< its cycle, -1: none
-  std::uint64_t worst_work = 0;  ///< units
-  std::int64_t contact_cycles = 0;
-  std::uint32_t contacts_max = 0;
-  double force_max = 0;                               ///< N
-  CycleRecord strongest;                              ///< the cycle in which it was
-  double force_step_max = 0;                          ///< N, of a probe's force from a cycle to the next
-  double residual_max = 0;                            ///< of the contact laws
-  std::int64_t fall_throughs = 0;                     ///< probes and cycles behind the surface without a force
-  std::uint64_t worst_touching = 0;                   ///< units, of finding what touches
+struct Verdict : RunTally {
   ContactBody::Energy energy;                         ///< J, at the end
   std::map<std::uint32_t, std::int64_t> levels_used;  ///< constraint level to cycles, all cycles
   StepTime step_us;

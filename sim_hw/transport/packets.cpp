@@ -33,6 +33,7 @@ messages::loop_command to_packet(const LoopCommand& command) {
   packet.level = command.level;
   packet.field_level = command.field_level;
   packet.status = command.status;
+  packet.stored = command.stored;
   packet.digest = command.digest;
   packet.num_tools = static_cast<std::int32_t>(command.num_tools);
   packet.tools.resize(command.num_tools);
@@ -72,6 +73,7 @@ std::optional<LoopCommand> from_packet(const messages::loop_command& packet) {
                       .level = packet.level,
                       .field_level = packet.field_level,
                       .status = packet.status,
+                      .stored = packet.stored,
                       .digest = packet.digest};
   command.num_tools = static_cast<std::uint32_t>(packet.num_tools);
   for (std::uint32_t t = 0; t < command.num_tools; ++t) {

@@ -214,6 +214,21 @@ void Factorization::solve(const Eigen::SparseMatrix<double>& right_hand_sides, E
   solver_->run(kSolve);
 }
 
+void Factorization::solve(Eigen::MatrixXd& sides) {
+  auto& mumps = solver_->mumps;
+  if (sides.rows() != mumps.n) {
+    throw std::invalid_argument("factorisation: right-hand sides of " + std::to_string(sides.rows()) +
+                                " rows for a matrix of " + std::to_string(mumps.n));
+  }
+  mumps.nrhs = static_cast<MUMPS_INT>(sides.cols());
+  mumps.lrhs = mumps.n;
+  mumps.rhs = sides.data();
+  constexpr int kDense = 0;
+  solver_->icntl(20) = kDense;
+  solver_->icntl(27) = mumps.nrhs;
+  solver_->run(kSolve);
+}
+
 std::int64_t Factorization::factor_entries() const {
   const auto entries = solver_->mumps.infog[8];
   return entries >= 0 ? entries : -1'000'000LL * entries;

@@ -23,6 +23,9 @@ class Factorization {
   /// Work: 4 factor_entries() per column; blocks of some hundred columns run several times faster than single ones.
   void solve(const Eigen::SparseMatrix<double>& right_hand_sides, Eigen::MatrixXd& solutions);
 
+  /// Replaces dense right-hand sides (N x k) by their solutions. Same work.
+  void solve(Eigen::MatrixXd& sides);
+
   [[nodiscard]] std::int64_t factor_entries() const;
   [[nodiscard]] double factor_operations() const;  ///< floating point operations of the factorisation
 

@@ -12,7 +12,9 @@
 #include "recorded_equilibrated.h"
 #include "recorded_lifted_butterfly.h"
 #include "recorded_model.h"
+#include "recorded_motion.h"
 #include "rt_tests/harness/elastostatic_driver.hpp"
+#include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/recorded_run.hpp"
 #include "rt_tests/harness/recorded_script.hpp"
 #include "rt_tests/harness/touching_run.hpp"
@@ -113,6 +115,26 @@ int compare_touching(bool flip) {
   return run.digest == greenloop::touching_digest ? 0 : 4;
 }
 
+float state[2][8];
+greenloop::Vec3 moved[2][91];
+
+// the same of impulses on the recorded motions
+int compare_impulses(bool flip) {
+  const auto opened = greenloop::Model::open(std::as_bytes(std::span(recorded_motion)));
+  if (!opened) {
+    return 1;
+  }
+  const auto run = greenloop::run_impulse_script(opened.model, {}, arena, {state[0], state[1], moved[0], moved[1]},
+                                                 greenloop::impulse_cycles, 1, flip);
+  std::printf("%s, impulses: %" PRIu64 " followed, arena %zu bytes\ndigest %016" PRIx64 ", expected %016" PRIx64 "\n",
+              this_build, run.entered, run.memory_bytes, run.digest, greenloop::impulse_digest);
+  if (run.error != nullptr) {
+    std::printf("%s\n", run.error);
+    return 1;
+  }
+  return run.digest == greenloop::impulse_digest ? 0 : 4;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -130,6 +152,8 @@ int main(int argc, char** argv) {
     const int of_model = compare(of, flip && &of == std::end(recorded) - 1);
     status = of_model == 0 ? status : of_model;
   }
-  const int touching = compare_touching(flip);
-  return touching == 0 ? status : touching;
+  for (const int of_run : {compare_touching(flip), compare_impulses(flip)}) {
+    status = of_run == 0 ? status : of_run;
+  }
+  return status;
 }

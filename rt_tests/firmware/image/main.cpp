@@ -3,8 +3,8 @@
 // compares the instructions of a step with the bar, "--ready" holds eight contacts on a larger model that is read in
 // place. "--steps" prints the instructions of every step of the recorded script with counting_prices on each model,
 // what greenloop-calibrate fits this processor's prices to; "--priced" compares work at these prices with instructions,
-// with "--more" of three scripts a model. "--flip-bit" and "--slow" are their negative controls. Exit status: 0, or
-// which check failed.
+// with "--more" of three scripts a model. "--impulses" plays motions. "--flip-bit" and "--slow" are their negative
+// controls. Exit status: 0, or which check failed.
 #include <algorithm>
 
 #include "body_model.h"
@@ -12,15 +12,19 @@
 #include "recorded_butterfly.h"
 #include "recorded_equilibrated.h"
 #include "recorded_model.h"
+#include "recorded_motion.h"
 #include "rt_tests/firmware/image/counted_script.hpp"
 #include "rt_tests/firmware/image/image_driver.hpp"
 #include "rt_tests/firmware/image/instruction_clock.hpp"
+#include "rt_tests/firmware/image/moving.hpp"
 #include "rt_tests/firmware/image/semihosting.hpp"
 #include "rt_tests/firmware/image/stack.hpp"
 #include "rt_tests/firmware/image/timed_loop.hpp"
+#include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/price_table.hpp"
 #include "rt_tests/harness/recorded_run.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
+#include "shown_motion.h"
 
 extern "C" const std::byte flash_used[], ram_used[];  // their addresses are the numbers of bytes
 
@@ -255,6 +259,45 @@ int compare_priced(std::uint64_t seeds) {
   return status;
 }
 
+constexpr std::uint32_t bar_of_frames = 6'600'000;  // a period of 60 Hz at 400 MHz
+
+// the recorded motions' digest, then what steps of larger ones take, whose displacements are 60 frames a second
+int run_impulses(bool flip, bool slow) {
+  const auto opened = Model::open(std::as_bytes(std::span(recorded_motion)));
+  if (!opened) {
+    return does_not_run;
+  }
+  constexpr std::size_t modes = 8, vertices = 91;
+  const std::span<float> all(field);
+  const std::span<float> moved = all.subspan(2 * modes, 3 * vertices);
+  const ImpulseRun run = run_impulse_script(opened.model, {}, arena,
+                                            {all.first(modes), all.subspan(modes, modes), as_vec3(moved),
+                                             as_vec3(all.subspan(2 * modes + 3 * vertices, 3 * vertices))},
+                                            impulse_cycles, 1, flip);
+  print("digest of impulses ");
+  print_hexadecimal(run.digest);
+  print("\n");
+  if (run.error != nullptr) {
+    print(run.error);
+    return does_not_run;
+  }
+  if (run.digest != impulse_digest) {
+    return digest_differs;
+  }
+  const MovingTiming timing = time_moving(std::as_bytes(std::span(shown_motion)), arena, field, slow);
+  print_line("modes", timing.modes);
+  print_line("vertices", timing.vertices);
+  print_line("model bytes", shown_motion_size);
+  print_line("instructions of a step without displacements, worst", timing.state_worst);
+  print_line("units declared for it", timing.state_work);
+  print_line("instructions with all displacements, worst", timing.frame_worst);
+  print_line("units declared for them", timing.frame_work);
+  if (!timing.ran) {
+    return does_not_run;
+  }
+  return timing.state_worst <= bar && timing.frame_worst <= bar_of_frames ? passed : over_the_bar;
+}
+
 }  // namespace
 }  // namespace greenloop::firmware
 
@@ -276,6 +319,8 @@ int main() {
     status = run_ready(command_line_contains("--slow"));
   } else if (command_line_contains("--priced")) {
     status = compare_priced(command_line_contains("--more") ? 3 : 1);
+  } else if (command_line_contains("--impulses")) {
+    status = run_impulses(command_line_contains("--flip-bit"), command_line_contains("--slow"));
   }
   print_sizes();
   return status;

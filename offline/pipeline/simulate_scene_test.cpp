@@ -1,0 +1,91 @@
+#include "offline/pipeline/simulate_scene.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "formats/mesh/surface_io.hpp"
+#include "formats/testing/temporary_folder.hpp"
+#include "formats/trajectory/trajectory_file.hpp"
+#include "offline/simulate/examples/animal.hpp"
+
+namespace greenloop::offline {
+namespace {
+
+const std::string scene_text = R"(
+[surface]
+file = "animal.off"
+size = "16 cm"
+[remesh]
+base_vertices = 130
+levels = 1
+[material]
+young = "25 kPa"
+poisson = 0.4
+density = "1100 kg/m^3"
+[[fixed]]
+below = 0.06
+axis = "y"
+[simulate]
+time_step = "20 ms"
+level = 0
+stiffness_damping = "5 ms"
+mass_damping = "4 1/s"
+rest = "1 mm"
+orbits = 4
+held_out = 1
+shortest = "0.1 s"
+longest = "0.2 s"
+to_rest = 0.5
+[[impulses]]
+name = "braking"
+velocity = "0.2 m/s"
+direction = [-1, 0, 0]
+[[impulses]]
+name = "bump"
+velocity = "0.2 m/s"
+direction = [0, 1, 0]
+[trajectories]
+file = "animal.h5"
+)";
+
+TEST_CASE("from a scene to trajectories: the finest level is shown, its feet stay, it goes on and is finished") {
+  const TemporaryFolder folder("simulate_scene");
+  write_surface(folder.path() / "animal.off", examples::animal(1));
+  const SimulateRequest request{folder.write("animal.toml", scene_text), {}, false};
+  ProgressBar progress(true);
+  const auto record = simulate_scene(request, progress);
+  CHECK(record["tetrahedra"] > 300);
+  CHECK(record["tetrahedra"] < 2000);
+  CHECK(record["orbits"] == 5);
+  const auto file = TrajectoryFile::open(folder.path() / "animal.h5");
+  const auto& scene = file.scene();
+  CHECK(scene.vertices() == examples::animal(1).vertices.size());
+  CHECK(scene.triangles.size() == 3 * examples::animal(1).triangles.size());
+  CHECK(scene.impulses[0].initial[0] == doctest::Approx(-0.2));
+  CHECK(scene.orbits[0].held_out);
+  std::vector<float> frame(scene.rest.size());
+  file.read_frames(scene.orbits[1].first_frame + 2, 1, frame);
+  double highest = 0, lowest = 1, moved_low = 0, moved_high = 0;
+  for (std::size_t v = 0; v < scene.vertices(); ++v) {
+    highest = std::max<double>(highest, scene.rest[3 * v + 1]);
+    lowest = std::min<double>(lowest, scene.rest[3 * v + 1]);
+  }
+  for (std::size_t v = 0; v < scene.vertices(); ++v) {
+    const double height = (scene.rest[3 * v + 1] - lowest) / (highest - lowest);
+    const double moved =
+        std::abs(frame[3 * v] - scene.rest[3 * v]) + std::abs(frame[3 * v + 1] - scene.rest[3 * v + 1]);
+    if (height < 0.02) moved_low = std::max(moved_low, moved);
+    if (height > 0.9) moved_high = std::max(moved_high, moved);
+  }
+  CHECK(moved_low < 1e-4);
+  CHECK(moved_high > 1e-3);
+  // once more: nothing is left to do
+  CHECK(simulate_scene(request, progress) == record);
+  const SimulateRequest other{
+      folder.write("other.toml", std::string(scene_text).replace(scene_text.find("25 kPa"), 6, "26 kPa")), {}, false};
+  CHECK_THROWS_WITH(simulate_scene(other, progress), doctest::Contains("trajectories of another scene"));
+}
+
+}  // namespace
+}  // namespace greenloop::offline

@@ -1,0 +1,166 @@
+#include "rt_tests/harness/impulse_run.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "runtime/algebra/fnv1a.hpp"
+
+namespace greenloop {
+namespace {
+
+using Cycle = ImpulseScript::Cycle;
+using Response = ImpulseResponse::Response;
+
+void add(std::span<const float> values, Fnv1a& digest) {
+  for (const float x : values) digest.add_word(std::bit_cast<std::uint32_t>(x));
+}
+
+void add(std::span<const Vec3> vectors, Fnv1a& digest) {
+  for (const Vec3& v : vectors) {
+    for (const float x : {v.x, v.y, v.z}) digest.add_word(std::bit_cast<std::uint32_t>(x));
+  }
+}
+
+std::uint64_t digest_of(const ImpulseBuffers& buffers) {
+  Fnv1a digest;
+  add(buffers.coordinate, digest);
+  add(buffers.velocity, digest);
+  add(buffers.displacement, digest);
+  add(buffers.displacement_rate, digest);
+  return digest.value();
+}
+
+void add_report(const ImpulseResponse::StepReport& report, Fnv1a& digest) {
+  for (const std::uint64_t word :
+       {static_cast<std::uint64_t>(report.status), report.work, std::uint64_t{report.orbit}, std::uint64_t{report.row},
+        std::uint64_t{report.impulse}, std::uint64_t{report.modes}, std::uint64_t{report.planes},
+        std::uint64_t{report.at_rest ? 1U : 0U}}) {
+    digest.add_word(word);
+  }
+  for (const float x : {report.truncation_error, report.distance, report.blend}) {
+    digest.add_word(std::bit_cast<std::uint32_t>(x));
+  }
+}
+
+Response response_of(const Cycle& cycle, const ImpulseBuffers& buffers) {
+  const std::uint32_t count = cycle.chosen_count > 0 ? cycle.chosen_count : cycle.vertices;
+  return {buffers.coordinate,
+          buffers.velocity,
+          buffers.displacement.first(count),
+          cycle.rates ? buffers.displacement_rate.first(count) : std::span<Vec3>(),
+          {cycle.chosen, cycle.chosen_count}};
+}
+
+// what is wrong with an answer; null: nothing
+const char* check_answer(const ImpulseResponseView& view, const ImpulseBuffers& buffers, ImpulseRun& run) {
+  double energy = 0;
+  const auto balance = static_cast<double>(view.info->velocity_balance);
+  for (std::size_t m = 0; m < buffers.coordinate.size(); ++m) {
+    const auto x = static_cast<double>(buffers.coordinate[m]), v = balance * static_cast<double>(buffers.velocity[m]);
+    energy += x * x + v * v;
+  }
+  if (!std::isfinite(energy)) return "a state is not finite";
+  run.most_energy = energy > run.most_energy ? energy : run.most_energy;
+  for (const auto& vectors : {buffers.displacement, buffers.displacement_rate}) {
+    for (const Vec3& v : vectors) {
+      if (!std::isfinite(v.x + v.y + v.z)) return "a displacement is not finite";
+    }
+  }
+  return nullptr;
+}
+
+// whether such a cycle may be refused so
+bool may_be(Status status, const Cycle& cycle, const ImpulseResponseView& view, bool legal,
+            const ImpulseResponse::Requirement& need) {
+  const std::uint32_t vertices = view.info->vertices;
+  switch (status) {
+    case Status::held_out_of_range: {
+      bool unknown = cycle.impulse != ImpulseResponse::no_impulse && cycle.impulse >= view.info->impulses;
+      for (std::uint32_t i = 0; i < cycle.chosen_count; ++i) unknown = unknown || cycle.chosen[i] >= vertices;
+      return unknown;
+    }
+    case Status::held_illegal_impulse:
+      return !legal;
+    case Status::held_response_size:
+      return cycle.vertices > vertices;
+    case Status::held_over_budget:
+      return cycle.budget.work < need.worst_work;
+    default:
+      return answered(status);
+  }
+}
+
+}  // namespace
+
+ImpulseScript::ImpulseScript(const Model& model, const ImpulseResponse::Requirement& need, std::uint64_t seed) noexcept
+    : impulses_(model.view().impulse_response.info->impulses),
+      vertices_(model.view().impulse_response.info->vertices),
+      need_(need),
+      state_(seed * 2 + 1) {}
+
+std::uint32_t ImpulseScript::below(std::uint32_t bound) noexcept {
+  state_ = state_ * 6364136223846793005U + 1442695040888963407U;
+  return static_cast<std::uint32_t>((state_ >> 33) * bound >> 31);
+}
+
+ImpulseScript::Cycle ImpulseScript::next() noexcept {
+  Cycle cycle;
+  if (below(50) == 0) cycle.impulse = below(impulses_ + 1);
+  const std::uint32_t asked = below(8);
+  cycle.vertices = asked == 0                    ? vertices_
+                   : asked == 1                  ? below(vertices_ + 1)
+                   : asked == 2 && below(9) == 0 ? vertices_ + 1
+                                                 : 0;
+  if (asked == 3) {
+    cycle.chosen_count = 1 + below(most_chosen);
+    for (std::uint32_t i = 0; i < cycle.chosen_count; ++i)
+      cycle.chosen[i] = below(vertices_ + (below(20) == 0 ? 1 : 0));
+  }
+  cycle.rates = below(4) == 0;
+  const std::uint32_t much = below(8);
+  cycle.budget.work = much == 0   ? need_.least_work - below(2)
+                      : much == 1 ? need_.least_work + below(static_cast<std::uint32_t>(need_.worst_work))
+                                  : need_.worst_work;
+  return cycle;
+}
+
+ImpulseRun run_impulse_script(const Model& model, const ImpulseResponse::Limits& limits, std::span<std::byte> memory,
+                              const ImpulseBuffers& buffers, std::uint64_t cycles, std::uint64_t seed,
+                              bool flip) noexcept {
+  ImpulseRun run;
+  const ImpulseResponse::Requirement need = ImpulseResponse::required(model, limits);
+  run.memory_bytes = need.bytes;
+  auto created = ImpulseResponse::create(model, limits, memory);
+  if (!created) {
+    run.error = "the body was not created";
+    return run;
+  }
+  const ImpulseResponseView& view = model.view().impulse_response;
+  ImpulseScript script(model, need, seed);
+  Fnv1a digest;
+  std::uint64_t last = digest_of(buffers);
+  for (; run.cycle < cycles && run.error == nullptr; ++run.cycle) {
+    const Cycle cycle = script.next();
+    const bool legal = cycle.impulse == ImpulseResponse::no_impulse || created.body.may_follow(cycle.impulse);
+    const auto report = created.body.step(cycle.impulse, cycle.budget, response_of(cycle, buffers));
+    ++run.by_status[static_cast<std::size_t>(report.status)];
+    add_report(report, digest);
+    const std::uint64_t now = digest_of(buffers);
+    digest.add_word(now ^ (flip && run.cycle == cycles / 2 ? 1U : 0U));
+    if (report.work > cycle.budget.work) run.error = "a step took more than its budget";
+    if (!may_be(report.status, cycle, view, legal, need)) run.error = "a step was refused that should not be";
+    if (!answered(report.status) && now != last) run.error = "a refused step changed the answer";
+    if (answered(report.status)) {
+      const bool entered = cycle.impulse != ImpulseResponse::no_impulse;
+      run.entered += entered ? 1 : 0;
+      run.continued += !entered && report.distance > 0 ? 1 : 0;
+      run.most_blend = report.blend > run.most_blend ? report.blend : run.most_blend;
+      if (run.error == nullptr) run.error = check_answer(view, buffers, run);
+    }
+    last = now;
+  }
+  run.digest = digest.value();
+  return run;
+}
+
+}  // namespace greenloop
