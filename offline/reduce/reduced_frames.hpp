@@ -26,7 +26,7 @@ struct ReducedFrames {
   Eigen::MatrixXf modes;                ///< U_u, [3 vertices][modes], orthonormal
   Eigen::MatrixXd coordinates;          ///< q_u, m, [modes][frames]
   Eigen::VectorXd rest;                 ///< m, [modes]: of the scene at rest
-  std::vector<double> left_out;         ///< m^2, of each frame
+  std::vector<double> left_out;         ///< m^2, of each frame; its root is right within what was unread of the frame
   double rest_left_out = 0;             ///< m^2, of the scene at rest
   std::vector<double> singular_values;  ///< m, of all displacements from `shape`, falling
   double unread = 0;                    ///< m, norm of what was left out while frames were read

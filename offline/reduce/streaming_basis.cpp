@@ -16,9 +16,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::MatrixXf;
 
-// Eigenvectors of a Gram matrix in double precision are orthonormal to 1e-6 on what is left of the columns down to this
-// part of the largest eigenvalue.
-constexpr double least_eigenvalue = 1e-9;
+// Directions of a block down to this part of the largest eigenvalue of its Gram matrix are taken at a time: float then
+// keeps four digits of the least of them, and making them orthonormal once more the rest.
+constexpr double least_eigenvalue = 1e-6;
+
+// A new direction of which less than this, squared, lies outside of the basis is rounding.
+constexpr double least_outside = 0.25;
 
 // rows that are rotated or widened at a time
 constexpr Index strip = 1024;
@@ -39,6 +42,13 @@ void subtract(const Eigen::Ref<const MatrixXf>& basis, const MatrixXf& part, Eig
   cblas_sgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, blas(basis.rows()), blas(part.cols()), blas(basis.cols()), -1,
               basis.data(), blas(basis.outerStride()), part.data(), blas(part.rows()), 1, block.data(),
               blas(block.outerStride()));
+}
+
+/// B T.
+MatrixXf combined(const Eigen::Ref<const MatrixXf>& block, const MatrixXd& turn) {
+  MatrixXf result = MatrixXf::Zero(block.rows(), turn.cols());
+  subtract(block, -turn.cast<float>(), result);
+  return result;
 }
 
 /// B^T B, in double.
@@ -115,7 +125,7 @@ void StreamingBasis::count_weight(const MatrixXd& coordinates) {
 }
 
 void StreamingBasis::add(Eigen::Ref<MatrixXf> block) {
-  if (modes_ + block.cols() > basis_.cols()) give_up_least();
+  if (modes_ + block.cols() > basis_.cols()) give_up_least(basis_.cols() - block.cols());
   MatrixXd coordinates = MatrixXd::Zero(modes_, block.cols());
   project_out(block, coordinates);
   count_weight(coordinates);
@@ -142,30 +152,39 @@ void StreamingBasis::grow(Eigen::Ref<MatrixXf> block, MatrixXd& coordinates) {
     const Index count = block.cols();
     if (!(lambda[count - 1] > 0)) return;
     largest = std::max(largest, lambda[count - 1]);
-    Index kept = count - least_within(lambda, allowance(largest));
-    while (kept > 1 && lambda[count - kept] < least_eigenvalue * lambda[count - 1]) --kept;
-    kept = std::min(kept, basis_.cols() - modes_);
-    if (kept == 0) return;
-    const Eigen::VectorXd scale = lambda.tail(kept).cwiseSqrt().cwiseInverse();
-    const MatrixXf turn = -(eigen.eigenvectors().rightCols(kept) * scale.asDiagonal()).cast<float>();
-    basis_.middleCols(modes_, kept).setZero();
-    subtract(block, turn, basis_.middleCols(modes_, kept));
-    const MatrixXf part = projected(basis_.middleCols(modes_, kept), block);
-    subtract(basis_.middleCols(modes_, kept), part, block);
-    modes_ += kept;
+    Index wanted = count - least_within(lambda, allowance(largest));
+    while (wanted > 1 && lambda[count - wanted] < least_eigenvalue * lambda[count - 1]) --wanted;
+    if (wanted == 0) return;
+    const Eigen::VectorXd scale = lambda.tail(wanted).cwiseSqrt().cwiseInverse();
+    const Index joined = join(combined(block, eigen.eigenvectors().rightCols(wanted) * scale.asDiagonal()));
+    const auto fresh = basis_.middleCols(modes_ - joined, joined);
+    const MatrixXf part = projected(fresh, block);
+    subtract(fresh, part, block);
     coordinates = padded(coordinates, modes_);
-    coordinates.bottomRows(kept) = part.cast<double>();
+    coordinates.bottomRows(joined) = part.cast<double>();
     const double after = sum_of(squares(block));
     if (!(after < 0.25 * before)) return;  // only rounding is left
     before = after;
   }
 }
 
-void StreamingBasis::give_up_least() {
+// Makes directions orthonormal, to W and to each other, and adds those that rounding did not make. Returns how many.
+Index StreamingBasis::join(MatrixXf directions) {
+  if (modes_ > 0) subtract(basis(), projected(basis(), directions), directions);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram(directions));
+  const auto& length = eigen.eigenvalues();
+  const Index joined = std::min<Index>((length.array() > least_outside).count(), basis_.cols() - modes_);
+  const Eigen::VectorXd scale = length.tail(joined).cwiseSqrt().cwiseInverse();
+  basis_.middleCols(modes_, joined) = combined(directions, eigen.eigenvectors().rightCols(joined) * scale.asDiagonal());
+  modes_ += joined;
+  return joined;
+}
+
+void StreamingBasis::give_up_least(Index most) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(weight_);
   const Index gone = least_within(eigen.eigenvalues(), allowance() / 2);
   const Index kept = modes_ - gone;
-  if (gone < modes_ / 8 || gone == 0) {
+  if (kept > most) {
     throw std::runtime_error("reduction: more than " + std::to_string(basis_.cols()) +
                              " modes are needed for a relative error of " + std::to_string(tolerance_) +
                              " while frames are read; ask for less accuracy, or give more memory");

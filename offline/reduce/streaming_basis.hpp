@@ -10,7 +10,7 @@ namespace greenloop::offline {
 /// value of C is within that of A's (Weyl). What of a block lies outside of W is measured; the leading directions of
 /// it join W as far as the tolerance, spread evenly over all columns, asks (Brand 2002, "Incremental singular value
 /// decomposition", with the residual's eigenvectors in the place of its QR). W only grows; when it reaches `most`
-/// modes, the directions of least weight are given up if the tolerance allows.
+/// modes less a block, the directions of least weight are given up if the tolerance allows.
 /// W and blocks are float, whose rounding limits the error to about 1e-7 sigma_1; sums of squares and C are double.
 /// Memory: rows * (most + columns of a block) floats and most * columns doubles.
 class StreamingBasis {
@@ -34,7 +34,8 @@ class StreamingBasis {
   [[nodiscard]] double allowance(double largest = 0) const;
   void project_out(Eigen::Ref<Eigen::MatrixXf> block, Eigen::MatrixXd& coordinates) const;
   void grow(Eigen::Ref<Eigen::MatrixXf> block, Eigen::MatrixXd& coordinates);
-  void give_up_least();
+  Eigen::Index join(Eigen::MatrixXf directions);
+  void give_up_least(Eigen::Index most);
   void count_weight(const Eigen::MatrixXd& coordinates);
 
   Eigen::Index columns_;

@@ -66,7 +66,8 @@ void read_numbers(const Table& table, std::string_view key, std::array<double, 4
 
 std::vector<std::string_view> names_of(const std::vector<Impulse>& impulses, bool with_rest) {
   std::vector<std::string_view> names(impulses.size());
-  std::transform(impulses.begin(), impulses.end(), names.begin(), [](const Impulse& impulse) { return impulse.name; });
+  std::transform(impulses.begin(), impulses.end(), names.begin(),
+                 [](const Impulse& impulse) -> std::string_view { return impulse.name; });
   if (with_rest) names.push_back(at_rest_name);
   return names;
 }

@@ -49,7 +49,7 @@ TEST_CASE("motion scenes: defaults, every key, and the same scene from its canon
 TEST_CASE("motion scenes: what is wrong is named") {
   const std::string head = "[trajectories]\nfile = \"x.h5\"\n";
   check_refused(parse_motion_scene, "[trajectories]\n", "trajectories.file: missing");
-  check_refused(parse_motion_scene, head + "[material]\nyoung = \"1 kPa\"\n", "material: unknown key");
+  check_refused(parse_motion_scene, head + "[masks]\nyoung = \"1 kPa\"\n", "masks: unknown key");
   check_refused(parse_motion_scene, head + "[accuracy]\ntruncation = 1\n", "accuracy.truncation: 1 is out of range");
   check_refused(parse_motion_scene, head + "[accuracy]\nrms = 0.1\n", "accuracy.rms: unknown key");
   check_refused(parse_motion_scene, head + "[reduction]\nmemory = 3\n", "reduction.memory: 3 is out of range");

@@ -127,10 +127,11 @@ void write_sheet(const std::filesystem::path& path, const DampedSheet& sheet) {
       state = before.states[static_cast<std::size_t>(frame)];
       previous = static_cast<std::int64_t>(before.first_frame) + frame - 1;
     }
-    const auto impulse = static_cast<std::uint32_t>(k < 3 ? k : dice.roll(3));
+    const int built = k - sheet.held_out;
+    const auto impulse = static_cast<std::uint32_t>(built >= 0 && built < 3 ? built : dice.roll(3));
     const bool to_rest = sheet.comes_to_rest && k % 3 == 0;
     const int frames = to_rest ? 1000 : shortest + dice.roll(longest - shortest);
-    writer.begin_orbit(impulse, previous, k >= sheet.orbits);
+    writer.begin_orbit(impulse, previous, built < 0);
     for (int f = 0; f < frames && !(to_rest && f > 45 && rests(state)); ++f) {
       const auto number = writer.add_frame(positions(state, sheet.side));
       if (f == 0) orbit.first_frame = number;

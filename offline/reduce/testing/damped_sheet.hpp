@@ -12,7 +12,7 @@ namespace greenloop::offline {
 struct DampedSheet {
   int side = 14;              ///< vertices
   int orbits = 24;            ///< to build from
-  int held_out = 0;           ///< more of them, the last ones
+  int held_out = 0;           ///< more of them, the first ones: the same however many follow
   bool comes_to_rest = true;  ///< every third orbit
   std::uint64_t seed = 1;
 };
