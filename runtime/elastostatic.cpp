@@ -385,9 +385,9 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   if (contacts.mixed == nullptr) {
     body.mixed.last.release();
   }
-  const bool is_rigid = contacts.held.empty() && !contacts.surfaces.empty();
-  if (const Status pushed = is_rigid ? push_rigid(body, contacts, work) : Status::ok; pushed != Status::ok) {
-    return hold(pushed, work, report);
+  if (contacts.held.empty() && !contacts.surfaces.empty()) {
+    const Status pushed = push_rigid(body, contacts, work);
+    if (pushed != Status::ok) return hold(pushed, work, report);
   }
   if (contacts.held.empty() && !body.is_loaded) {
     return release(body, response, work, report);
@@ -396,8 +396,12 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
   wants.budget = budget.work - work;
   wants.field = !response.displacement.empty();
   wants.finest_displaced = wants.field ? finest_displaced(body, response) : body.counts.levels - 1;
-  wants.corners = contacts.mixed != nullptr ? contacts.mixed_counts.corners : contacts.corners();
-  wants.rows = contacts.mixed_counts.rows;
+  if (contacts.mixed != nullptr) {
+    wants.corners = contacts.mixed_counts.corners;
+    wants.rows = contacts.mixed_counts.rows;
+  } else if (contacts.found != nullptr) {
+    wants.corners = contacts.corners();
+  }
   wants.iterations = least_iterations(body.counts.iterations);
   const Plan& plan = *new (body.plan) Plan(make_plan(body, contacts.held, wants));
   work += plan.work;

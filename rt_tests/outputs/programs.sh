@@ -49,8 +49,8 @@ done
 for command in build inspect verify convert report; do usage greenloop $command; done
 
 cube . 1
-json 0 VIOLATED greenloop build cube.toml -o c.gloop --json
-json 0 VIOLATED greenloop inspect c.gloop --json
+json 0 HELD greenloop build cube.toml -o c.gloop --json
+json 0 HELD greenloop inspect c.gloop --json
 json 0 HELD greenloop verify c.gloop --json
 json 0 - greenloop convert c.gloop -o c.gloopz --json
 json 0 - greenloop report c.gloop --json

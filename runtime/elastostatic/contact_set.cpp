@@ -138,14 +138,17 @@ void list_node_facts(const ModelView& view, NodeFacts* facts) noexcept {
 
 CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
                                const ConstraintBounds& bounds) noexcept {
-  if (bounds.forces > 0 || bounds.mixed) {
-    return check_all(contacts, node_count, facts, bounds);
-  }
+  return bounds.forces > 0 || bounds.mixed ? check_all(contacts, node_count, facts, bounds)
+                                           : check_holds(contacts, node_count, facts, bounds.contacts);
+}
+
+CheckedContacts check_holds(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
+                            std::uint32_t most) noexcept {
   CheckedContacts result;
   std::size_t checked = 0;
   for (; checked < contacts.size(); ++checked) {
     const bool holds = contacts[checked].kind == Kind::hold;
-    const bool room = checked < bounds.contacts;
+    const bool room = checked < most;
     result.status = !holds  ? Status::held_unsupported
                     : !room ? Status::held_out_of_range
                             : check_contact(contacts[checked], node_count, facts);

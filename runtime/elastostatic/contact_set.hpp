@@ -56,6 +56,10 @@ struct ConstraintBounds {
 CheckedContacts check_contacts(std::span<const Constraint> contacts, std::uint32_t node_count, NodeFacts* facts,
                                const ConstraintBounds& bounds) noexcept;
 
+/// The same where nothing but nodes may be held, so many at most.
+[[nodiscard]] CheckedContacts check_holds(std::span<const Constraint> contacts, std::uint32_t node_count,
+                                          NodeFacts* facts, std::uint32_t most) noexcept;
+
 /// Displacements smaller than this count as none, in m: keeps denormal numbers out of the loop.
 inline constexpr float least_displacement = 0x1p-80F;
 constexpr float without_tiny(float displacement) {

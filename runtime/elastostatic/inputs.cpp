@@ -79,7 +79,7 @@ void accept_contacts(Body& body, std::span<const Constraint> contacts, std::span
   body.stiffness = 1;
   body.is_loaded = false;
   accepted.work = check_contacts_work(body.counts.prices, contacts.size());
-  accepted.checked = check_contacts(contacts, body.view->node_count, body.facts, {body.counts.max_contacts, 0, {}});
+  accepted.checked = check_holds(contacts, body.view->node_count, body.facts, body.counts.max_contacts);
   accepted.contacts.all = accepted.contacts.held = contacts;
   accepted.contacts.force = as_floats(force).data();
 }
