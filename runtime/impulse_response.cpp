@@ -129,7 +129,8 @@ void sum_first(const MovingBody& body, const WholeCoordinates& whole, std::span<
   float values[block_values];
   sum_modes(body.view, whole, blocks, blocks + 1, body.avx2, values);
   for (std::uint32_t i = 0; i < rest; ++i) {
-    to[blocks * block_vertices + i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+    to[std::size_t{blocks} * block_vertices + i] = {values[std::size_t{3} * i], values[std::size_t{3} * i + 1],
+                                                    values[std::size_t{3} * i + 2]};
   }
 }
 

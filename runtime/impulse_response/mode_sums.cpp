@@ -46,8 +46,9 @@ void visit_groups(const ImpulseResponseView& view, const WholeCoordinates& c, st
 
 void add_pairs(const std::int8_t* values, const std::int16_t* c, std::uint32_t pairs, std::int32_t* sums) noexcept {
   for (std::uint32_t p = 0; p < pairs; ++p, values += pair_bytes) {
-    const std::int32_t first = c[2 * p], second = c[2 * p + 1];
-    for (std::uint32_t v = 0; v < block_values; ++v) sums[v] += values[2 * v] * first + values[2 * v + 1] * second;
+    const std::int32_t first = c[std::size_t{2} * p], second = c[std::size_t{2} * p + 1];
+    for (std::uint32_t v = 0; v < block_values; ++v)
+      sums[v] += values[std::size_t{2} * v] * first + values[std::size_t{2} * v + 1] * second;
   }
 }
 
@@ -75,11 +76,11 @@ struct PlaneSums {
                                                         std::uint32_t pairs, PlaneSums sums) noexcept {
   for (std::uint32_t p = 0; p < pairs; ++p, values += pair_bytes) {
     std::int32_t both;
-    __builtin_memcpy(&both, c + 2 * p, sizeof both);
+    __builtin_memcpy(&both, c + std::size_t{2} * p, sizeof both);
     const __m256i factor = _mm256_set1_epi32(both);
 #pragma GCC unroll 6
     for (std::uint32_t k = 0; k < vectors; ++k) {
-      const __m128i bytes = _mm_loadu_si128(reinterpret_cast<const __m128i*>(values + 16 * k));
+      const __m128i bytes = _mm_loadu_si128(reinterpret_cast<const __m128i*>(values + std::size_t{16} * k));
       sums.of[k] = _mm256_add_epi32(sums.of[k], _mm256_madd_epi16(_mm256_cvtepi8_epi16(bytes), factor));
     }
   }
@@ -112,7 +113,7 @@ struct PlaneSums {
     if (c.planes == 2) {
       value = _mm256_add_ps(_mm256_mul_ps(value, _mm256_set1_ps(plane_weight)), _mm256_cvtepi32_ps(low.of[k]));
     }
-    _mm256_storeu_ps(values + 8 * k, _mm256_mul_ps(value, scale));
+    _mm256_storeu_ps(values + std::size_t{8} * k, _mm256_mul_ps(value, scale));
   }
 }
 #endif
@@ -162,7 +163,7 @@ void sum_modes_at(const ImpulseResponseView& view, const WholeCoordinates& c, st
       for (std::uint32_t p = 0; p < pairs; ++p) {
         const std::int8_t* const pair = at + pair_bytes * p + place;
         for (std::size_t k = 0; k < 3; ++k) {
-          sums[plane][k] += pair[2 * k] * of[2 * p] + pair[2 * k + 1] * of[2 * p + 1];
+          sums[plane][k] += pair[2 * k] * of[std::size_t{2} * p] + pair[2 * k + 1] * of[std::size_t{2} * p + 1];
         }
       }
     });
