@@ -88,7 +88,7 @@ class Joining {
     }
     const bool single = !all_.finest && contact.end == contact.begin + 1;
     const std::uint32_t first = all_.set.place[scratch_.corner[contact.begin].place];
-    std::uint32_t* const alone = scratch_.of_column + 2 * first + (contact.directed ? 1 : 0);
+    std::uint32_t* const alone = scratch_.of_column + std::size_t{2} * first + (contact.directed ? 1 : 0);
     if (single && *alone != layout::none) {
       scratch_.joint_of[i] = *alone;
       merge(contact, scratch_.joint[*alone]);
