@@ -80,7 +80,7 @@ void run(const Options& options) {
   if (!options.figures.empty()) require_writable_folder(options.figures);
   const ModelFile file = open_model_file(options.model);
   if (file.view.problem == layout::Problem::impulse_response) {
-    throw std::runtime_error(options.model.string() +
+    throw std::runtime_error(options.model +
                              ": an impulse response model has no report; greenloop inspect "
                              "shows its modes, orbits and errors");
   }
