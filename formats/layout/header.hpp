@@ -58,7 +58,7 @@ static_assert(sizeof(SectionEntry) == 32);
 /// What a model answers. A reader refuses a problem that it does not know.
 enum class Problem : std::uint32_t {
   elastostatic = 1,
-  scalar = 2,  ///< a quantity of one number a node, as a temperature or a potential
+  scalar = 2,            ///< a quantity of one number a node, as a temperature or a potential
   impulse_response = 3,  ///< motions of a scene that was simulated, played and blended
 };
 

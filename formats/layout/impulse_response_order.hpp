@@ -9,8 +9,8 @@ namespace greenloop::layout {
 /// returns true; returns whether it never did not. Writer and verifier go by it. Work: planes + 10 calls.
 template <class Visit>
 bool visit_impulse_response_level(const ImpulseInfo& info, std::uint32_t q, Visit visit) {
-  constexpr SectionKind of_all_levels[] = {SectionKind::shape,    SectionKind::triangles,   SectionKind::quanta,
-                                           SectionKind::impulses, SectionKind::successions, SectionKind::orbits,
+  constexpr SectionKind of_all_levels[] = {SectionKind::shape,     SectionKind::triangles,   SectionKind::quanta,
+                                           SectionKind::impulses,  SectionKind::successions, SectionKind::orbits,
                                            SectionKind::references};
   if (!visit(SectionKind::level, q, 0)) return false;
   for (const SectionKind kind : of_all_levels) {

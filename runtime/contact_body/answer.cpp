@@ -142,13 +142,16 @@ void write_answer(TouchedBody& body, std::uint32_t count, std::uint32_t tools) n
   body.tool_count = tools;
   body.answered_count = count;
   body.grips.begin();
+  const auto shift_of = [&](const Grip& grip) { return displacement_of(body, grip.node, grip.weight); };
   std::uint32_t next = 0;
   for (std::uint32_t t = 0; t < tools; ++t) {
     write_tool(body, count, t, next);
     // a tool that is left out holds on to what it held, if what others hold leaves room for it
-    if (body.tool_answer[t].fault != ToolFault::none) body.grips.keep(t, body.max_contacts - (count - next));
+    if (body.tool_answer[t].fault != ToolFault::none) {
+      body.grips.keep(t, body.max_contacts - (count - next), shift_of);
+    }
   }
-  for (std::uint32_t t = tools; t < body.max_tools; ++t) body.grips.keep(t, body.max_contacts);
+  for (std::uint32_t t = tools; t < body.max_tools; ++t) body.grips.keep(t, body.max_contacts, shift_of);
   body.grips.turn();
 }
 

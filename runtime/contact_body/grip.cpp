@@ -24,14 +24,6 @@ void Grips::turn() noexcept {
   made_count_ = 0;
 }
 
-void Grips::keep(std::uint32_t tool, std::uint32_t room) noexcept {
-  for (std::uint32_t i = 0; i < count_ && made_count_ < room; ++i) {
-    if (tool_of_key(grip_[i].key) != tool) continue;
-    add(grip_[i]);
-    made_[made_count_ - 1].force = {};
-  }
-}
-
 void Grips::forget(std::uint32_t tool) noexcept {
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < count_; ++i) {

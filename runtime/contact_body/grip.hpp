@@ -59,8 +59,17 @@ class Grips {
   void turn() noexcept;
 
   /// Takes over what a tool holds on to, without force, while there are no more than `room` in all; among `add`, by
-  /// tool. For the loop; linear in the grips.
-  void keep(std::uint32_t tool, std::uint32_t room) noexcept;
+  /// tool. shift_of(grip): m, the displacement of its point now. For the loop; linear in the grips.
+  template <class ShiftOf>
+  void keep(std::uint32_t tool, std::uint32_t room, ShiftOf shift_of) noexcept {
+    for (std::uint32_t i = 0; i < count_ && made_count_ < room; ++i) {
+      if (tool_of_key(grip_[i].key) != tool) continue;
+      Grip kept = grip_[i];
+      kept.force = {};
+      kept.shift = shift_of(kept);
+      add(kept);
+    }
+  }
 
   /// Lets go of what a tool has. Linear.
   void forget(std::uint32_t tool) noexcept;

@@ -43,6 +43,7 @@ struct Bench {
     ContactBody::Limits limits;
     limits.elastostatic = {.max_contacts = max_contacts, .iterations = 50};
     limits.max_tools = max_tools;
+    limits.max_points = 1;
     body.emplace(model, limits);
     setup.probe_radius = probe_radius;
     if (setup.budget.work == 0) setup.budget.work = 2000000;

@@ -9,9 +9,11 @@ namespace greenloop {
 namespace {
 
 /// Units; 0: none is asked for.
-std::uint64_t budget_of(const SessionOptions& options, const Model& model) {
-  const Elastostatic::Intent intent = Elastostatic::intended(model);
-  const std::uint64_t whole = options.budget != 0 ? options.budget : intent.budget.work;
+std::uint64_t budget_of(const SessionOptions& options, const Model& model, std::uint64_t touching_work) {
+  const std::uint64_t intended = Elastostatic::intended(model).budget.work;
+  // the scene's work is the elastic body's; a budget that is named is that of all
+  const std::uint64_t of_scene = intended != 0 ? intended + touching_work : 0;
+  const std::uint64_t whole = options.budget != 0 ? options.budget : of_scene;
   return static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve));
 }
 
@@ -38,7 +40,7 @@ Agreement agree(const SessionOptions& options, const Model& model) {
     agreement.limits = limits_of(model, contacts);
     const auto need = ContactBody::required(model, agreement.limits);
     agreement.least_work = need.least_work;
-    const std::uint64_t asked = budget_of(options, model);
+    const std::uint64_t asked = budget_of(options, model, need.touching_work);
     agreement.budget.work =
         asked != 0 ? asked
                    : static_cast<std::uint64_t>(std::floor(static_cast<double>(need.worst_work) * options.starve));

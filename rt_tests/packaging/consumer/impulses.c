@@ -1,5 +1,5 @@
-/* Runs the C example of docs/impulses.md on the model named on the command line, as impulses.cpp does that of C++; prints
- * where the last vertex is. */
+/* Runs the C example of docs/impulses.md on the model named on the command line, as impulses.cpp does that of C++;
+ * prints where the last vertex is. */
 #include <runtime/greenloop_impulse.h>
 #include <stdio.h>
 #include <stdlib.h>
