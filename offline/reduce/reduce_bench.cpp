@@ -1,4 +1,4 @@
-// Measures what docs/trajectories.md promises of the reduction: greenloop-reduce-bench FILE.h5 VERTICES FRAMES [MB]
+// Measures what docs/results/impulses.md states of the reduction: greenloop-reduce-bench FILE.h5 VERTICES FRAMES [MB]
 // writes trajectories of that size if there is no such file, then reads it and reduces it in so many megabytes (512).
 #include <sys/resource.h>
 
