@@ -1,4 +1,4 @@
-// Measures what docs/trajectories.md promises of the reduction: greenloop-reduce-bench FILE.h5 VERTICES FRAMES [MB]
+// Measures what docs/results/impulses.md states of the reduction: greenloop-reduce-bench FILE.h5 VERTICES FRAMES [MB]
 // writes trajectories of that size if there is no such file, then reads it and reduces it in so many megabytes (512).
 #include <sys/resource.h>
 
@@ -21,7 +21,26 @@ using namespace greenloop::offline;
 
 constexpr int waves = 24;  // in the motion, each half as large again as the next
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+/// What something took: on the wall, and of processors.
+struct Taken {
+  double wall = 0, processor = 0;
+};
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+Taken so_far() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(),
+          seconds(usage.ru_utime) + seconds(usage.ru_stime)};
+}
+
+Taken since(const Taken& begin) {
+  const Taken end = so_far();
+  return {end.wall - begin.wall, end.processor - begin.processor};
+}
 
 double peak_megabytes() {
   rusage usage{};
@@ -62,10 +81,10 @@ void write_strip(const std::filesystem::path& path, std::uint64_t vertices, std:
   writer.close();
 }
 
-double time_to_read(const TrajectoryFile& file) {
-  const double begin = seconds();
+Taken time_to_read(const TrajectoryFile& file) {
+  const Taken begin = so_far();
   stream_frames(file, {{0, file.frames()}}, 64, [](std::uint64_t, Eigen::Ref<Eigen::MatrixXf>) {});
-  return seconds() - begin;
+  return since(begin);
 }
 
 int measure(int count, char** arguments) {
@@ -76,13 +95,16 @@ int measure(int count, char** arguments) {
   ReductionGoal goal;
   if (count > 4) goal.memory = std::strtoull(arguments[4], nullptr, 10) << 20U;
   const auto file = TrajectoryFile::open(path);
-  const double reading = time_to_read(file);
-  const double begin = seconds();
+  const Taken reading = time_to_read(file);
+  const Taken begin = so_far();
   const auto reduced = reduce_frames(file, {{0, file.frames()}}, goal, [](double) {});
-  const double reducing = seconds() - begin;
-  std::printf("%.2f GB: read in %.1f s, reduced in %.1f s (%.2f times), peak %.0f MB; %td modes, unread %.2e sigma_1\n",
-              static_cast<double>(std::filesystem::file_size(path)) / 1e9, reading, reducing, reducing / reading,
-              peak_megabytes(), reduced.modes.cols(), reduced.unread / reduced.singular_values.front());
+  const Taken reducing = since(begin);
+  std::printf(
+      "%.2f GB: read in %.1f s (processors %.1f s), reduced in %.1f s (%.1f s): %.2f times (%.2f); peak %.0f MB\n",
+      static_cast<double>(std::filesystem::file_size(path)) / 1e9, reading.wall, reading.processor, reducing.wall,
+      reducing.processor, reducing.wall / reading.wall, reducing.processor / reading.processor, peak_megabytes());
+  std::printf("%td modes, unread %.2e sigma_1\n", reduced.modes.cols(),
+              reduced.unread / reduced.singular_values.front());
   return 0;
 }
 

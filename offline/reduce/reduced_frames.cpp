@@ -1,5 +1,7 @@
 #include "offline/reduce/reduced_frames.hpp"
 
+#include <cblas.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -19,6 +21,18 @@ using Eigen::MatrixXf;
 
 constexpr std::uint64_t frames_of_block = 64;
 
+/// While in scope: the same bits however many processors there are, and no thread in the way of the one that reads.
+class OneBlasThread {
+ public:
+  OneBlasThread() : before_(openblas_get_num_threads()) { openblas_set_num_threads(1); }
+  ~OneBlasThread() { openblas_set_num_threads(before_); }
+  OneBlasThread(const OneBlasThread&) = delete;
+  OneBlasThread& operator=(const OneBlasThread&) = delete;
+
+ private:
+  int before_;
+};
+
 /// How many modes fit into the memory beside three blocks of frames and the final modes.
 Index most_modes(std::size_t size, std::uint64_t frames, std::size_t memory) {
   const double column = 4.0 * static_cast<double>(size);
@@ -35,10 +49,13 @@ Index most_modes(std::size_t size, std::uint64_t frames, std::size_t memory) {
 void widen_box(const Eigen::Ref<const MatrixXf>& displacements, const std::vector<float>& rest,
                ReducedFrames& reduced) {
   for (Index c = 0; c < displacements.cols(); ++c) {
-    for (Index v = 0; v < displacements.rows(); ++v) {
-      const float x = rest[static_cast<std::size_t>(v)] + displacements(v, c);
-      reduced.box_min[v % 3] = std::min(reduced.box_min[v % 3], x);
-      reduced.box_max[v % 3] = std::max(reduced.box_max[v % 3], x);
+    const float* const moved = displacements.col(c).data();
+    for (std::size_t v = 0; v < rest.size(); v += 3) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float x = rest[v + axis] + moved[v + axis];
+        reduced.box_min[axis] = std::min(reduced.box_min[axis], x);
+        reduced.box_max[axis] = std::max(reduced.box_max[axis], x);
+      }
     }
   }
 }
@@ -113,6 +130,7 @@ ReducedFrames reduce_frames(const TrajectoryFile& file, const std::vector<FrameR
   StreamingBasis basis(static_cast<Index>(rest.size()), static_cast<Index>(frames), goal.truncation * goal.tolerance,
                        most_modes(rest.size(), frames, goal.memory));
   std::uint64_t done = 0;
+  const OneBlasThread one_thread;
   stream_frames(file, ranges, frames_of_block, [&](std::uint64_t, Eigen::Ref<MatrixXf> displacements) {
     widen_box(displacements, rest, reduced);
     basis.add(displacements);
