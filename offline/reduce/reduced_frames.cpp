@@ -1,7 +1,5 @@
 #include "offline/reduce/reduced_frames.hpp"
 
-#include <cblas.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "formats/layout.hpp"
 #include "offline/reduce/streaming_basis.hpp"
+#include "offline/single_threaded_blas.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -20,18 +19,6 @@ using Eigen::MatrixXd;
 using Eigen::MatrixXf;
 
 constexpr std::uint64_t frames_of_block = 64;
-
-/// While in scope: the same bits however many processors there are, and no thread in the way of the one that reads.
-class OneBlasThread {
- public:
-  OneBlasThread() : before_(openblas_get_num_threads()) { openblas_set_num_threads(1); }
-  ~OneBlasThread() { openblas_set_num_threads(before_); }
-  OneBlasThread(const OneBlasThread&) = delete;
-  OneBlasThread& operator=(const OneBlasThread&) = delete;
-
- private:
-  int before_;
-};
 
 /// How many modes fit into the memory beside three blocks of frames and the final modes.
 Index most_modes(std::size_t size, std::uint64_t frames, std::size_t memory) {
@@ -130,7 +117,7 @@ ReducedFrames reduce_frames(const TrajectoryFile& file, const std::vector<FrameR
   StreamingBasis basis(static_cast<Index>(rest.size()), static_cast<Index>(frames), goal.truncation * goal.tolerance,
                        most_modes(rest.size(), frames, goal.memory));
   std::uint64_t done = 0;
-  const OneBlasThread one_thread;
+  const SingleThreadedBlas one_thread;  // and no other in the way of the one that reads
   stream_frames(file, ranges, frames_of_block, [&](std::uint64_t, Eigen::Ref<MatrixXf> displacements) {
     widen_box(displacements, rest, reduced);
     basis.add(displacements);

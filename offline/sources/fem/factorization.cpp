@@ -1,6 +1,5 @@
 #include "offline/sources/fem/factorization.hpp"
 
-#include <cblas.h>
 #include <dmumps_c.h>
 #include <metis.h>
 
@@ -10,6 +9,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "offline/single_threaded_blas.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -41,18 +42,6 @@ std::string explain(int code, int detail) {
              "; see the MUMPS manual, section Error diagnostics";
   }
 }
-
-/// Threaded OpenBLAS splits its sums by the number of processors; one thread keeps the bits the same everywhere.
-class SingleThreadedBlas {
- public:
-  SingleThreadedBlas() : before_(openblas_get_num_threads()) { openblas_set_num_threads(1); }
-  ~SingleThreadedBlas() { openblas_set_num_threads(before_); }
-  SingleThreadedBlas(const SingleThreadedBlas&) = delete;
-  SingleThreadedBlas& operator=(const SingleThreadedBlas&) = delete;
-
- private:
-  int before_;
-};
 
 /// Adjacency of the blocks, both directions, without the diagonal.
 std::vector<std::pair<idx_t, idx_t>> block_edges(const Eigen::SparseMatrix<double>& lower, int block) {
