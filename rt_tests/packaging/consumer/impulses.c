@@ -1,8 +1,8 @@
 /* Runs the C example of docs/impulses.md on the model named on the command line, as impulses.cpp does that of C++;
  * prints where the last vertex is. */
 #include <runtime/greenloop_impulse.h>
-#include <stdio.h>
-#include <stdlib.h>
+
+#include "read_model.h"
 
 int c_show(const greenloop_model* model, int (*sense)(uint32_t*), void (*draw)(const float*, uint32_t));
 
@@ -22,13 +22,9 @@ static void draw(const float* moved, uint32_t vertices) {
 
 int main(int argc, char** argv) {
   static greenloop_model model;
-  FILE* stream = argc == 2 ? fopen(argv[1], "rb") : NULL;
-  if (stream == NULL || fseek(stream, 0, SEEK_END) != 0) return 64;
-  const size_t size = (size_t)ftell(stream); /* a multiple of 64, as aligned_alloc asks */
-  void* const file = aligned_alloc(GREENLOOP_ALIGNMENT, size);
-  rewind(stream);
-  if (file == NULL || fread(file, 1, size, stream) != size) return 66;
-  fclose(stream);
+  if (argc != 2) return 64;
+  size_t size = 0;
+  void* const file = read_model(argv[1], &size);
   if (greenloop_open(file, size, &model).rule != GREENLOOP_RULE_OK) return 65;
   const int status = c_show(&model, sense, draw);
   free(file);

@@ -1,11 +1,9 @@
 // Runs the C++ example of docs/impulses.md on the model named on the command line: a push now and then. Prints where
 // the last vertex is.
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <runtime/impulse_response.hpp>
-#include <vector>
+
+#include "read_model.hpp"
 
 int show(const greenloop::Model& model, bool (*sense)(std::uint32_t&), void (*draw)(std::span<const greenloop::Vec3>));
 
@@ -31,13 +29,8 @@ void draw(std::span<const greenloop::Vec3> vertices) {
 
 int main(int argc, char** argv) {
   if (argc != 2) return 64;
-  std::ifstream stream(argv[1], std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-  auto* const file = static_cast<std::byte*>(std::aligned_alloc(64, (bytes.size() + 63) / 64 * 64));
-  std::memcpy(file, bytes.data(), bytes.size());
-  const auto opened = greenloop::Model::open({file, bytes.size()});
+  const auto opened = greenloop::Model::open(read_model(argv[1]));
   if (!opened) return 65;
   const int status = show(opened.model, sense, draw);
-  std::free(file);
   return status == 0 && steps == all + 1 && moved ? 0 : 1;
 }

@@ -1,8 +1,7 @@
 /* Runs the C example of docs/loop.md for a few cycles on the model named on the command line and prints every force. */
-#include <runtime/greenloop.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "read_model.h"
 
 int c_control_loop(const void* file, size_t size, int (*sense)(greenloop_constraint*), void (*actuate)(const float*));
 
@@ -27,25 +26,12 @@ static void actuate(const float* force) {
   total_force += magnitude(force[0]) + magnitude(force[1]) + magnitude(force[2]);
 }
 
-static void* read_aligned(const char* path, size_t* size) {
-  FILE* stream = fopen(path, "rb");
-  void* memory = NULL;
-  if (stream != NULL && fseek(stream, 0, SEEK_END) == 0) {
-    *size = (size_t)ftell(stream); /* a multiple of 64, as aligned_alloc asks */
-    memory = aligned_alloc(GREENLOOP_ALIGNMENT, *size);
-    rewind(stream);
-    if (memory == NULL || fread(memory, 1, *size, stream) != *size) exit(66);
-    fclose(stream);
-  }
-  return memory;
-}
-
 int main(int argc, char** argv) {
   static greenloop_model model;
   size_t size = 0;
-  void* file;
   int status;
-  if (argc != 2 || (file = read_aligned(argv[1], &size)) == NULL) return 64;
+  if (argc != 2) return 64;
+  void* const file = read_model(argv[1], &size);
   const greenloop_fault fault = greenloop_open(file, size, &model);
   if (fault.rule != GREENLOOP_RULE_OK) {
     fprintf(stderr, "%s: %s\n", fault.field, greenloop_rule_text(fault.rule));

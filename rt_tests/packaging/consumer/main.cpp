@@ -2,11 +2,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
 #include <runtime/elastostatic.hpp>
 #include <span>
-#include <vector>
+
+#include "read_model.hpp"
 
 int control_loop(std::span<const std::byte> file, bool (*sense)(greenloop::Constraint&),
                  void (*actuate)(const greenloop::Vec3&));
@@ -30,23 +29,13 @@ void actuate(const greenloop::Vec3& force) {
   total_force += std::hypot(force.x, force.y, force.z);
 }
 
-std::span<const std::byte> read_aligned(const char* path) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-  auto* memory = static_cast<std::byte*>(std::aligned_alloc(64, (bytes.size() + 63) / 64 * 64));
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    memory[i] = static_cast<std::byte>(bytes[i]);
-  }
-  return {memory, bytes.size()};
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) {
     return 64;
   }
-  const auto file = read_aligned(argv[1]);
+  const auto file = read_model(argv[1]);
   const auto opened = greenloop::Model::open(file);
   if (!opened) {
     return 65;

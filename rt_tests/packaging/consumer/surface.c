@@ -1,8 +1,6 @@
 /* Runs the C example of docs/surface.md along a line through the model named on the command line; prints what it
  * touches. */
-#include <runtime/greenloop.h>
-#include <stdio.h>
-#include <stdlib.h>
+#include "read_model.h"
 
 int c_follow_tip(const greenloop_model* model, int (*sense)(float*), void (*touch)(uint32_t, double));
 
@@ -19,13 +17,9 @@ static void touch(uint32_t node, double squared_distance) { printf("%u %a\n", (u
 
 int main(int argc, char** argv) {
   static greenloop_model model;
-  FILE* stream = argc == 2 ? fopen(argv[1], "rb") : NULL;
-  if (stream == NULL || fseek(stream, 0, SEEK_END) != 0) return 64;
-  const size_t size = (size_t)ftell(stream); /* a multiple of 64, as aligned_alloc asks */
-  void* const file = aligned_alloc(GREENLOOP_ALIGNMENT, size);
-  rewind(stream);
-  if (file == NULL || fread(file, 1, size, stream) != size) return 66;
-  fclose(stream);
+  if (argc != 2) return 64;
+  size_t size = 0;
+  void* const file = read_model(argv[1], &size);
   if (greenloop_open(file, size, &model).rule != GREENLOOP_RULE_OK) return 65;
   const int status = c_follow_tip(&model, sense, touch);
   free(file);

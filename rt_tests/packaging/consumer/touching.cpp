@@ -1,11 +1,9 @@
 // Runs the C++ example of docs/touching.md on the model named on the command line, a ball of 0.1 m: presses a sphere
 // into it from above, then drags it. Prints what is felt and checks which way it points.
 #include <cstdio>
-#include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <runtime/contact_body.hpp>
-#include <vector>
+
+#include "read_model.hpp"
 
 int press_and_drag(const greenloop::Model& model, bool (*sense)(greenloop::Pose&),
                    void (*actuate)(const greenloop::Double3&, const greenloop::Double3&));
@@ -33,14 +31,9 @@ void actuate(const greenloop::Double3& force, const greenloop::Double3& torque) 
 
 int main(int argc, char** argv) {
   if (argc != 2) return 64;
-  std::ifstream stream(argv[1], std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
-  auto* const file = static_cast<std::byte*>(std::aligned_alloc(64, (bytes.size() + 63) / 64 * 64));
-  std::memcpy(file, bytes.data(), bytes.size());
-  const auto opened = greenloop::Model::open({file, bytes.size()});
+  const auto opened = greenloop::Model::open(read_model(argv[1]));
   if (!opened) return 65;
   const int status = press_and_drag(opened.model, sense, actuate);
-  std::free(file);
   if (wrong > 0) std::fprintf(stderr, "%d steps felt what they should not\n", wrong);
   return status == 0 && steps == all + 1 && wrong == 0 ? 0 : 1;
 }
