@@ -5,6 +5,7 @@
 
 #include "runtime/algebra/double3.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/memory/fit.hpp"
 #include "runtime/surface/parts.hpp"
 
 namespace greenloop {
@@ -104,15 +105,7 @@ BoundMesh::Created BoundMesh::create(const Surface& surface, std::span<const Vec
     created.at = most_vertices;
     return created;
   }
-  if (created.requested > memory.size()) {
-    created.error = Error::memory_too_small;
-    created.missing = created.requested - memory.size();
-    return created;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = Error::memory_misaligned;
-    return created;
-  }
+  if (!memory_fits(memory, Error::memory_too_small, Error::memory_misaligned, created)) return created;
   Arena arena(memory.data());
   BoundMeshParts made;
   auto* const parts = new (carve(arena, surface, vertex.size(), made)) BoundMeshParts(made);

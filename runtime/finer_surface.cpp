@@ -5,6 +5,7 @@
 
 #include "runtime/algebra/double3.hpp"
 #include "runtime/display/parts.hpp"
+#include "runtime/memory/fit.hpp"
 #include "runtime/surface/parts.hpp"
 
 namespace greenloop {
@@ -82,15 +83,7 @@ FinerSurface::Created FinerSurface::create(const Surface& surface, const Options
     created.error = in_range(options) ? Error::unsupported_surface : Error::bad_options;
     return created;
   }
-  if (created.requested > memory.size()) {
-    created.error = Error::memory_too_small;
-    created.missing = created.requested - memory.size();
-    return created;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = Error::memory_misaligned;
-    return created;
-  }
+  if (!memory_fits(memory, Error::memory_too_small, Error::memory_misaligned, created)) return created;
   FinerSurfaceParts counted;
   static_cast<void>(counted.count(surface, options));
   Arena arena(memory.data());

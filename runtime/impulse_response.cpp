@@ -6,6 +6,7 @@
 #include "runtime/algebra/processor.hpp"
 #include "runtime/impulse_response/mode_sums.hpp"
 #include "runtime/impulse_response/moving_body.hpp"
+#include "runtime/memory/fit.hpp"
 
 namespace greenloop {
 namespace {
@@ -185,15 +186,7 @@ ImpulseResponse::Created ImpulseResponse::create(const Model& model, const Limit
   }
   const Requirement requirement = required(model, limits);
   created.requested = requirement.bytes;
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = CreateError::arena_misaligned;
-    return created;
-  }
-  if (memory.size() < created.requested) {
-    created.error = CreateError::arena_too_small;
-    created.missing = created.requested - memory.size();
-    return created;
-  }
+  if (!memory_fits(memory, CreateError::arena_too_small, CreateError::arena_misaligned, created)) return created;
   Arena arena(memory.data());
   MovingBody& body = *place_body(arena, view);
 #if defined(__x86_64__)

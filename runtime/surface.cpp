@@ -5,6 +5,7 @@
 #include <new>
 
 #include "runtime/memory/arena.hpp"
+#include "runtime/memory/fit.hpp"
 #include "runtime/surface/closest_point.hpp"
 #include "runtime/surface/parts.hpp"
 #include "runtime/surface/shape.hpp"
@@ -89,15 +90,7 @@ Surface::Created Surface::create(const Model& model, std::uint32_t level, std::s
     created.error = Error::unsupported_model;
     return created;
   }
-  if (created.requested > memory.size()) {
-    created.error = Error::memory_too_small;
-    created.missing = created.requested - memory.size();
-    return created;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Requirement{}.alignment != 0) {
-    created.error = Error::memory_misaligned;
-    return created;
-  }
+  if (!memory_fits(memory, Error::memory_too_small, Error::memory_misaligned, created)) return created;
   Arena arena(memory.data());
   Subdivision subdivision;
   SurfaceParts* const parts = carve(arena, view, level, subdivision);

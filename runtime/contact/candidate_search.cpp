@@ -7,6 +7,7 @@
 
 #include "runtime/algebra/merge_sort.hpp"
 #include "runtime/contact/approach.hpp"
+#include "runtime/memory/fit.hpp"
 
 namespace greenloop {
 namespace {
@@ -110,16 +111,12 @@ std::size_t CandidateSearch::required(const Limits& limits) noexcept {
 CandidateSearch::Created CandidateSearch::create(const Limits& limits, std::span<std::byte> memory) noexcept {
   Created created;
   created.requested = required(limits);
-  created.available = memory.size();
   if (created.requested == 0) {
+    created.available = memory.size();
     created.error = CreateError::bad_limits;
-  } else if (created.requested > memory.size()) {
-    created.error = CreateError::arena_too_small;
-    created.missing = created.requested - memory.size();
-  } else if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = CreateError::arena_misaligned;
+    return created;
   }
-  if (!created) return created;
+  if (!memory_fits(memory, CreateError::arena_too_small, CreateError::arena_misaligned, created)) return created;
   Arena arena(memory.data());
   created.search.limits_ = limits;
   created.search.carve(arena);

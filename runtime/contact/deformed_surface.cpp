@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/algebra/float4.hpp"
+#include "runtime/memory/fit.hpp"
 #include "runtime/surface/closest_point.hpp"
 
 namespace greenloop {
@@ -119,15 +120,8 @@ DeformedSurface::Created DeformedSurface::create(const Surface& surface, std::sp
   Created created;
   created.requested = required(surface);
   created.available = memory.size();
-  if (created.requested > memory.size()) {
-    created.error = Surface::Error::memory_too_small;
-    created.missing = created.requested - memory.size();
+  if (!memory_fits(memory, Surface::Error::memory_too_small, Surface::Error::memory_misaligned, created))
     return created;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = Surface::Error::memory_misaligned;
-    return created;
-  }
   Arena arena(memory.data());
   created.surface.carve(arena, surface.parts());
   created.surface.list_nodes(arena.take_zeroed<bool>(created.surface.node_count()));

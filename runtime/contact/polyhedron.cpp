@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "runtime/memory/arena.hpp"
+#include "runtime/memory/fit.hpp"
 #include "runtime/surface/closest_point.hpp"
 
 namespace greenloop {
@@ -115,15 +116,7 @@ ConvexPolyhedron::Created ConvexPolyhedron::create(std::span<const Double3> vert
   created.available = memory.size();
   if (!created) return created;
   created.requested = required(vertex.size(), face.size());
-  if (created.requested > memory.size()) {
-    created.error = Error::memory_too_small;
-    created.missing = created.requested - memory.size();
-    return created;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = Error::memory_misaligned;
-    return created;
-  }
+  if (!memory_fits(memory, Error::memory_too_small, Error::memory_misaligned, created)) return created;
   ConvexPolyhedron& made = created.polyhedron;
   Arena arena(memory.data());
   made.carve(arena, vertex.size(), face.size());

@@ -6,6 +6,7 @@
 #include "runtime/contact_body/touched_body.hpp"
 #include "runtime/contact_body/touching_work.hpp"
 #include "runtime/memory/arena.hpp"
+#include "runtime/memory/fit.hpp"
 
 namespace greenloop {
 namespace {
@@ -162,15 +163,7 @@ ContactBody::Created ContactBody::create(const Model& model, const Limits& limit
     created.error = refusal(model, limits);
     return created;
   }
-  if (created.requested > memory.size()) {
-    created.error = CreateError::arena_too_small;
-    created.missing = created.requested - memory.size();
-    return created;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data()) % Arena::alignment != 0) {
-    created.error = CreateError::arena_misaligned;
-    return created;
-  }
+  if (!memory_fits(memory, CreateError::arena_too_small, CreateError::arena_misaligned, created)) return created;
   Arena arena(memory.data());
   auto& body = *new (arena.take<TouchedBody>(1)) TouchedBody;
   carve_arrays(arena, model, limits, body);
