@@ -135,6 +135,28 @@ void ContactProblem::iterate(const ContactAccuracy& accuracy, std::uint64_t work
            answer.work + sweep_work(prices_, points_.count) <= work);
 }
 
+// The work of forces on the way that they give is at most that on the gaps they close, with friction too, once the laws
+// hold. Forces that do more are drawn back to the least energy between none and themselves: they still push and lie in
+// their cones.
+void ContactProblem::bound_energy(ContactAnswer& answer) noexcept {
+  float closed = 0;
+  float given = 0;
+  for (std::uint32_t i = 0; i < points_.count; ++i) {
+    closed -= dot3(best_force_[i], gap_[i]);
+    given += dot3(best_force_[i], best_displacement_[i] - gap_[i]);
+  }
+  if (!(given > closed)) {
+    return;
+  }
+  const float share = closed > 0 ? closed / given : 0;
+  for (std::uint32_t i = 0; i < points_.count; ++i) {
+    force_[i] = best_force_[i] * share;
+    displacement_[i] = gap_[i] + (best_displacement_[i] - gap_[i]) * share;
+  }
+  answer.residual = FLT_MAX;
+  judge(answer);
+}
+
 std::uint64_t ContactProblem::respond(Float4* displacement, Float4* force) noexcept {
   const ContactNewton::Terms terms{.weight = 1, .reduction = 1e-3F, .vectors = ContactNewton::most_vectors};
   return newton_work(prices_, points_.count, newton_.respond(points_, terms, displacement, force));
@@ -148,6 +170,7 @@ ContactAnswer ContactProblem::solve(std::span<const ContactCandidate> candidates
   answer.valid = set(candidates, compliance, force);
   if (answer.valid) {
     iterate(accuracy, work, answer);
+    if (answer.residual > accuracy.residual) bound_energy(answer);
     answer.valid = answer.residual < FLT_MAX;
   }
   for (std::uint32_t i = 0; i < points_.count; ++i) {

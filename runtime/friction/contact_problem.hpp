@@ -128,6 +128,7 @@ class ContactProblem {
   [[nodiscard]] float residual() const noexcept;
   void judge(ContactAnswer& answer) noexcept;
   [[nodiscard]] bool newton(float accuracy, std::uint64_t work, ContactAnswer& answer) noexcept;
+  void bound_energy(ContactAnswer& answer) noexcept;
   void iterate(const ContactAccuracy& accuracy, std::uint64_t work, ContactAnswer& answer) noexcept;
 
   Prices prices_;

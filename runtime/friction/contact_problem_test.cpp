@@ -413,6 +413,31 @@ TEST_CASE("any work allowed gives forces in the cones, costs no more, and gives 
   CHECK(last <= 1e-5F);
 }
 
+TEST_CASE("forces short of work give no more energy than closing the gaps takes, wherever they began") {
+  const HalfSpacePatch patch = patch_of(8, 0.3);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  for (int k = 0; k < 200; ++k) {
+    ContactBench bench(patch);
+    for (std::size_t i = 0; i < bench.candidates.size(); ++i) {
+      bench.candidates[i].gap = {2e-5F * uniform(random), 2e-5F * uniform(random), 3e-5F * uniform(random), 0};
+      bench.candidates[i].friction = k % 2 == 0 ? 0.5F : 0;
+      // from a step that went wrong: thousands of times what is right
+      bench.force[i] = {uniform(random), uniform(random), k % 3 == 0 ? 0 : 30 * (1 + uniform(random)), 0};
+    }
+    const ContactAnswer answer = bench.solve({.residual = 1e-6F}, ContactProblem::least_work({}, 64));
+    REQUIRE(answer.valid);
+    check_cones(bench);
+    double given = 0, closed = 0;  // J
+    for (std::size_t i = 0; i < bench.force.size(); ++i) {
+      const Vector3d f = vector(bench.force[i]), gap = vector(bench.candidates[i].gap);
+      given += f.dot(vector(bench.displacement[i]) - gap);
+      closed -= f.dot(gap);
+    }
+    CHECK(given <= closed * (1 + 1e-4) + 1e-12);
+  }
+}
+
 TEST_CASE("what is not finite, and points without a compliance, are refused") {
   for (int k = 0; k < 5; ++k) {
     RandomProblem problem(3, 6, 0, 0.3);
