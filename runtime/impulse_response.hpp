@@ -55,13 +55,13 @@ class ImpulseResponse {
 
   struct Created;
 
-  /// Bytes and work for `limits`. Start-up; work: constant. Zero bytes if `create` would refuse for another reason than
-  /// memory.
+  /// Bytes and work for `limits`. Start-up; work: linear in the orbits. Zero bytes if `create` would refuse for another
+  /// reason than memory.
   [[nodiscard]] static Requirement required(const Model& model, const Limits& limits) noexcept;
 
   /// Carves `memory`; the model's bytes and `memory` must outlive the body, which begins at rest. Refuses models of
   /// another problem, and limits by which a step would pass more than 64 of the model's states. Start-up; work: linear
-  /// in the modes.
+  /// in the modes and the orbits.
   [[nodiscard]] static Created create(const Model& model, const Limits& limits, std::span<std::byte> memory) noexcept;
 
   /// One cycle of the loop: gives the scene an impulse of its palette, or none, lets a period pass and answers what

@@ -86,8 +86,7 @@ constexpr const char* status_texts[] = {
     "held: the forces are too large for a finite field",
     "held: a constraint is of a kind that the solver does not know",
     "held: a unilateral contact has no unit normal, weights of more than 1 in all, or a negative number",
-    "held: the laws of contact have no finite solution; numbers are too large, or a compliance is not positive "
-    "definite",
+    "held: the laws of contact have no finite solution; numbers are too large, or a compliance is indefinite",
     "held: an impulse may not follow the last one",
 };
 

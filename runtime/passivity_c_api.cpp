@@ -9,9 +9,9 @@
 namespace greenloop {
 namespace {
 
-static_assert(sizeof(EnergyTank) == sizeof(greenloop_energy_tank) &&
-              alignof(EnergyTank) == alignof(greenloop_energy_tank) && std::is_trivially_copyable_v<EnergyTank> &&
-              std::is_standard_layout_v<EnergyTank>);
+static_assert(sizeof(EnergyTank) == sizeof(greenloop_energy_tank));
+static_assert(alignof(EnergyTank) == alignof(greenloop_energy_tank));
+static_assert(std::is_trivially_copyable_v<EnergyTank> && std::is_standard_layout_v<EnergyTank>);
 static_assert(EnergyTank::most_ports == static_cast<int>(GREENLOOP_TANK_PORTS));
 
 EnergyTank& tank_in(greenloop_energy_tank* tank) { return *std::launder(reinterpret_cast<EnergyTank*>(tank)); }

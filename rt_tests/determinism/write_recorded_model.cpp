@@ -1,7 +1,7 @@
 // write_recorded_model FILE.h WAVELET: a model of the recorded script as a C array, FILE.h and FILE.c, and as a model
 // file, FILE.gloop; WAVELET is lifted-linear, lifted-butterfly, butterfly or equilibrated: the synthetic sphere's mesh
-// with arbitrary numbers on it, bits that no mathematical library has a part in. Or it is motion or large-motion: an
-// impulse response model with arbitrary values and coordinates.
+// with arbitrary numbers on it, bits that no mathematical library has a part in. Or it is one of
+// the motions: an impulse response model with arbitrary values and coordinates.
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -139,13 +139,16 @@ int main(int argc, char** argv) {
                                                    {"equilibrated", Wavelet::equilibrated}};
   const std::map<std::string, greenloop::SyntheticMotion> motions = {
       {"motion", {.vertices = 90, .modes = 8, .groups = 3, .planes = 2, .orbits = 12, .alternating = true}},
-      {"large-motion", {.vertices = 642, .modes = 12, .groups = 3, .orbits = 12}}};
+      {"large-motion", {.vertices = 642, .modes = 12, .groups = 3, .orbits = 12}},
+      {"shown-motion", {.vertices = 24690, .modes = 12, .groups = 3, .orbits = 12}},
+      {"shown-motion-16-bits", {.vertices = 24690, .modes = 12, .groups = 3, .planes = 2, .orbits = 12}},
+      {"shown-motion-30-modes", {.vertices = 24690, .modes = 30, .groups = 3, .orbits = 12}}};
   const std::string kind = argc == 3 ? argv[2] : "";
   const auto wavelet = wavelets.find(kind);
   const auto motion = motions.find(kind);
   if (wavelet == wavelets.end() && motion == motions.end()) {
     std::cerr << "usage: write_recorded_model FILE.h "
-                 "lifted-linear|lifted-butterfly|butterfly|equilibrated|motion|large-motion\n";
+                 "lifted-linear|lifted-butterfly|butterfly|equilibrated|motion|large-motion|shown-motion\n";
     return 2;
   }
   try {

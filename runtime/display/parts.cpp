@@ -64,7 +64,8 @@ bool FinerSurfaceParts::split(std::uint32_t k) noexcept {
   // from the last triangle to the first, so that children never overwrite what is still to be split
   for (std::uint32_t t = triangle_count[k]; t-- > 0;) {
     const auto [a, b, c] = triangle[t].node;
-    const std::uint32_t ab = scratch[3 * t], bc = scratch[3 * t + 1], ca = scratch[3 * t + 2];
+    const std::uint32_t* const side = scratch + std::size_t{3} * t;
+    const auto ab = side[0], bc = side[1], ca = side[2];
     Surface::Triangle* const child = triangle + std::size_t{4} * t;
     child[3] = {{ab, bc, ca}};
     child[2] = {{ca, bc, c}};
