@@ -24,6 +24,8 @@ namespace {
 using Flags = std::span<const std::uint32_t>;
 
 constexpr double enough_across = 3;
+/// A wrap is rounded until a base of so many times the size asked for will do.
+constexpr int most_growth = 2;
 
 /// Says what a step needs at least, and refuses a budget that no model of this body could keep.
 void require_possible_work(const Scene& scene, const std::filesystem::path& file, const SemiRegularMesh& mesh,
@@ -107,11 +109,21 @@ ThinPart thin_part(const SemiRegularMesh& surface, const std::vector<Chord>& cho
 }
 
 /// Before the surface is filled.
-ThinPart estimated_thin_part(const SemiRegularMesh& surface) {
-  const std::vector<Chord> chords = inward_chords(surface);
+ThinPart estimated_thin_part(const SemiRegularMesh& surface, const TriangleMesh& walls) {
+  const std::vector<Chord> chords = inward_chords(surface, walls);
   std::vector<double> across(chords.size());
   std::transform(chords.begin(), chords.end(), across.begin(), [](const Chord& chord) { return chord.elements(); });
   return thin_part(surface, chords, across);
+}
+
+/// What else would make a large body smaller; empty if nothing would.
+std::string coarser_base(const Scene& scene, const RemeshQuality& remesh) {
+  if (scene.mesh.tetrahedra || scene.mesh.wrap || remesh.base_vertices <= most_growth * scene.remesh.base_vertices) {
+    return "";
+  }
+  return fmt::format(
+      ", or [surface] wrap = \"auto\", which rounds what needs {} base vertices here until {} or twice as many will do",
+      remesh.base_vertices, scene.remesh.base_vertices);
 }
 
 void say_sizes(const BodySizes& sizes, ProgressBar& progress) {
@@ -126,13 +138,16 @@ void require_buildable(const BuildRequest& request, const Scene& scene, const Bo
   const BodySizes sizes =
       estimate_sizes(body.flags, body.volume ? body.volume->mesh.vertices.size() : 0, scene.elements);
   say_sizes(sizes, progress);
-  if (!request.allow_large) require_moderate(sizes, request.scene, scene.elements, body.surface, body.flags);
+  if (!request.allow_large) {
+    require_moderate(sizes, request.scene, scene.elements, body.surface, body.flags,
+                     coarser_base(scene, body.report.remesh));
+  }
   require_possible_work(scene, request.scene, body.surface, body.flags, body.area, progress);
   require_room(request, sizes.columns, body.surface, body.flags);
   require_carried(scene, body);
   if (body.volume) return;
   progress.begin("thickness");
-  const ThinPart thin = estimated_thin_part(body.surface);
+  const ThinPart thin = estimated_thin_part(body.surface, body.walls);
   progress.end("about " + thin.text() + (thin.across < enough_across ? ", fewer than three" : ""));
 }
 
@@ -150,9 +165,10 @@ void require_buildable(const BuildRequest& request, const Scene& scene, const Gr
 
 nlohmann::json say_thickness(const Scene& scene, const GreenStoreContents& contents, ProgressBar& progress) {
   progress.begin("thickness");
-  const std::vector<Chord> chords = inward_chords(contents.surface);
-  const ThinPart thin = thin_part(contents.surface, chords,
-                                  layers_along(chords, contents.surface, contents.volume, contents.interpolation));
+  const TriangleMesh walls = cavity_walls(contents.volume);
+  const std::vector<Chord> chords = inward_chords(contents.surface, walls);
+  const ThinPart thin = thin_part(
+      contents.surface, chords, layers_along(chords, contents.surface, walls, contents.volume, contents.interpolation));
   progress.end((thin.across < most_layers ? "" : "at least ") + thin.text());
   if (thin.across < enough_across) {
     progress.warn(fmt::format("thin part: {}; fewer than {:.0f} are too stiff: {}", thin.text(), enough_across,

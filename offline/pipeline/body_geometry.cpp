@@ -10,12 +10,15 @@
 #include <utility>
 
 #include "formats/layout.hpp"
+#include "formats/mesh/coarse_mesh.hpp"
 #include "formats/mesh/surface_io.hpp"
 #include "formats/mesh/volume_io.hpp"
 #include "offline/compress/wavelet/node_order.hpp"
 #include "offline/pipeline/remeshed_skin.hpp"
 #include "offline/surface/lumped_areas.hpp"
+#include "offline/surface/shells.hpp"
 #include "offline/surface/surface_preparation.hpp"
+#include "offline/surface/triangle_intersection.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/tetrahedralize.hpp"
 
@@ -81,6 +84,12 @@ void require_near_origin(const Eigen::AlignedBox3d& box) {
   }
 }
 
+/// Tetrahedra have the cavities that they have; of a surface they are asked for.
+PreparedSurface prepare(const Scene& scene, const TriangleMesh& faces, Weld weld) {
+  const bool kept = scene.mesh.tetrahedra || scene.mesh.cavities;
+  return prepare_surface(faces, weld, kept ? Inside::cavities : Inside::refused);
+}
+
 /// The skin of a scene's mesh in metres, remeshed, and its own tetrahedra. Defects of a surface that is used as it is
 /// are reported in the file's own coordinates.
 RemeshedSkin read_and_remesh(const Scene& scene, std::optional<TetrahedralMesh>& volume, ProgressBar& progress) {
@@ -96,9 +105,10 @@ RemeshedSkin read_and_remesh(const Scene& scene, std::optional<TetrahedralMesh>&
   const Weld weld = scene.mesh.weld ? Weld(*scene.mesh.weld / unit) : std::nullopt;
   return naming_the_file(scene, [&] {
     auto surface =
-        offering_a_wrap(scene, "A closed surface can be put around it", [&] { return prepare_surface(faces, weld); });
+        offering_a_wrap(scene, "A closed surface can be put around it", [&] { return prepare(scene, faces, weld); });
     surface.repairs.insert(surface.repairs.begin(), notes.begin(), notes.end());
     scale(surface.mesh.vertices, unit);
+    for (auto& cavity : surface.cavities) scale(cavity.vertices, unit);
     require_near_origin(bounding_box(surface.mesh.vertices));
     return offering_a_wrap(scene, "An evenly meshed surface around it may do",
                            [&] { return remesh_skin(scene, std::move(surface), progress); });
@@ -152,8 +162,11 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
 
   progress.begin("surface");
   std::optional<TetrahedralMesh> tetrahedra;
-  auto [prepared, wrapped, remeshed] = read_and_remesh(scene, tetrahedra, progress);
-  body.report = {scene.mesh.name, prepared.report, prepared.repairs, wrapped, remeshed.quality};
+  auto [prepared, wrapped, remeshed, walls] = read_and_remesh(scene, tetrahedra, progress);
+  body.report = {scene.mesh.name, prepared.report,          prepared.repairs,
+                 wrapped,         prepared.cavities.size(), volume_of_all(prepared.cavities),
+                 remeshed.quality};
+  body.walls = std::move(walls);
 
   progress.begin("nodes");
   const auto sets = select_nodes(scene, remeshed.mesh.positions, bounding_box(remeshed.mesh.positions));
@@ -174,9 +187,24 @@ BodyGeometry make_body_geometry(const Scene& scene, ProgressBar& progress) {
   return body;
 }
 
+Tetrahedralization tetrahedra_within(const BodyGeometry& body, int level) {
+  const TriangleMesh skin = finest_surface(coarse_mesh(body.surface, level));
+  if (body.walls.triangles.empty()) return tetrahedralize(skin);
+  const TriangleMesh bounds = joined(skin, body.walls);
+  const auto crossing = self_intersections(bounds, std::vector<bool>(bounds.triangles.size(), false));
+  if (!crossing.empty()) {
+    const Eigen::Vector3d& at = bounds.vertices[bounds.triangles[crossing.front()[0]][0]];
+    throw std::runtime_error(
+        fmt::format("a cavity's wall meets the surface or another wall at ({:.3g}, {:.3g}, {:.3g}) m, where what is "
+                    "between them is thinner than their triangles resolve: raise remesh.levels, or thicken it",
+                    at.x(), at.y(), at.z()));
+  }
+  return tetrahedralize(bounds);
+}
+
 FilledVolume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress) {
   progress.begin("tetrahedra");
-  auto filled = tetrahedralize(finest_surface(body.surface));
+  auto filled = tetrahedra_within(body, body.surface.finest_level());
   const auto vertices = filled.mesh.vertices.size();
   std::vector<std::uint8_t> fixed(vertices, 0);
   for (std::size_t i = 0; i < body.flags.size(); ++i) {

@@ -9,12 +9,13 @@
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/mesh/tetrahedral_mesh.hpp"
+#include "formats/mesh/triangle_mesh.hpp"
 #include "offline/pipeline/progress_bar.hpp"
 #include "offline/remesh/quality.hpp"
 #include "offline/scene/scene.hpp"
 #include "offline/surface/surface_report.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
-#include "offline/volume/tetrahedra_quality.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 #include "offline/wrap/wrap.hpp"
 
 namespace greenloop::offline {
@@ -32,6 +33,8 @@ struct GeometryReport {
   SurfaceReport surface;             ///< what was remeshed
   std::vector<std::string> repairs;  ///< of the mesh, and what its reader passed over, one sentence each
   std::optional<WrapReport> wrap;    ///< if the scene asks for one; m
+  std::size_t cavities = 0;          ///< in the surface
+  double cavity_volume = 0;          ///< m^3
   RemeshQuality remesh;
 };
 
@@ -40,6 +43,7 @@ struct BodyGeometry {
   SemiRegularMesh surface;           ///< m
   std::vector<std::uint32_t> flags;  ///< layout::NodeFlag per node, domain marked
   std::vector<double> area;          ///< m^2 per node, its hat function's integral
+  TriangleMesh walls;                ///< of cavities, looking into them; m. `volume` has them already
   std::optional<Volume> volume;      ///< the user's own, if the scene names one
   GeometryReport report;
 };
@@ -55,7 +59,11 @@ struct FilledVolume {
   TetrahedraQuality quality;
 };
 
-/// Tetrahedra inside the surface, made by tetrahedralize.
+/// Tetrahedra between a level of the surface, whose vertices come first, and the walls, made by tetrahedralize. Throws
+/// as that does, and std::runtime_error where walls and surface come too close for their triangles.
+[[nodiscard]] Tetrahedralization tetrahedra_within(const BodyGeometry& body, int level);
+
+/// Tetrahedra inside the finest level.
 [[nodiscard]] FilledVolume fill_with_tetrahedra(const BodyGeometry& body, ProgressBar& progress);
 
 }  // namespace greenloop::offline

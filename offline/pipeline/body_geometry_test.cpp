@@ -2,15 +2,21 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "formats/mesh/surface_io.hpp"
 #include "formats/mesh/test_files.hpp"
+#include "formats/mesh/volume_io.hpp"
 #include "offline/pipeline/stage_records.hpp"
+#include "offline/surface/area_and_volume.hpp"
 #include "offline/surface/test_surfaces.hpp"
+#include "offline/volume/testing/shapes.hpp"
+#include "offline/volume/thickness.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -60,6 +66,62 @@ TEST_CASE("what a wrap refuses names the file and offers no other wrap") {
   const std::string refused = refusal(folder, "wrap = \"auto\"\n");
   CHECK(refused.find("body.off: wrap: 2 separate pieces") != std::string::npos);
   CHECK(refused.find("set [surface] wrap") == std::string::npos);
+}
+
+TEST_CASE("a cavity that is asked for stays open in the tetrahedra, and its wall counts as thickness") {
+  const auto folder = scratch_folder("body_geometry_cavity_test");
+  const auto outer = testing::ellipsoid(3, {1, 1, 1}), inner = testing::ellipsoid(2, {0.6, 0.6, 0.6});
+  write_surface(folder / "body.off", together(finest_surface(outer), finest_surface(inner)));
+  CHECK(refusal(folder, "").find("cavities = true") != std::string::npos);
+
+  const BodyGeometry body = geometry(folder, "cavities = true\n");
+  CHECK(body.report.cavities == 1);
+  const double hollow = 4 * std::numbers::pi / 3 * 0.216e-6;
+  CHECK(body.report.cavity_volume == doctest::Approx(hollow).epsilon(0.1));
+  CHECK(enclosed_volume(body.walls) == doctest::Approx(-body.report.cavity_volume).epsilon(0.05));
+  CHECK(geometry_record(body.report)["surface"]["cavities"]["count"] == 1);
+
+  ProgressBar quiet(true);
+  const FilledVolume filled = fill_with_tetrahedra(body, quiet);
+  const double skin = enclosed_volume(finest_surface(body.surface));
+  CHECK(filled.quality.volume == doctest::Approx(skin + enclosed_volume(body.walls)).epsilon(1e-12));
+  const auto chords = inward_chords(body.surface, body.walls);
+  const auto longest = std::max_element(chords.begin(), chords.end(),
+                                        [](const Chord& a, const Chord& b) { return a.length < b.length; });
+  CHECK(longest->length < 0.006);
+  CHECK(cavity_walls(filled.volume.mesh).triangles.size() == body.walls.triangles.size());
+}
+
+TEST_CASE("tetrahedra keep the cavity that they have") {
+  const auto folder = scratch_folder("body_geometry_hollow_test");
+  write_volume(folder / "body.mesh", testing::shell(2, 3, 0.006, 0.01));
+  const auto scene = parse_scene(
+      "[volume]\nfile = \"body.mesh\"\nunit = \"m\"\n[remesh]\nlevels = 1\n[material]\nyoung = \"20 kPa\"\n"
+      "poisson = 0.4\n[[fixed]]\nbelow = 0.2\naxis = \"z\"\n",
+      folder / "body.toml");
+  ProgressBar quiet(true);
+  const BodyGeometry body = make_body_geometry(scene, quiet);
+  REQUIRE(body.volume);
+  CHECK(body.report.cavities == 1);
+  CHECK(body.surface.positions.size() == 162);
+  for (const auto& node : body.surface.positions) CHECK(node.norm() == doctest::Approx(0.01).epsilon(0.05));
+  CHECK(cavity_walls(body.volume->mesh).triangles.size() == 320);
+}
+
+TEST_CASE("a wall that the levels do not resolve is refused with its place") {
+  const auto folder = scratch_folder("body_geometry_wall_test");
+  const auto outer = testing::ellipsoid(3, {1, 1, 1}), inner = testing::ellipsoid(3, {0.985, 0.985, 0.985});
+  write_surface(folder / "body.off", together(finest_surface(outer), finest_surface(inner)));
+  const BodyGeometry body = geometry(folder, "cavities = true\n", "base_vertices = 12\n");
+  ProgressBar quiet(true);
+  std::string refused;
+  try {
+    static_cast<void>(fill_with_tetrahedra(body, quiet));
+  } catch (const std::runtime_error& error) {
+    refused = error.what();
+  }
+  CHECK(refused.find("a cavity's wall meets the surface or another wall at (") == 0);
+  CHECK(refused.find("raise remesh.levels") != std::string::npos);
 }
 
 /// A cube with needles that stick out of it and cross each other.

@@ -81,16 +81,17 @@ nlohmann::json sizes_record(const BodySizes& sizes) {
 }
 
 void require_moderate(const BodySizes& sizes, const std::filesystem::path& scene, Elements elements,
-                      const SemiRegularMesh& mesh, std::span<const std::uint32_t> flags) {
+                      const SemiRegularMesh& mesh, std::span<const std::uint32_t> flags,
+                      const std::string& else_would_do) {
   if (!sizes.large()) return;
   const auto level = finest_level_that(mesh, flags, [elements](int, std::span<const std::uint32_t> coarser) {
     return !estimate_sizes(coarser, 0, elements).large();
   });
   throw SceneError(
       {fmt::format("{}: remesh.levels: {} columns make a store of {} and take about {} of RAM, above {} "
-                   "only on request: pass --allow-large; {}, or smaller [[touched]] and [[read]] regions",
+                   "only on request: pass --allow-large; {}, or smaller [[touched]] and [[read]] regions{}",
                    scene.string(), sizes.columns, bytes_text(sizes.store_bytes), bytes_text(sizes.memory_bytes()),
-                   bytes_text(most_bytes_unasked), levels_text(level))});
+                   bytes_text(most_bytes_unasked), levels_text(level), else_would_do)});
 }
 
 }  // namespace greenloop::offline

@@ -56,8 +56,10 @@ template <class Does>
 /// "3.2 GB"
 [[nodiscard]] std::string bytes_text(double bytes);
 
-/// Throws SceneError, naming the scene, sizes and how many levels would do, if the body is large.
+/// Throws SceneError, naming the scene, sizes and how many levels would do, if the body is large; and
+/// `else_would_do`, a clause.
 void require_moderate(const BodySizes& sizes, const std::filesystem::path& scene, Elements elements,
-                      const SemiRegularMesh& mesh, std::span<const std::uint32_t> flags);
+                      const SemiRegularMesh& mesh, std::span<const std::uint32_t> flags,
+                      const std::string& else_would_do = "");
 
 }  // namespace greenloop::offline

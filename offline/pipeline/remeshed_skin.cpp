@@ -6,12 +6,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "offline/surface/area_and_volume.hpp"
+#include "offline/surface/shells.hpp"
+#include "offline/volume/tetrahedralize.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -35,12 +39,20 @@ std::string repairs_text(const std::vector<std::string>& repairs) {
                      fmt::join(repairs, "; "));
 }
 
+/// ", 2 cavities of 0.0012 m3"
+std::string cavities_text(const PreparedSurface& surface) {
+  if (surface.cavities.empty()) return "";
+  return fmt::format(", {} {} of {:.3g} m3", surface.cavities.size(),
+                     surface.cavities.size() == 1 ? "cavity" : "cavities", volume_of_all(surface.cavities));
+}
+
 std::string surface_text(const PreparedSurface& surface) {
   Eigen::AlignedBox3d box;
   for (const auto& v : surface.mesh.vertices) box.extend(v);
   const Eigen::Vector3d sides = box.sizes();
-  return fmt::format("{} vertices, {} triangles, {:.3g} x {:.3g} x {:.3g} m, {}", surface.report.vertex_count,
-                     surface.report.triangle_count, sides.x(), sides.y(), sides.z(), repairs_text(surface.repairs));
+  return fmt::format("{} vertices, {} triangles, {:.3g} x {:.3g} x {:.3g} m, {}{}", surface.report.vertex_count,
+                     surface.report.triangle_count, sides.x(), sides.y(), sides.z(), repairs_text(surface.repairs),
+                     cavities_text(surface));
 }
 
 std::string quality_text(const Remeshed& remeshed) {
@@ -70,9 +82,20 @@ Remeshed remesh_surface(const PreparedSurface& surface, const RemeshOptions& opt
   return remeshed;
 }
 
+/// Of cavities, in triangles as large as the finest of the skin.
+TriangleMesh even_walls(const std::vector<TriangleMesh>& cavities, const SemiRegularMesh& skin) {
+  if (cavities.empty()) return {};
+  const TriangleMesh finest = finest_surface(skin);
+  const double area = surface_area(finest) / static_cast<double>(finest.triangles.size());
+  const double edge = std::sqrt(4 / std::numbers::sqrt3 * area);
+  std::vector<TriangleMesh> even;
+  for (const auto& cavity : cavities) even.push_back(even_surface(cavity, edge));
+  return walls_of(even);
+}
+
 /// A wrap, checked as its own reader's would be.
 RemeshedSkin skin_of(const Wrapped& wrapped, const MeshNotes& notes, ProgressBar& progress) {
-  RemeshedSkin skin{prepare_surface(wrapped.mesh), wrapped.report, {}};
+  RemeshedSkin skin{prepare_surface(wrapped.mesh), wrapped.report, {}, {}};
   auto& repairs = skin.surface.repairs;
   const auto changes = describe_wrap(wrapped.report, "m");
   repairs.insert(repairs.begin(), changes.begin(), changes.end());
@@ -139,8 +162,9 @@ class Ladder {
 
 RemeshedSkin remesh_skin(const Scene& scene, PreparedSurface surface, ProgressBar& progress) {
   progress.end(surface_text(surface));
-  RemeshedSkin skin{std::move(surface), {}, {}};
+  RemeshedSkin skin{std::move(surface), {}, {}, {}};
   skin.remeshed = remesh_surface(skin.surface, options_of(scene), progress);
+  skin.walls = even_walls(skin.surface.cavities, skin.remeshed.mesh);
   return skin;
 }
 

@@ -17,9 +17,11 @@ struct RemeshedSkin {
   PreparedSurface surface;
   std::optional<WrapReport> wrap;
   Remeshed remeshed;
+  TriangleMesh walls;  ///< of the surface's cavities, evenly meshed, looking into them
 };
 
-/// Remeshes a surface as the scene asks for. Throws as remesh does.
+/// Remeshes a surface as the scene asks for, and the walls of its cavities to edges as long as its own. Throws as
+/// remesh and even_surface do.
 [[nodiscard]] RemeshedSkin remesh_skin(const Scene& scene, PreparedSurface surface, ProgressBar& progress);
 
 /// Wraps any faces [m], of whose reading `notes` tells, and remeshes that. A wrap of a given length is remeshed as it

@@ -106,8 +106,7 @@ ElasticSolidScene make_elastic_solid(const Scene& scene, ProgressBar& progress) 
   const Simulation& simulation = scene.simulation.value();
   const auto body = make_body_geometry(scene, progress);
   progress.begin("tetrahedra");
-  auto filled = tetrahedralize(
-      finest_surface(coarse_mesh(body.surface, std::min(simulation.level, body.surface.finest_level()))));
+  auto filled = tetrahedra_within(body, std::min(simulation.level, body.surface.finest_level()));
   progress.end(fmt::format("{} tetrahedra, {} vertices, by {}", filled.mesh.tetrahedra.size(),
                            filled.mesh.vertices.size(), filled.mesher));
   ElasticSolidScene solid;

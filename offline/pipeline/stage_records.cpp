@@ -75,6 +75,8 @@ json geometry_record(const GeometryReport& report) {
                    {"flipped", remesh.flipped},
                    {"self_intersections", remesh.self_intersections}}}};
   if (report.wrap) record["surface"]["wrap"] = wrap_record(*report.wrap);
+  if (report.cavities > 0)
+    record["surface"]["cavities"] = {{"count", report.cavities}, {"volume", report.cavity_volume}};
   return record;
 }
 

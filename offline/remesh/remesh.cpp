@@ -86,6 +86,10 @@ struct Normalization {
     for (auto& vertex : mesh.vertices) vertex = (vertex - origin) / diagonal;
     return mesh;
   }
+  [[nodiscard]] TriangleMesh undo(TriangleMesh mesh) const {
+    for (auto& vertex : mesh.vertices) vertex = origin + diagonal * vertex;
+    return mesh;
+  }
 };
 
 std::string place(const Eigen::Vector3d& p) {
@@ -388,6 +392,19 @@ Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const P
   }
   if (auto found = search.run()) return *std::move(found);
   throw RemeshError(failure(search.best(), search.largest_base(), options), search.best());
+}
+
+TriangleMesh even_surface(const TriangleMesh& input, double edge_length) {
+  constexpr double fewest_triangles = 100;
+  const Normalization normalization(input);
+  const TriangleMesh normalized = normalization.apply(input);
+  const double longest = std::sqrt(4 / std::numbers::sqrt3 * surface_area(normalized) / fewest_triangles);
+  const Ground ground(normalized, find_features(normalized, kSharp, kShortestLine),
+                      std::min(edge_length / normalization.diagonal, longest));
+  if (!ground.settled()) {
+    throw std::runtime_error("a wall inside the body does not come to even triangles; mesh it more evenly");
+  }
+  return normalization.undo(ground.surface().mesh());
 }
 
 }  // namespace greenloop::offline

@@ -59,4 +59,9 @@ class RemeshError : public std::runtime_error {
 /// RemeshError, naming what was reached and what to change, if no base of at most most_base_vertices will do.
 [[nodiscard]] Remeshed remesh(const TriangleMesh& input, const RemeshOptions& options, const Progress& progress = {});
 
+/// A closed surface, manifold and outward oriented, in even triangles of about `edge_length` (its unit), or shorter
+/// where that leaves fewer than a hundred: a wall inside a body, which carries no nodes. Its sharp lines are kept. Work
+/// as of even_mesh. Throws std::runtime_error if it does not come to even triangles.
+[[nodiscard]] TriangleMesh even_surface(const TriangleMesh& input, double edge_length);
+
 }  // namespace greenloop::offline

@@ -45,6 +45,7 @@ struct MeshSource {
   std::optional<double> size;  ///< longest side of the bounding box after scaling [m]
   std::optional<double> weld;  ///< vertices of a surface within this become one [m]; none: as far as it takes
   std::optional<WrapSource> wrap;
+  bool cavities = false;         ///< closed pieces inside the surface are cavities
   bool keep_vertex_map = false;  ///< tell in the model where the surface's vertices lie on it
 
   /// Metres per unit of a mesh with this bounding box. Throws SceneError if the box has no extent to scale.

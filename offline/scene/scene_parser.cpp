@@ -58,7 +58,8 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
                              : "missing; write for example [surface] file = \"bear.off\", unit = \"cm\"");
   }
   for (const std::string_view name : {"surface", "volume"}) {
-    const auto table = section(scene, name, {"file", "unit", "size", "weld", "wrap", "pieces", "keep_vertex_map"});
+    const auto table =
+        section(scene, name, {"file", "unit", "size", "weld", "wrap", "pieces", "cavities", "keep_vertex_map"});
     if (!table) {
       continue;
     }
@@ -73,6 +74,12 @@ void read_mesh(const Table& scene, const std::filesystem::path& file, MeshSource
       table->refuse("weld", "does not go with [volume], whose tetrahedra share their vertices; remove it");
     }
     read_wrap(*table, mesh);
+    set_if(mesh.cavities, table->boolean("cavities"));
+    if (mesh.tetrahedra && table->has("cavities")) {
+      table->refuse("cavities", "does not go with [volume], whose tetrahedra have their cavities; remove it");
+    } else if (mesh.wrap && mesh.cavities) {
+      table->refuse("cavities", "does not go with wrap, which fills them; remove one of them");
+    }
     set_if(mesh.keep_vertex_map, table->boolean("keep_vertex_map"));
     if (mesh.tetrahedra && table->has("keep_vertex_map")) {
       table->refuse("keep_vertex_map", "does not go with [volume], whose surface is not the author's; remove it");

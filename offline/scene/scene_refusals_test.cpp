@@ -253,6 +253,9 @@ TEST_CASE("refused: a wrap that is no length, pieces without one, a weld beside 
   check_refused(with("unit =", "wrap = \"auto\"\npieces = \"all\"\nunit ="),
                 {":4:10: surface.pieces: \"all\" is neither \"one\""});
   check_refused(with("unit =", "pieces = \"largest\"\nunit ="), {"surface.pieces: chooses among the pieces of a wrap"});
+  check_refused(with("unit =", "wrap = \"auto\"\ncavities = true\nunit ="),
+                {"surface.cavities: does not go with wrap"});
+  check_refused(with("unit =", "cavities = \"yes\"\nunit ="), {":3:12: surface.cavities: "});
   check_refused(with("unit =", "wrap = \"auto\"\nweld = \"1 mm\"\nunit ="), {"surface.weld: does not go with wrap"});
   check_refused(with("[surface]", "[volume]\nwrap = \"auto\""), {"volume.wrap: does not go with [volume]"});
 }

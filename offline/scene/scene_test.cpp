@@ -199,6 +199,15 @@ TEST_CASE("wrapping: none, automatic, or a length, and the largest piece if aske
   CHECK(body_text(length) != body_text(automatic));
 }
 
+TEST_CASE("cavities: only if asked for, and another body then") {
+  const Scene plain = parse_scene(smallest, "s.toml");
+  CHECK(!plain.mesh.cavities);
+  const Scene hollow = parse_scene(with("unit =", "cavities = true\nunit ="), "s.toml");
+  CHECK(hollow.mesh.cavities);
+  CHECK(parse_scene(canonical_text(hollow), "s.toml").mesh.cavities);
+  CHECK(body_text(hollow) != body_text(plain));
+}
+
 TEST_CASE("a vertex map is kept if the scene says so, and only then part of the canonical text") {
   CHECK(!parse_scene(smallest, "s.toml").mesh.keep_vertex_map);
   const Scene asks = parse_scene(with("unit =", "keep_vertex_map = true\nunit ="), "s.toml");

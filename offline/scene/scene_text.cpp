@@ -80,7 +80,7 @@ std::string mesh_text(const MeshSource& mesh) {
       !mesh.weld ? "" : "weld = " + (*mesh.weld > 0 ? quantity(*mesh.weld, "m") : std::string("0")) + "\n";
   return std::string(mesh.tetrahedra ? "[volume]" : "[surface]") + "\nfile = " + string(mesh.name) + "\n" +
          (mesh.unit ? "unit = " + quantity(*mesh.unit, "m") : "size = " + quantity(*mesh.size, "m")) + "\n" + weld +
-         wrap_text(mesh.wrap);
+         wrap_text(mesh.wrap) + (mesh.cavities ? "cavities = true\n" : "");
 }
 
 std::string remesh_text(const Scene& scene) {

@@ -84,8 +84,10 @@ void add_components(std::vector<std::string>& defects, const TriangleMesh& mesh,
     text += (i > 0 ? ", " : "") + std::to_string(report.component_sizes[i]) + " faces (" +
             face_text(mesh, report.component_first_face[i]) + ")";
   }
-  defects.push_back(text + (count > examples_shown ? ", ... " : ". ") +
-                    "Keep one piece in the file, or join them by a boolean union.");
+  defects.push_back(
+      text + (count > examples_shown ? ", ... " : ". ") +
+      "Keep one piece in the file, or join them by a boolean union; closed pieces inside the largest are cavities "
+      "if [surface] says cavities = true.");
 }
 
 }  // namespace

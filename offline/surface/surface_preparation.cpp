@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "offline/surface/coincident_vertices.hpp"
+#include "offline/surface/shells.hpp"
 #include "offline/surface/surface_edges.hpp"
 
 namespace greenloop::offline {
@@ -271,13 +272,29 @@ void orient_consistently(Candidate& candidate) {
   }
 }
 
+bool only_in_pieces(const SurfaceReport& report, const std::vector<std::string>& defects) {
+  return report.component_sizes.size() > 1 && defects.size() == 1;
+}
+
+/// Leaves the skin; or nothing is changed and the defect is returned.
+std::vector<std::string> take_out_cavities(TriangleMesh& mesh, std::vector<TriangleMesh>& cavities) {
+  try {
+    Shells shells = split_shells(mesh);
+    mesh = std::move(shells.skin);
+    cavities = std::move(shells.cavities);
+    return {};
+  } catch (const std::runtime_error& error) {
+    return {error.what()};
+  }
+}
+
 }  // namespace
 
 SurfaceError::SurfaceError(std::vector<std::string> defects, const std::vector<std::string>& repairs,
                            SurfaceReport report)
     : std::runtime_error(joined(defects, repairs)), defects_(std::move(defects)), report_(std::move(report)) {}
 
-PreparedSurface prepare_surface(const TriangleMesh& mesh, Weld weld) {
+PreparedSurface prepare_surface(const TriangleMesh& mesh, Weld weld, Inside inside) {
   Candidate start{mesh, {}, 0};
   if (weld.value_or(0) > 0) {
     weld_vertices(start, *weld, std::vector<bool>(mesh.vertices.size(), true));
@@ -291,11 +308,16 @@ PreparedSurface prepare_surface(const TriangleMesh& mesh, Weld weld) {
     report.volume = -report.volume;
     candidate.repairs.emplace_back("all faces looked inwards and were turned outwards");
   }
+  std::vector<TriangleMesh> cavities;
   auto defects = describe_defects(candidate.mesh, report);
+  if (inside == Inside::cavities && only_in_pieces(report, defects)) {
+    defects = take_out_cavities(candidate.mesh, cavities);
+    report = check_surface(candidate.mesh);
+  }
   if (!defects.empty()) {
     throw SurfaceError(std::move(defects), candidate.repairs, std::move(report));
   }
-  return {std::move(candidate.mesh), std::move(candidate.repairs), std::move(report)};
+  return {std::move(candidate.mesh), std::move(candidate.repairs), std::move(report), std::move(cavities)};
 }
 
 }  // namespace greenloop::offline

@@ -8,6 +8,7 @@
 
 #include "offline/remesh/surface.hpp"
 #include "offline/remesh/triangle_tree.hpp"
+#include "offline/surface/shells.hpp"
 #include "offline/volume/tetrahedra_quality.hpp"
 
 namespace greenloop::offline {
@@ -74,6 +75,10 @@ Boundary extract_boundary(const TetrahedralMesh& volume) {
     for (int& v : triangle) v = number[v];
   }
   return boundary;
+}
+
+TriangleMesh cavity_walls(const TetrahedralMesh& volume) {
+  return inward_pieces({volume.vertices, boundary_triangles(volume)});
 }
 
 Interpolation interpolate_on_boundary(const std::vector<Eigen::Vector3d>& nodes, const TetrahedralMesh& volume,

@@ -24,6 +24,9 @@ struct Boundary {
 };
 [[nodiscard]] Boundary extract_boundary(const TetrahedralMesh& volume);
 
+/// The walls of the cavities in a volume, looking into them, as triangles of its vertices.
+[[nodiscard]] TriangleMesh cavity_walls(const TetrahedralMesh& volume);
+
 /// Barycentric weights of every node on the closest boundary triangle of the volume. Work O((n + m) log m).
 /// Throws std::runtime_error, naming the node, when one lies further from the boundary than `tolerance` (m).
 [[nodiscard]] Interpolation interpolate_on_boundary(const std::vector<Eigen::Vector3d>& nodes,

@@ -60,6 +60,13 @@ struct Target {
   Vector3d corner, first, second;
 };
 
+void add_targets(const TriangleMesh& mesh, std::vector<Target>& targets) {
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& v = mesh.vertices;
+    targets.push_back({v[a], v[b] - v[a], v[c] - v[a]});
+  }
+}
+
 // how far a ray has to go until it leaves the body through a triangle (Moeller & Trumbore 1997); infinite: it does not
 double way_out(const Vector3d& origin, const Vector3d& direction, const Target& target) {
   constexpr double never = std::numeric_limits<double>::infinity();
@@ -77,13 +84,16 @@ double way_out(const Vector3d& origin, const Vector3d& direction, const Target& 
   return way > 0 ? way : never;
 }
 
+bool has_corner(const std::array<int, 3>& triangle, int node) {
+  return std::find(triangle.begin(), triangle.end(), node) != triangle.end();
+}
+
 Chord chord_from(int node, const Vector3d& direction, const TriangleMesh& surface, const std::vector<Target>& targets) {
   Chord chord{.length = std::numeric_limits<double>::infinity()};
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const double way = way_out(surface.vertices[node], direction, targets[t]);
     if (!(way < chord.length)) continue;
-    const auto& corners = surface.triangles[t];
-    if (std::find(corners.begin(), corners.end(), node) != corners.end()) continue;
+    if (t < surface.triangles.size() && has_corner(surface.triangles[t], node)) continue;
     chord.length = way;
     chord.triangle = static_cast<int>(t);
   }
@@ -153,16 +163,14 @@ class Layers {
 
 double Chord::elements() const { return triangle < 0 ? std::numeric_limits<double>::infinity() : length / spacing; }
 
-std::vector<Chord> inward_chords(const SemiRegularMesh& mesh) {
+std::vector<Chord> inward_chords(const SemiRegularMesh& mesh, const TriangleMesh& walls) {
   const TriangleMesh surface = finest_surface(mesh);
   const auto inward = inward_normals(surface);
   const auto spacing = mean_edges(surface);
   std::vector<Target> targets;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const auto& v = surface.vertices;
-    targets.push_back({v[a], v[b] - v[a], v[c] - v[a]});
-  }
-  std::vector<Chord> chords(nodes_to_look_from(mesh, surface.triangles.size()));
+  add_targets(surface, targets);
+  add_targets(walls, targets);
+  std::vector<Chord> chords(nodes_to_look_from(mesh, targets.size()));
   for (std::size_t node = 0; node < chords.size(); ++node) {
     chords[node] = chord_from(static_cast<int>(node), inward[node].normalized(), surface, targets);
     chords[node].spacing = spacing[node];
@@ -171,15 +179,21 @@ std::vector<Chord> inward_chords(const SemiRegularMesh& mesh) {
 }
 
 std::vector<double> layers_along(const std::vector<Chord>& chords, const SemiRegularMesh& mesh,
-                                 const TetrahedralMesh& volume, const Interpolation& interpolation) {
+                                 const TriangleMesh& walls, const TetrahedralMesh& volume,
+                                 const Interpolation& interpolation) {
   const TriangleMesh surface = finest_surface(mesh);
+  const int outside = static_cast<int>(surface.triangles.size());
   Layers layers(volume);
   std::vector<double> along(chords.size(), most_layers);
   for (std::size_t node = 0; node < chords.size(); ++node) {
     if (chords[node].triangle < 0) continue;
     std::vector<int> here, there;
     add_vertices_of(static_cast<int>(node), interpolation, here);
-    for (const int corner : surface.triangles[chords[node].triangle]) add_vertices_of(corner, interpolation, there);
+    if (const int met = chords[node].triangle; met < outside) {
+      for (const int corner : surface.triangles[met]) add_vertices_of(corner, interpolation, there);
+    } else {
+      there.assign(walls.triangles[met - outside].begin(), walls.triangles[met - outside].end());
+    }
     along[node] = layers.between(std::move(here), there);
   }
   return along;

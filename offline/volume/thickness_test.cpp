@@ -43,7 +43,7 @@ TEST_CASE("the thinnest part of a flat body, before and after it is filled") {
   const auto filled = tetrahedralize(finest_surface(flat));
   const auto interpolation =
       select_first_vertices(static_cast<int>(flat.positions.size()), static_cast<int>(filled.mesh.vertices.size()));
-  const ThinnestPart counted = thinnest_part(flat, layers_along(chords, flat, filled.mesh, interpolation));
+  const ThinnestPart counted = thinnest_part(flat, layers_along(chords, flat, {}, filled.mesh, interpolation));
   CHECK(counted.elements >= 1);
   CHECK(counted.elements <= 2);
 }
@@ -73,7 +73,7 @@ TEST_CASE("layers are counted through the tetrahedra") {
   }();
   REQUIRE(interpolation.nonZeros() == 6);
   const std::vector<Chord> down{{}, {}, {}, {}, {.triangle = 4, .length = 1, .spacing = 1}, {}};
-  const auto layers = layers_along(down, octahedron, volume, interpolation);
+  const auto layers = layers_along(down, octahedron, {}, volume, interpolation);
   CHECK(layers[4] == 2);
   CHECK(layers[0] == most_layers);
 }
