@@ -8,13 +8,17 @@
 namespace greenloop {
 namespace {
 
-/// Units; 0: none is asked for.
-std::uint64_t budget_of(const SessionOptions& options, const Model& model, std::uint64_t touching_work) {
-  const std::uint64_t intended = Elastostatic::intended(model).budget.work;
-  // the scene's work is the elastic body's; a budget that is named is that of all
-  const std::uint64_t of_scene = intended != 0 ? intended + touching_work : 0;
-  const std::uint64_t whole = options.budget != 0 ? options.budget : of_scene;
-  return static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve));
+/// Units: those named, else what the scene gives the elastic body and what finding contacts takes besides, else the
+/// worst case.
+std::uint64_t whole_budget(const SessionOptions& options, const Model& model, const ContactBody::Requirement& need) {
+  if (options.budget != 0) return options.budget;
+  const std::uint64_t of_scene = Elastostatic::intended(model).budget.work;
+  return of_scene != 0 ? of_scene + need.touching_work : need.worst_work;
+}
+
+/// Whether a budget is what the scene gives, which was meant for a body without tools and their laws of contact.
+bool is_of_scene(const SessionOptions& options, const Model& model) {
+  return options.budget == 0 && Elastostatic::intended(model).budget.work != 0;
 }
 
 /// Room for the contacts of the scene, and, if there is budget for them, for more: what lies under a tool without being
@@ -40,10 +44,9 @@ Agreement agree(const SessionOptions& options, const Model& model) {
     agreement.limits = limits_of(model, contacts);
     const auto need = ContactBody::required(model, agreement.limits);
     agreement.least_work = need.least_work;
-    const std::uint64_t asked = budget_of(options, model, need.touching_work);
-    agreement.budget.work =
-        asked != 0 ? asked
-                   : static_cast<std::uint64_t>(std::floor(static_cast<double>(need.worst_work) * options.starve));
+    std::uint64_t whole = whole_budget(options, model, need);
+    if (contacts == intended && is_of_scene(options, model)) whole = std::max(whole, need.least_work);
+    agreement.budget.work = static_cast<std::uint64_t>(std::floor(static_cast<double>(whole) * options.starve));
     if (agreement.budget.work >= need.least_work) return agreement;
     if (contacts == intended) break;
   }

@@ -12,6 +12,7 @@
 
 #include "formats/output/output_file.hpp"
 #include "formats/testing/synthetic_model.hpp"
+#include "runtime/elastostatic.hpp"
 #include "sim_hw/session/testing/program_run.hpp"
 
 namespace greenloop {
@@ -69,6 +70,20 @@ std::int64_t cycles_below(const nlohmann::json& json, std::uint32_t finest) {
     if (used["level"] < finest) cycles += used["cycles"].get<std::int64_t>();
   }
   return cycles;
+}
+
+TEST_CASE("a model whose scene's work is the least that its body needs runs with tools, too") {
+  ModelData data = synthetic_model({.levels = 2, .touchable_above = 0.9});
+  data.info.max_contacts = 1;
+  const auto bytes = encode(data);
+  const Model model = Model::open(bytes).model;
+  data.info.step_work = Elastostatic::required(model, Elastostatic::intended(model).limits).least_work;
+  const std::string file = workspace().file("least.gloop");
+  write_file(file, encode(data));
+  const ProgramRun run = run_program(GREENLOOP_LOOP, {file, "--seconds", "1", "--transport", "memq", "--json"}, false);
+  INFO(run.output << run.errors);
+  REQUIRE(run.exit_status == 0);
+  CHECK(nlohmann::json::parse(run.output)["misses"] == 0);
 }
 
 TEST_CASE("in one process every cycle holds its budget, and every run has the same digest") {
