@@ -74,23 +74,27 @@ void ContactProblem::project() noexcept {
   displace(points_, force_, displacement_);
 }
 
-// of the iterate, relative
-float ContactProblem::residual() const noexcept {
-  float of_force = 0;
-  float of_residual = 0;
+// of the iterate
+ContactProblem::Residual ContactProblem::residual() const noexcept {
+  Residual residual;
   for (std::uint32_t i = 0; i < points_.count; ++i) {
     const Float4 map = natural_map(contact_[i], displacement_[i], force_[i]);
-    of_force += dot3(force_[i], force_[i]);
-    of_residual += dot3(map, map);
+    residual.of_force += dot3(force_[i], force_[i]);
+    residual.square += dot3(map, map);
   }
-  return of_residual == 0 ? 0 : std::sqrt(of_residual / (of_force > of_residual ? of_force : of_residual));
+  return residual;
 }
 
-// keeps the iterate if it is better
+float ContactProblem::Residual::relative() const noexcept {
+  return square == 0 ? 0 : std::sqrt(square / (of_force > square ? of_force : square));
+}
+
+// keeps the iterate if it is better: in newtons, since far from a solution large forces make any residual look small
 void ContactProblem::judge(ContactAnswer& answer) noexcept {
-  const float here = residual();
-  if (here < answer.residual) {
-    answer.residual = here;
+  const Residual here = residual();
+  if (here.square < best_square_) {
+    best_square_ = here.square;
+    answer.residual = here.relative();
     for (std::uint32_t i = 0; i < points_.count; ++i) {
       best_force_[i] = force_[i];
       best_displacement_[i] = displacement_[i];
@@ -105,7 +109,8 @@ bool ContactProblem::newton(float accuracy, std::uint64_t work, ContactAnswer& a
   ContactNewton::Terms terms{.weight = weights[(answer.iterations - 1) % 4], .reduction = 0, .vectors = 0};
   float last = FLT_MAX;
   std::uint32_t steps = 0;
-  for (float here = residual(); here < last * (2.0F / 3) && steps < most_steps; here = residual()) {
+  for (float here = residual().relative(); here < last * (2.0F / 3) && steps < most_steps;
+       here = residual().relative()) {
     const std::uint64_t needed = answer.work + newton_work(prices_, count, 0) + projection_work(prices_, count);
     const std::uint64_t vectors = work > needed ? (work - needed) / vector_work(prices_, count) : 0;
     if (vectors == 0 || (steps > 0 && here <= 0.9F * accuracy)) break;
@@ -124,7 +129,7 @@ bool ContactProblem::newton(float accuracy, std::uint64_t work, ContactAnswer& a
 }
 
 void ContactProblem::iterate(const ContactAccuracy& accuracy, std::uint64_t work, ContactAnswer& answer) noexcept {
-  answer.residual = FLT_MAX;
+  answer.residual = best_square_ = FLT_MAX;
   do {
     sweep();
     judge(answer);
@@ -153,7 +158,7 @@ void ContactProblem::bound_energy(ContactAnswer& answer) noexcept {
     force_[i] = best_force_[i] * share;
     displacement_[i] = gap_[i] + (best_displacement_[i] - gap_[i]) * share;
   }
-  answer.residual = FLT_MAX;
+  answer.residual = best_square_ = FLT_MAX;
   judge(answer);
 }
 

@@ -125,7 +125,13 @@ class ContactProblem {
                          std::span<const Vec4> force) noexcept;
   void sweep() noexcept;
   void project() noexcept;
-  [[nodiscard]] float residual() const noexcept;
+  /// Of the natural map.
+  struct Residual {
+    float square = 0;    ///< N^2
+    float of_force = 0;  ///< N^2, the forces'
+    [[nodiscard]] float relative() const noexcept;
+  };
+  [[nodiscard]] Residual residual() const noexcept;
   void judge(ContactAnswer& answer) noexcept;
   [[nodiscard]] bool newton(float accuracy, std::uint64_t work, ContactAnswer& answer) noexcept;
   void bound_energy(ContactAnswer& answer) noexcept;
@@ -133,6 +139,7 @@ class ContactProblem {
 
   Prices prices_;
   ContactPoints points_;
+  float best_square_ = 0;  ///< the least Residual::square
   FrictionContact* contact_ = nullptr;
   float* multiplier_ = nullptr;  ///< see local_force
   Float4* gap_ = nullptr;

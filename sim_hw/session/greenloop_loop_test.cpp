@@ -86,6 +86,15 @@ TEST_CASE("a model whose scene's work is the least that its body needs runs with
   CHECK(nlohmann::json::parse(run.output)["misses"] == 0);
 }
 
+TEST_CASE("short of work forces are no larger than they should be") {
+  const double right = run_json({"--transport", "memq"})["force_max"];
+  for (const char* budget : {"1000000", "1200000", "1800000"}) {
+    const double starved = run_json({"--transport", "memq", "--budget", budget})["force_max"];
+    CHECK(starved < 1.05 * right);
+    CHECK(starved > 0.5 * right);
+  }
+}
+
 TEST_CASE("in one process every cycle holds its budget, and every run has the same digest") {
   const auto json = run_json({"--transport", "memq"});
   CHECK(json["cycles"] == 1000);
