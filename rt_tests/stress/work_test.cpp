@@ -69,7 +69,7 @@ TEST_CASE("work is instructions on every way of the planner") {
     for (const std::uint64_t budget : {std::uint64_t{0}, any_budget, body.least_work()}) {
       const PredictedWork predicted = body.run({}, budget, 650);
       print_ratios(predicted.ways, predicted.all);
-      CHECK(predicted.all.least >= 0.6);  // the goal is 0.67: docs/results/speed.md
+      CHECK(predicted.all.least >= 0.66);  // the goal is 0.67: docs/results/speed.md
       within += predicted.all.within * static_cast<double>(predicted.all.steps);
       steps += static_cast<double>(predicted.all.steps);
       for (const auto& [way, ratios] : predicted.ways) ways.insert(way);
@@ -86,7 +86,7 @@ TEST_CASE("work is instructions on every way of the planner") {
 
 TEST_CASE("a cost that is forgotten or charged twice is seen") {
   const CountedBody body({.levels = 3});
-  for (const auto member : {&Prices::slot, &Prices::summed_block}) {
+  for (const auto member : {&Prices::layer, &Prices::summed_block}) {
     for (const std::uint32_t times : {0U, 3U}) {
       Prices prices;
       prices.*member *= times;

@@ -176,8 +176,8 @@ std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitan
     added = refinement.prediction.blocks ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
   }
   const Prices& prices = *scratch.prices;
-  return priced(column_length(couplings, column), prices.stored_block) + priced(loaded.count, prices.scaled_block) +
-         priced(added, meeting_price(prices, refinement.prediction));
+  return priced(1, prices.layer) + priced(column_length(couplings, column), prices.stored_block) +
+         priced(loaded.count, prices.scaled_block) + priced(added, meeting_price(prices, refinement.prediction));
 }
 
 // bound of what add_couplings returns
@@ -189,7 +189,7 @@ std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCap
   const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
   const Prices& prices = *scratch.prices;
   const std::uint64_t meetings = partial.panel ? 0 : 2 * length * partial.computed;
-  return priced(length, prices.stored_block + prices.scaled_block) +
+  return priced(1, prices.layer) + priced(length, prices.stored_block + prices.scaled_block) +
          priced(meetings, meeting_price(prices, refinement.prediction));
 }
 
@@ -314,6 +314,7 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
   partial.slots = assign_answers(partial, 0, first, finest, partial.slots, scratch);
   partial.own_visits = scratch.touched.visits;
   partial.layer = partial.next = partial.transformed = 0;
+  partial.has_diagonal = false;
   if (partial.panel) {
     list_steps(refinement, partial, first, scratch.touched, scratch);
   } else {
@@ -345,9 +346,15 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
     work += has_blocks ? add_couplings(refinement, partial, scratch) : 0;
     partial.layer = (partial.layer + 1) % layout::layers;
     partial.next += partial.layer == 0 ? 1 : 0;
-    if (partial.next == partial.slots) {
-      set_diagonal(refinement, partial, scratch);  // the largest last
+  }
+  if (!partial.has_diagonal) {  // the largest last
+    const std::uint64_t diagonal = priced(partial.own, scratch.prices->diagonal);
+    if (diagonal > allowance - work) {
+      return work;
     }
+    set_diagonal(refinement, partial, scratch);
+    partial.has_diagonal = true;
+    work += diagonal;
   }
   for (const std::uint32_t panel = partial.panel_pairs(); partial.has_blocks_left(); ++partial.transformed) {
     const bool in_panel = partial.transformed < panel;

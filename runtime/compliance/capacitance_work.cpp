@@ -45,7 +45,8 @@ std::uint64_t functionals_work(const CapacitanceCounts& counts) {
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
   const std::uint64_t between = smaller(counts.stored, counts.slots * (counts.slots + 1) / 2);
-  return priced(counts.stored, prices.stored_block) + priced(smaller(between, counts.meetings), prices.scaled_block);
+  return priced(layout::layers * counts.slots, prices.layer) + priced(counts.slots, prices.diagonal) +
+         priced(counts.stored, prices.stored_block) + priced(smaller(between, counts.meetings), prices.scaled_block);
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
