@@ -109,6 +109,15 @@ void set_diagonal(const Refinement& refinement, const PartialCapacitance& partia
   }
 }
 
+// work units of set_diagonal
+template <unsigned N>
+std::uint64_t diagonal_work(const Refinement& refinement, const PartialCapacitance& partial,
+                            const CapacitanceScratch<N>& scratch) {
+  const Prices& prices = *scratch.prices;
+  const std::uint64_t meetings = partial.panel ? 0 : scratch.functionals.slot_begin[partial.own];
+  return priced(partial.own, prices.diagonal) + priced(meetings, meeting_price(prices, refinement.prediction));
+}
+
 // blocks of the column of a slot, scaled on both sides
 template <unsigned N>
 struct LoadedColumn {
@@ -348,7 +357,7 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
     partial.next += partial.layer == 0 ? 1 : 0;
   }
   if (!partial.has_diagonal) {  // the largest last
-    const std::uint64_t diagonal = priced(partial.own, scratch.prices->diagonal);
+    const std::uint64_t diagonal = diagonal_work(refinement, partial, scratch);
     if (diagonal > allowance - work) {
       return work;
     }
@@ -358,9 +367,11 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
   }
   for (const std::uint32_t panel = partial.panel_pairs(); partial.has_blocks_left(); ++partial.transformed) {
     const bool in_panel = partial.transformed < panel;
+    const bool lists = partial.transformed + 1 == panel && partial.computed < partial.set.count;
     const std::uint64_t pair =
-        in_panel ? panel_pair_work(*scratch.prices, refinement.prediction, partial.own_visits, partial.computed)
-                 : sum_pair_work(*scratch.prices, refinement.prediction, touched.visits);
+        (in_panel ? panel_pair_work(*scratch.prices, refinement.prediction, partial.own_visits, partial.computed)
+                  : sum_pair_work(*scratch.prices, refinement.prediction, touched.visits)) +
+        (lists ? list_set_work(*scratch.prices, touched.visits) : 0);
     if (pair > allowance - work) {
       return work;
     }
@@ -370,7 +381,7 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
     } else {
       transform_sums(partial, partial.transformed - panel, scratch);
     }
-    if (partial.transformed + 1 == panel && partial.computed < partial.set.count) {
+    if (lists) {
       list_steps(refinement, partial, 0, touched, scratch);
     }
   }

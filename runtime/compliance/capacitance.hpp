@@ -93,9 +93,9 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
 
 /// Adds the blocks of as many coefficients as `allowance` holds, at Prices::layer for each layer, stored_block for each
 /// block that is stored, scaled_block for each that is between touched coefficients and, by functionals, meeting_price
-/// for each sum that one adds to; then the diagonal ones, at Prices::diagonal each; then transforms the couplings of
-/// two coefficients at a time, for panel_pair_work, and two of the computed rows at a time, for sum_pair_work. Returns
-/// the units spent. For the loop.
+/// for each sum that one adds to; then the diagonal ones, at Prices::diagonal and the sums' each; then transforms the
+/// couplings of two coefficients at a time, for panel_pair_work, after the last list_set_work, and two of the computed
+/// rows at a time, for sum_pair_work. Returns the units spent. For the loop.
 template <unsigned N>
 std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched,
                                      CapacitanceScratch<N>& scratch, std::uint64_t allowance,
