@@ -109,7 +109,7 @@ void release(Body& body, const Elastostatic::Response& response, std::uint64_t w
   const std::uint32_t finest = body.view->levels - 1;
   if (!response.displacement.empty()) {
     std::memset(static_cast<void*>(response.displacement.data()), 0, response.displacement.size_bytes());
-    work += priced(response.displacement.size(), body.counts.prices.node);
+    work += rest_field_work(body.counts.prices, response.displacement.size());
   }
   report.work = work;
   report.constraint_level = finest;

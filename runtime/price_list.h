@@ -11,63 +11,67 @@
 
 #define GREENLOOP_PRICES(ROW)                                                                    \
   /* whatever is held; contacts and columns */                                                   \
-  ROW(step, 88.9, 240, "a step")                                                                 \
-  ROW(level, 601, 1310, "a level that is planned")                                               \
-  ROW(factor, 4330, 2640, "a factor that is made")                                               \
-  ROW(batch, 62.7, 181, "a batch of rows of a capacitance matrix")                               \
-  ROW(field, 539, 112, "a field")                                                                \
-  ROW(checked_contact, 9.63, 11.3, "a contact that is checked")                                  \
-  ROW(resolved_contact, 58.1, 91.7, "a contact that is resolved at a level")                     \
-  ROW(sorted, 3.14, 0.652, "a value in a pass of a sort")                                        \
-  ROW(resolved_column, 11.4, 20.5, "a column of a resolved set")                                 \
-  ROW(solved_contact, 221, 69.5, "a contact that is solved for")                                 \
-  ROW(solved_column, 280, 58.1, "a column that is solved for")                                   \
-  ROW(blended_contact, 8.92, 10.5, "a contact whose force glides and is remembered")             \
+  ROW(step, 80, 145, "a step")                                                                   \
+  ROW(level, 849, 1180, "a level that is planned")                                               \
+  ROW(factor, 2740, 2500, "a factor that is made")                                               \
+  ROW(batch, 48.4, 97, "a batch of rows of a capacitance matrix")                                \
+  ROW(field, 543, 97.7, "a field")                                                               \
+  ROW(checked_contact, 7.61, 12.6, "a contact that is checked")                                  \
+  ROW(resolved_contact, 109, 91.1, "a contact that is resolved at a level")                      \
+  ROW(sorted, 3.21, 3.65, "a value in a pass of a sort")                                         \
+  ROW(resolved_column, 9.71, 21.2, "a column of a resolved set")                                 \
+  ROW(solved_contact, 224, 95.2, "a contact that is solved for")                                 \
+  ROW(solved_column, 196, 187, "a column that is solved for")                                    \
+  ROW(blended_contact, 6.79, 11.4, "a contact whose force glides and is remembered")             \
   /* factors that there are */                                                                   \
-  ROW(cached_factor, 24.2, 92.3, "a factor that is looked at for a set")                         \
-  ROW(cached_column, 6.25, 12, "a column that is compared with it")                              \
-  ROW(near_factor, 15.5, 168, "a factor that is compared for changes")                           \
-  ROW(near_column, 35.1, 70.3, "a column of it")                                                 \
+  ROW(cached_factor, 24.1, 41.8, "a factor that is looked at for a set")                         \
+  ROW(cached_column, 6.9, 12.3, "a column that is compared with it")                             \
+  ROW(near_factor, 14.4, 88.9, "a factor that is compared for changes")                          \
+  ROW(near_column, 37.7, 84.4, "a column of it")                                                 \
   /* coefficients that forces reach */                                                           \
-  ROW(visit, 4.88, 18.9, "a visit of finding them")                                              \
-  ROW(touched, 4.55, 16.7, "a coefficient that is found")                                        \
-  ROW(counted, 3.12, 9.86, "a coefficient whose blocks are counted")                             \
-  ROW(dropped, 3.74, 10.9, "a coefficient of a batch that is given up")                          \
+  ROW(visit, 9.28, 23.6, "a visit of finding them")                                              \
+  ROW(touched, 6.58, 16.5, "a coefficient that is found")                                        \
+  ROW(counted, 4.05, 9.32, "a coefficient whose blocks are counted")                             \
+  ROW(dropped, 3.75, 11.5, "a coefficient of a batch that is given up")                          \
   /* capacitance matrices */                                                                     \
-  ROW(listed_visit, 4.46, 8.99, "a visit of the computed rows, listed")                          \
-  ROW(set_visit, 6.03, 14.5, "a visit of the set, listed")                                       \
-  ROW(slot, 898, 999, "a coefficient with its scaled diagonal block")                            \
-  ROW(cleared, 1.22, 3.09, "a sum that is cleared")                                              \
-  ROW(functional_visit, 7.16, 7.12, "a visit of a functional, found")                            \
-  ROW(functional, 2.23, 2.83, "a coefficient of a functional, a transform")                      \
-  ROW(stored_block, 20.3, 26.7, "a stored block whose row is looked up")                         \
-  ROW(scaled_block, 151, 442, "a block between coefficients that are reached, scaled and added") \
-  ROW(meeting, 24.3, 48, "a block times a weight of a functional")                               \
-  ROW(meeting_by_blocks, 58.2, 195, "the same where weights are blocks")                         \
-  ROW(pair_visit, 15.9, 144, "a visit of the inverse transform of two rows")                     \
-  ROW(pair_visit_by_blocks, 53, 360, "the same where weights are blocks")                        \
-  ROW(panel_row, 114, 321, "a row that two coefficients' couplings are handed to")               \
-  ROW(stored_entry, 74.7, 15.5, "an entry of the matrix, N x N, that is stored")                 \
+  ROW(listed_visit, 4.28, 8.92, "a visit of the computed rows, listed")                          \
+  ROW(set_visit, 5.96, 15.5, "a visit of the set, listed")                                       \
+  ROW(slot, 396, 752, "a coefficient that has a place in the panel or the sums")                 \
+  ROW(layer, 264, 255, "a layer of it whose blocks are looked up")                               \
+  ROW(diagonal, 179, 271, "its scaled diagonal block")                                           \
+  ROW(cleared, 2.34, 4.01, "a sum that is cleared")                                              \
+  ROW(functional_visit, 34.8, 38.3, "a visit of a functional, found")                            \
+  ROW(functional, 3.55, 6.01, "a coefficient of a functional, a transform")                      \
+  ROW(stored_block, 4.13, 5.39, "a stored block whose row is looked up")                         \
+  ROW(scaled_block, 132, 297, "a block between coefficients that are reached, scaled and added") \
+  ROW(meeting, 21.8, 53.3, "a block times a weight of a functional")                             \
+  ROW(meeting_by_blocks, 58.7, 122, "the same where weights are blocks")                         \
+  ROW(pair_visit, 10.7, 53.4, "a visit of the inverse transform of two rows")                    \
+  ROW(pair_visit_by_blocks, 52, 213, "the same where weights are blocks")                        \
+  ROW(panel_row, 123, 115, "a row that two coefficients' couplings are handed to")               \
+  ROW(stored_entry, 43.1, 48.1, "an entry of the matrix, N x N, that is stored")                 \
   /* factors that are made */                                                                    \
-  ROW(eliminated, 1.53, 2.11, "a multiply-add of a factorisation")                               \
-  ROW(passed, 1.12, 0.234, "an entry of a matrix in a pass over it")                             \
-  ROW(substituted, 1.02, 8.73, "a multiply-add of a solution")                                   \
-  ROW(appended, 2.54, 4.05, "a multiply-add of bordering")                                       \
-  ROW(removed, 2.7, 4.53, "a multiply-add of a rank-one update")                                 \
-  ROW(placed_column, 0.387, 0.621, "a column whose place in a factor is found")                  \
+  ROW(eliminated, 1.84, 3.52, "a multiply-add of a factorisation")                               \
+  ROW(passed, 2.16, 0.16, "an entry of a matrix in a pass over it")                              \
+  ROW(substituted, 1.21, 7.1, "a multiply-add of a solution")                                    \
+  ROW(appended, 2.94, 3.46, "a multiply-add of bordering")                                       \
+  ROW(removed, 2.96, 4.71, "a multiply-add of a rank-one update")                                \
+  ROW(placed_column, 0.41, 0.613, "a column whose place in a factor is found")                   \
   /* fields */                                                                                   \
-  ROW(force_visit, 4.8, 12.8, "a visit of the transform of forces")                              \
-  ROW(force_visit_by_blocks, 41.9, 61.3, "the same where weights are blocks")                    \
-  ROW(force_column, 32.3, 6.7, "a column or contact whose force or displacement is entered")     \
-  ROW(coefficient, 1030, 547, "a coefficient whose couplings are summed")                        \
-  ROW(summed_block, 16.5, 54.1, "a block in a sum")                                              \
-  ROW(scaled_sum, 13.4, 14.2, "a coefficient whose sum is scaled")                               \
-  ROW(detail, 8.36, 12.1, "a coefficient whose detail is added")                                 \
-  ROW(node, 1.14, 7.07, "a displaced node")                                                      \
-  ROW(linear_node, 30, 136, "a node that is predicted from its parents")                         \
-  ROW(butterfly_node, 63.5, 163, "a node that is predicted by a stencil")                        \
-  ROW(block_node, 82.9, 511, "a node that is predicted by blocks")                               \
-  ROW(block_term, 5.73, 18.4, "a block that it is predicted by")                                 \
+  ROW(force_visit, 6.65, 9.58, "a visit of the transform of forces")                             \
+  ROW(force_visit_by_blocks, 40.7, 95.3, "the same where weights are blocks")                    \
+  ROW(force_column, 48.5, 7.12, "a column or contact whose force or displacement is entered")    \
+  ROW(coefficient, 972, 683, "a coefficient whose couplings are summed")                         \
+  ROW(summed_block, 17.3, 51.8, "a block in a sum")                                              \
+  ROW(scaled_sum, 13.5, 21.8, "a coefficient whose sum is scaled")                               \
+  ROW(detail, 8.46, 14.4, "a coefficient whose detail is added")                                 \
+  ROW(node, 1.16, 1.68, "a displaced node")                                                      \
+  ROW(resting_field, 63, 101, "a field of a body at rest")                                       \
+  ROW(resting_node, 0.895, 6.92, "a node of it")                                                 \
+  ROW(linear_node, 30.4, 141, "a node that is predicted from its parents")                       \
+  ROW(butterfly_node, 60, 176, "a node that is predicted by a stencil")                          \
+  ROW(block_node, 80.6, 455, "a node that is predicted by blocks")                               \
+  ROW(block_term, 5.83, 15.5, "a block that it is predicted by")                                 \
   /* unilateral contacts */                                                                      \
   ROW(law, 350, 350, "a unilateral contact whose law is set up")                                 \
   ROW(law_block, 13, 13, "a block of their compliance, in one direction")                        \

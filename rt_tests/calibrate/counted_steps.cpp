@@ -21,12 +21,13 @@ Eigen::VectorXd works(const std::vector<RanStep>& ran) {
 // those that were answered, whose work is that of their counts
 CountedSteps kept_steps(const std::vector<RanStep>& ran, const Eigen::VectorXd& work, const Eigen::MatrixXd& counts,
                         const Prices& prices) {
-  constexpr double rounding = 1e-4;
+  constexpr double rounding = 1e-4, of_a_term = 2;  // units: the work of a body at rest has two terms
   const Eigen::VectorXd of_counts = counts * in_units(prices);
   CountedSteps kept;
   for (std::size_t i = 0; i < ran.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    const bool right = std::abs(of_counts[row] - work[row]) <= rounding * work[row] && counts.row(row).minCoeff() >= 0;
+    const double off = std::abs(of_counts[row] - work[row]);
+    const bool right = off <= std::max(rounding * work[row], of_a_term) && counts.row(row).minCoeff() >= 0;
     if (!right || ran[i].way.empty()) continue;
     kept.step.push_back(i);
     kept.way.push_back(ran[i].way);

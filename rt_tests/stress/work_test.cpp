@@ -2,6 +2,7 @@
 // that is forgotten or charged twice is seen.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -59,6 +60,24 @@ class CountedBody {
   std::string file_;
 };
 
+// of the ways that enough steps are answered: their medians, furthest from 1 on either side
+struct Medians {
+  double least = 1;
+  double most = 1;
+  [[nodiscard]] bool are_true() const { return least >= 0.925 && most <= 1.075; }
+};
+
+Medians medians_of(const PredictedWork& predicted) {
+  constexpr std::uint64_t enough = 20;  // steps
+  Medians medians;
+  for (const auto& [way, ratios] : predicted.ways) {
+    if (ratios.steps < enough) continue;
+    medians.least = std::min(medians.least, ratios.median);
+    medians.most = std::max(medians.most, ratios.median);
+  }
+  return medians;
+}
+
 TEST_CASE("work is instructions on every way of the planner") {
   std::set<std::string> ways;
   for (const layout::Wavelet wavelet :
@@ -69,7 +88,8 @@ TEST_CASE("work is instructions on every way of the planner") {
     for (const std::uint64_t budget : {std::uint64_t{0}, any_budget, body.least_work()}) {
       const PredictedWork predicted = body.run({}, budget, 650);
       print_ratios(predicted.ways, predicted.all);
-      CHECK(predicted.all.least >= 0.6);  // the goal is 0.67: docs/results/speed.md
+      CHECK(predicted.all.least >= 0.67);
+      CHECK(medians_of(predicted).are_true());
       within += predicted.all.within * static_cast<double>(predicted.all.steps);
       steps += static_cast<double>(predicted.all.steps);
       for (const auto& [way, ratios] : predicted.ways) ways.insert(way);
@@ -86,12 +106,15 @@ TEST_CASE("work is instructions on every way of the planner") {
 
 TEST_CASE("a cost that is forgotten or charged twice is seen") {
   const CountedBody body({.levels = 3});
-  for (const auto member : {&Prices::slot, &Prices::summed_block}) {
+  for (const auto member : {&Prices::slot, &Prices::layer, &Prices::summed_block}) {
     for (const std::uint32_t times : {0U, 3U}) {
       Prices prices;
       prices.*member *= times;
-      const RatioQuantiles all = body.run(prices, any_budget, 325).all;
-      CHECK((all.within < 0.95 || all.least < 0.67));
+      const PredictedWork predicted = body.run(prices, any_budget, 325);
+      const Medians medians = medians_of(predicted);
+      MESSAGE("within " << predicted.all.within << ", least " << predicted.all.least << ", medians " << medians.least
+                        << " to " << medians.most);
+      CHECK((predicted.all.within < 0.95 || predicted.all.least < 0.67 || !medians.are_true()));
     }
   }
 }

@@ -117,24 +117,42 @@ inline Block<1> scaled(float factor, const Block<1>& m) { return {{factor * m.co
 
 /// sum += m
 inline void add(const Block<3>& m, Block<3>& sum) {
-  sum.column[0] += m.column[0];
-  sum.column[1] += m.column[1];
-  sum.column[2] += m.column[2];
+  for (std::size_t c = 0; c < 3; ++c) {
+    if constexpr (has_vectors) {
+      sum.column[c] += m.column[c];
+    } else {
+      for (std::size_t r = 0; r < 3; ++r) {
+        sum.column[c][r] += m.column[c][r];
+      }
+    }
+  }
 }
 inline void add(const Block<1>& m, Block<1>& sum) { sum.column[0] += m.column[0]; }
 
 /// sum += weight m
 inline void add(float weight, const Block<3>& m, Block<3>& sum) {
-  const Float4 of_all = splat(weight);
-  sum.column[0] += of_all * m.column[0];
-  sum.column[1] += of_all * m.column[1];
-  sum.column[2] += of_all * m.column[2];
+  for (std::size_t c = 0; c < 3; ++c) {
+    if constexpr (has_vectors) {
+      sum.column[c] += splat(weight) * m.column[c];
+    } else {
+      for (std::size_t r = 0; r < 3; ++r) {
+        sum.column[c][r] += weight * m.column[c][r];
+      }
+    }
+  }
 }
 inline void add(float weight, const Block<1>& m, Block<1>& sum) { sum.column[0] += weight * m.column[0]; }
 
 /// Block times vector: the fourth lane is 0 if that of `x` is.
 inline Float4 product(const Block<3>& m, const Splats<3>& x) {
-  return (m.column[0] * x.of[0] + m.column[1] * x.of[1]) + m.column[2] * x.of[2];
+  if constexpr (has_vectors) {
+    return (m.column[0] * x.of[0] + m.column[1] * x.of[1]) + m.column[2] * x.of[2];
+  } else {
+    const auto row = [&](std::size_t r) {
+      return (m.column[0][r] * x.of[0][r] + m.column[1][r] * x.of[1][r]) + m.column[2][r] * x.of[2][r];
+    };
+    return Float4{row(0), row(1), row(2), 0.0F};
+  }
 }
 inline float product(const Block<1>& m, const Splats<1>& x) { return m.column[0] * x.of[0]; }
 

@@ -11,6 +11,13 @@ namespace greenloop {
 /// -ffp-contract=off every bit, is the same on every instruction set.
 using Float4 = float __attribute__((vector_size(16)));
 
+/// Whether the target has vectors of four floats. Where it has none, lanes that nobody reads are left out.
+#if defined(__SSE2__) || defined(__ARM_NEON)
+inline constexpr bool has_vectors = true;
+#else
+inline constexpr bool has_vectors = false;
+#endif
+
 inline Float4 splat(float value) { return Float4{value, value, value, value}; }
 
 namespace detail {

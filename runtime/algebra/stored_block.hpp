@@ -11,6 +11,18 @@ namespace greenloop {
 // A stored value of a 3x3 block is moved to the top bits of a 32-bit lane, which needs no sign extension; the power of
 // two that this multiplies by is undone, exactly, in the factor that the block is multiplied with.
 
+namespace detail {
+
+/// Where there are no vectors. value(k): stored value k in the top bits of a word.
+template <class Value>
+Block<3> block_of_values(Value value) {
+  const auto number = [&](std::size_t k) { return static_cast<float>(static_cast<std::int32_t>(value(k))); };
+  const auto column = [&](std::size_t k) { return Float4{number(k), number(k + 1), number(k + 2), 0.0F}; };
+  return {{column(0), column(3), column(6)}};
+}
+
+}  // namespace detail
+
 /// Stored N x N blocks of `bits` a value: see layout::CouplingsHeader. Reads at most 16 bytes beyond a block.
 template <unsigned N, unsigned bits>
 struct StoredBlock;
@@ -22,6 +34,10 @@ struct StoredBlock<3, 4> {
   static Block<3> load(const std::byte* value) {
     std::uint64_t word;
     std::memcpy(&word, value, sizeof word);
+    if constexpr (!has_vectors) {
+      const std::uint32_t half[2] = {static_cast<std::uint32_t>(word), static_cast<std::uint32_t>(word >> 32)};
+      return detail::block_of_values([&](std::size_t k) { return half[k / 8] >> 4 * (k % 8) << 28; });
+    }
     // four copies of the nibbles of a column, each shifted until another nibble is on top
     constexpr std::uint64_t copies = 0x0001000100010001;
     constexpr detail::UHalf8 shift = {0x1000, 0x100, 0x10, 1, 0x1000, 0x100, 0x10, 1};
@@ -39,6 +55,9 @@ struct StoredBlock<3, 8> {
   static constexpr std::size_t bytes = 9;
   static constexpr float widening = detail::byte_widening;
   static Block<3> load(const std::byte* value) {
+    if constexpr (!has_vectors) {
+      return detail::block_of_values([&](std::size_t k) { return std::to_integer<std::uint32_t>(value[k]) << 24; });
+    }
     return {{detail::load_bytes(value), detail::load_bytes(value + 3), detail::load_bytes(value + 6)}};
   }
 };
@@ -48,6 +67,13 @@ struct StoredBlock<3, 16> {
   static constexpr std::size_t bytes = 18;
   static constexpr float widening = 0x1p-16F;
   static Block<3> load(const std::byte* value) {
+    if constexpr (!has_vectors) {
+      return detail::block_of_values([&](std::size_t k) {
+        std::uint16_t half;
+        std::memcpy(&half, value + sizeof half * k, sizeof half);
+        return std::uint32_t{half} << 16;
+      });
+    }
     return {{detail::load_halves(value), detail::load_halves(value + 6), detail::load_halves(value + 12)}};
   }
 };

@@ -109,6 +109,15 @@ void set_diagonal(const Refinement& refinement, const PartialCapacitance& partia
   }
 }
 
+// work units of set_diagonal
+template <unsigned N>
+std::uint64_t diagonal_work(const Refinement& refinement, const PartialCapacitance& partial,
+                            const CapacitanceScratch<N>& scratch) {
+  const Prices& prices = *scratch.prices;
+  const std::uint64_t meetings = partial.panel ? 0 : scratch.functionals.slot_begin[partial.own];
+  return priced(partial.own, prices.diagonal) + priced(meetings, meeting_price(prices, refinement.prediction));
+}
+
 // blocks of the column of a slot, scaled on both sides
 template <unsigned N>
 struct LoadedColumn {
@@ -176,8 +185,8 @@ std::uint64_t add_couplings(const Refinement& refinement, const PartialCapacitan
     added = refinement.prediction.blocks ? add_to_sums<true>(loaded, scratch) : add_to_sums<false>(loaded, scratch);
   }
   const Prices& prices = *scratch.prices;
-  return priced(column_length(couplings, column), prices.stored_block) + priced(loaded.count, prices.scaled_block) +
-         priced(added, meeting_price(prices, refinement.prediction));
+  return priced(1, prices.layer) + priced(column_length(couplings, column), prices.stored_block) +
+         priced(loaded.count, prices.scaled_block) + priced(added, meeting_price(prices, refinement.prediction));
 }
 
 // bound of what add_couplings returns
@@ -189,7 +198,7 @@ std::uint64_t most_couplings_work(const Refinement& refinement, const PartialCap
   const std::uint64_t length = column_length(level.couplings[partial.layer], coefficient - level.domain_begin);
   const Prices& prices = *scratch.prices;
   const std::uint64_t meetings = partial.panel ? 0 : 2 * length * partial.computed;
-  return priced(length, prices.stored_block + prices.scaled_block) +
+  return priced(1, prices.layer) + priced(length, prices.stored_block + prices.scaled_block) +
          priced(meetings, meeting_price(prices, refinement.prediction));
 }
 
@@ -314,6 +323,7 @@ void begin_capacitance(const Refinement& refinement, const Touched& touched, Cap
   partial.slots = assign_answers(partial, 0, first, finest, partial.slots, scratch);
   partial.own_visits = scratch.touched.visits;
   partial.layer = partial.next = partial.transformed = 0;
+  partial.has_diagonal = false;
   if (partial.panel) {
     list_steps(refinement, partial, first, scratch.touched, scratch);
   } else {
@@ -345,15 +355,23 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
     work += has_blocks ? add_couplings(refinement, partial, scratch) : 0;
     partial.layer = (partial.layer + 1) % layout::layers;
     partial.next += partial.layer == 0 ? 1 : 0;
-    if (partial.next == partial.slots) {
-      set_diagonal(refinement, partial, scratch);  // the largest last
+  }
+  if (!partial.has_diagonal) {  // the largest last
+    const std::uint64_t diagonal = diagonal_work(refinement, partial, scratch);
+    if (diagonal > allowance - work) {
+      return work;
     }
+    set_diagonal(refinement, partial, scratch);
+    partial.has_diagonal = true;
+    work += diagonal;
   }
   for (const std::uint32_t panel = partial.panel_pairs(); partial.has_blocks_left(); ++partial.transformed) {
     const bool in_panel = partial.transformed < panel;
+    const bool lists = partial.transformed + 1 == panel && partial.computed < partial.set.count;
     const std::uint64_t pair =
-        in_panel ? panel_pair_work(*scratch.prices, refinement.prediction, partial.own_visits, partial.computed)
-                 : sum_pair_work(*scratch.prices, refinement.prediction, touched.visits);
+        (in_panel ? panel_pair_work(*scratch.prices, refinement.prediction, partial.own_visits, partial.computed)
+                  : sum_pair_work(*scratch.prices, refinement.prediction, touched.visits)) +
+        (lists ? list_set_work(*scratch.prices, touched.visits) : 0);
     if (pair > allowance - work) {
       return work;
     }
@@ -363,7 +381,7 @@ std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched
     } else {
       transform_sums(partial, partial.transformed - panel, scratch);
     }
-    if (partial.transformed + 1 == panel && partial.computed < partial.set.count) {
+    if (lists) {
       list_steps(refinement, partial, 0, touched, scratch);
     }
   }

@@ -74,6 +74,7 @@ struct PartialCapacitance {
   // the coefficient whose blocks are added next
   std::uint32_t layer = 0;
   std::uint32_t next = 0;
+  bool has_diagonal = false;
   std::uint32_t transformed = 0;  ///< pairs of rows, of the panel and then of the sums
 
   [[nodiscard]] std::uint32_t panel_pairs() const noexcept {
@@ -85,14 +86,15 @@ struct PartialCapacitance {
 };
 
 /// Finds the slots and the steps of T^-1 or the functionals. partial: its set, number of rows and panel. For the loop;
-/// work: begin_capacitance_work, which holds that of the diagonal, to be added after the blocks.
+/// work: begin_capacitance_work.
 template <unsigned N>
 void begin_capacitance(const Refinement& refinement, const Touched& touched, CapacitanceScratch<N>& scratch,
                        Vector<N>* force, PartialCapacitance& partial) noexcept;
 
-/// Adds the blocks of as many coefficients as `allowance` holds, at Prices::stored_block for each that is stored,
-/// scaled_block for each that is between touched coefficients and, by functionals, meeting_price for each sum that one
-/// adds to; then transforms the couplings of two coefficients at a time, for panel_pair_work, and two of the computed
+/// Adds the blocks of as many coefficients as `allowance` holds, at Prices::layer for each layer, stored_block for each
+/// block that is stored, scaled_block for each that is between touched coefficients and, by functionals, meeting_price
+/// for each sum that one adds to; then the diagonal ones, at Prices::diagonal and the sums' each; then transforms the
+/// couplings of two coefficients at a time, for panel_pair_work, after the last list_set_work, and two of the computed
 /// rows at a time, for sum_pair_work. Returns the units spent. For the loop.
 template <unsigned N>
 std::uint64_t add_capacitance_blocks(const Refinement& refinement, const Touched& touched,

@@ -15,6 +15,10 @@ std::uint64_t own_visits(const CapacitanceCounts& counts) { return smaller(count
 
 bool panel_of(const CapacitanceCounts& counts) { return has_panel(counts.room, counts.slots, counts.rows); }
 
+// of listing the steps of T^-1 for the set; with a panel of some of its rows that is done after the panel
+std::uint64_t list_work(const CapacitanceCounts& counts) { return list_set_work(*counts.prices, counts.set_visits); }
+bool lists_after_panel(const CapacitanceCounts& counts) { return panel_of(counts) && counts.rows < counts.columns; }
+
 // most slots of a set that has a panel
 std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
   std::uint64_t slots = counts.slots;
@@ -28,7 +32,7 @@ std::uint64_t most_panel_slots(const CapacitanceCounts& counts) {
 std::uint64_t begin_batch_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
   return priced(1, prices.batch) + priced(own_visits(counts), prices.listed_visit) +
-         priced(counts.set_visits, prices.set_visit) + priced(counts.slots, prices.slot) +
+         (lists_after_panel(counts) && !counts.bounds ? 0 : list_work(counts)) + priced(counts.slots, prices.slot) +
          priced(merge_sort_steps(counts.rows), prices.sorted);
 }
 
@@ -45,7 +49,13 @@ std::uint64_t functionals_work(const CapacitanceCounts& counts) {
 std::uint64_t stored_work(const CapacitanceCounts& counts) {
   const Prices& prices = *counts.prices;
   const std::uint64_t between = smaller(counts.stored, counts.slots * (counts.slots + 1) / 2);
-  return priced(counts.stored, prices.stored_block) + priced(smaller(between, counts.meetings), prices.scaled_block);
+  return priced(layout::layers * counts.slots, prices.layer) + priced(counts.slots, prices.diagonal) +
+         priced(counts.stored, prices.stored_block) + priced(smaller(between, counts.meetings), prices.scaled_block);
+}
+
+// a functional meets the blocks of others, and on the diagonal that of each of its own coefficients
+std::uint64_t meetings_work(const CapacitanceCounts& counts) {
+  return priced(counts.meetings + counts.coefficients, meeting_price(*counts.prices, counts.prediction));
 }
 
 std::uint64_t panel_work(const CapacitanceCounts& counts, std::uint64_t slots) {
@@ -136,7 +146,8 @@ std::uint64_t add_capacitance_blocks_work(const CapacitanceCounts& counts) noexc
   const std::uint64_t slots = counts.bounds ? most_panel_slots(counts) : counts.slots;
   return stored_work(counts) +
          pairs(counts.rows) * sum_pair_work(*counts.prices, counts.prediction, counts.set_visits) +
-         (panel_of(counts) ? 0 : priced(counts.meetings, meeting_price(*counts.prices, counts.prediction))) +
+         (panel_of(counts) ? 0 : meetings_work(counts)) +
+         (lists_after_panel(counts) || counts.bounds ? list_work(counts) : 0) +
          (panel_of(counts) || counts.bounds ? panel_work(counts, slots) : 0);
 }
 

@@ -128,6 +128,11 @@ constexpr std::uint64_t sum_pair_work(const Prices& prices, const Prediction& pr
   return priced(set_visits, pair_visit_price(prices, prediction));
 }
 
+/// Work units of listing the steps of T^-1 for a set.
+constexpr std::uint64_t list_set_work(const Prices& prices, std::uint64_t set_visits) {
+  return priced(set_visits, prices.set_visit);
+}
+
 /// Work units of begin_capacitance.
 [[nodiscard]] std::uint64_t begin_capacitance_work(const CapacitanceCounts& counts) noexcept;
 

@@ -94,6 +94,12 @@ std::uint64_t most_force_work(const ModelCounts& counts, SetCounts set, std::uin
   return most;
 }
 
+// of a body at rest, surfaces that touch nothing that moves among its constraints
+std::uint64_t rest_work(const Elastostatic::Limits& limits, const ModelCounts& counts, const SetCounts& set) {
+  const std::uint64_t field = limits.forces_only ? 0 : rest_field_work(counts.prices, counts.nodes[counts.levels - 1]);
+  return check_work(limits, counts) + most_force_work(counts, set, least_iterations(limits.iterations)) + field;
+}
+
 // by constraint level
 struct MostOf {
   const MostCounts* contacts;
@@ -151,6 +157,9 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     part = limits.glide_cycles > 1 ? larger(part, plan_part_work(counts, most)) : 0;
     finer_answer = answer;
   }
+  const std::uint64_t rest = rest_work(limits, counts, most_of.contacts[finest].set);
+  requirement.worst_work[finest] = larger(requirement.worst_work[finest], rest);
+  requirement.least_work = larger(requirement.least_work, rest);
 }
 
 // columns of two sets, which may have none in common

@@ -71,6 +71,11 @@ constexpr std::uint32_t least_iterations(std::uint32_t iterations) { return iter
 [[nodiscard]] std::uint64_t load_field_work(const ModelCounts& model, const LoadCounts& loads, std::uint32_t details,
                                             std::uint64_t blocks) noexcept;
 
+/// Work units of the field of a body at rest.
+constexpr std::uint64_t rest_field_work(const Prices& prices, std::uint64_t nodes) {
+  return priced(1, prices.resting_field) + priced(nodes, prices.resting_node);
+}
+
 /// Work units of a field that sums `blocks` blocks.
 [[nodiscard]] std::uint64_t field_work(const ModelCounts& model, const SetCounts& set, const FieldLevels& levels,
                                        std::uint64_t blocks) noexcept;

@@ -137,5 +137,19 @@ TEST_CASE("a budget of the finest level's declared work is never too small") {
   }
 }
 
+TEST_CASE("a body at rest takes what is declared at most, however dear its nodes are") {
+  const TestModel model({.levels = 3});
+  Elastostatic::Limits limits{.max_contacts = 4, .cached_factors = 2};
+  const Elastostatic::Requirement usual = Elastostatic::required(model.model(), limits);
+  limits.prices.resting_node = std::uint32_t{1} << 24;
+  const Elastostatic::Requirement dear = Elastostatic::required(model.model(), limits);
+  const std::uint64_t rest = rest_field_work(limits.prices, model.view().node_count);
+  CHECK(rest > usual.worst_work[2]);
+  CHECK(dear.least_work > rest);
+  CHECK(dear.worst_work[2] > rest);
+  limits.forces_only = true;
+  CHECK(Elastostatic::required(model.model(), limits).least_work < usual.least_work);
+}
+
 }  // namespace
 }  // namespace greenloop

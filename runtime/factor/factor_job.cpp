@@ -216,9 +216,9 @@ std::uint32_t list_batch(const Factor& factor, ColumnSet set, std::uint32_t most
   return added;
 }
 
-// prepares for the nodes that enter
+// prepares for the nodes that enter; the units that that took
 template <unsigned N>
-void begin_batch(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, std::uint32_t width) {
+std::uint64_t begin_batch(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, std::uint32_t width) {
   const Factor& factor = job.factor;
   std::uint32_t* const order = tools.scratch.order;
   std::memcpy(order, factor.node, sizeof(std::uint32_t) * factor.columns);
@@ -229,7 +229,12 @@ void begin_batch(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, std
   job.counts = {};
   job.counts.columns = job.columns;
   count_factor({job.columns, job.column}, job.touched, tools.cost, tools.stored, job.counts);
+  ChangeCounts changes{.added = added};
+  for (std::uint32_t k = factor.columns; k < job.columns; ++k) {
+    changes.entering.add(tools.cost, order[k], job.touched);
+  }
   job.batch = begin_rows(tools, job.touched, {job.columns, order}, added);
+  return begin_rows_work(tools.counts, job.counts, changes);
 }
 
 // borders the factor by the next node of the batch; without columns if it is not positive definite
@@ -277,12 +282,13 @@ bool continue_changes(FactorJob& job, const FactorTools<N>& tools, ColumnSet set
   if (begin > allowance - work) {
     return false;
   }
-  work += begin - leave_work(tools.counts, whole.columns, job.changes.removed) + begin_from(job, tools);
+  const std::uint64_t most_for_rows = most_begin_rows_work(tools.counts, whole);
+  work += begin - most_for_rows - leave_work(tools.counts, whole.columns, job.changes.removed) + begin_from(job, tools);
   if (job.changes.missing > 0) {
     job.spent = begin;
-    const std::uint64_t width =
-        slice.moving ? most_in_a_slice(tools.counts, whole, allowance - work) : most_in_a_batch(tools.counts, whole);
-    begin_batch(job, tools, set, static_cast<std::uint32_t>(width));
+    const std::uint64_t width = slice.moving ? most_in_a_slice(tools.counts, whole, allowance - work - most_for_rows)
+                                             : most_in_a_batch(tools.counts, whole);
+    work += begin_batch(job, tools, set, static_cast<std::uint32_t>(width));
   }
   return true;
 }

@@ -86,9 +86,9 @@ struct FactorProgress {
 
 /// Continues, within its allowance, the factor of a set, or begins it with the nearest cached one. whole: what the
 /// set's fresh factor takes. The allowance is used up but for less than the next of: compare_factors_work,
-/// begin_batch_work, the blocks of one coefficient in a layer (add_capacitance_blocks), enter_work. Nodes whose matrix
-/// turned out not to be positive definite are not begun again: of a set with all of them nothing is pending. For the
-/// loop.
+/// begin_batch_work, the blocks of one coefficient in a layer or the diagonal (add_capacitance_blocks), enter_work.
+/// Nodes whose matrix turned out not to be positive definite are not begun again: of a set with all of them nothing is
+/// pending. For the loop.
 template <unsigned N>
 FactorProgress continue_factor(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
                                const Slice& slice) noexcept;

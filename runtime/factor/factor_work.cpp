@@ -113,6 +113,7 @@ std::uint64_t most_in_a_slice(const FactorCounts& model, const SetCounts& whole,
     CapacitanceCounts counts = capacitance_counts(model, whole);
     counts.rows = rows;
     counts.visits = counts.visits * rows / whole.columns;
+    counts.coefficients = counts.coefficients * rows / whole.columns;
     counts.meetings = counts.meetings * rows / whole.columns;
     return add_capacitance_blocks_work(counts) + rows * enter_work(model, whole, whole.columns);
   };
@@ -135,7 +136,15 @@ std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set, 
   const Prices& prices = model.prices;
   return (1 + removed) * kept_work(model, order) + priced(std::uint64_t{order} * order / 2, prices.passed) +
          leave_work(model, set.columns, removed) + priced((12 + 2 * removed) * columns, prices.placed_column) +
-         touch_work(prices, set) + begin_capacitance_work(batch_counts(model, set));
+         most_begin_rows_work(model, set);
+}
+
+std::uint64_t most_begin_rows_work(const FactorCounts& model, const SetCounts& whole) noexcept {
+  return touch_work(model.prices, whole) + begin_capacitance_work(batch_counts(model, whole));
+}
+
+std::uint64_t begin_rows_work(const FactorCounts& model, const SetCounts& set, const ChangeCounts& changes) noexcept {
+  return touch_work(model.prices, set) + begin_capacitance_work(entering_counts(model, set, changes));
 }
 
 std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set, std::uint64_t columns_before) noexcept {

@@ -83,10 +83,17 @@ void count_factor(ColumnSet set, const Touched& touched, const ColumnCosts& cost
 [[nodiscard]] std::uint64_t leave_work(const FactorCounts& model, std::uint64_t columns,
                                        std::uint64_t removed) noexcept;
 
-/// Work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of the batch;
-/// leave_work, which it holds, is a bound.
+/// Bound of the work units of beginning a batch for a set that differs from a factor by `removed` nodes and those of
+/// the batch. It holds leave_work and most_begin_rows_work.
 [[nodiscard]] std::uint64_t begin_batch_work(const FactorCounts& model, const SetCounts& set,
                                              std::uint64_t removed) noexcept;
+
+/// Bound of begin_rows_work for any batch of a whole set.
+[[nodiscard]] std::uint64_t most_begin_rows_work(const FactorCounts& model, const SetCounts& whole) noexcept;
+
+/// Work units of touching a set and beginning the rows of the nodes among it that enter.
+[[nodiscard]] std::uint64_t begin_rows_work(const FactorCounts& model, const SetCounts& set,
+                                            const ChangeCounts& changes) noexcept;
 
 /// Work units of bordering the factor of a whole set by a node.
 [[nodiscard]] std::uint64_t enter_work(const FactorCounts& model, const SetCounts& set,
