@@ -73,11 +73,11 @@
   ROW(block_node, 80.6, 455, "a node that is predicted by blocks")                               \
   ROW(block_term, 5.83, 15.5, "a block that it is predicted by")                                 \
   /* unilateral contacts */                                                                      \
-  ROW(law, 350, 350, "a unilateral contact whose law is set up")                                 \
-  ROW(law_block, 13, 13, "a block of their compliance, in one direction")                        \
-  ROW(swept_law, 850, 850, "a contact in a pair of sweeps")                                      \
-  ROW(projected_law, 200, 200, "a contact that is projected onto its cone")                      \
-  ROW(frozen_law, 600, 600, "a contact in a Newton step")                                        \
-  ROW(law_vector, 350, 350, "a contact in a vector of it")
+  ROW(law, 350, 1090, "a unilateral contact whose law is set up")                                \
+  ROW(law_block, 13, 31.1, "a block of their compliance, in one direction")                      \
+  ROW(swept_law, 850, 340, "a contact in a pair of sweeps")                                      \
+  ROW(projected_law, 200, 354, "a contact that is projected onto its cone")                      \
+  ROW(frozen_law, 600, 1510, "a contact in a Newton step")                                       \
+  ROW(law_vector, 350, 972, "a contact in a vector of it")
 
 #endif

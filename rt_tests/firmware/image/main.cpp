@@ -3,7 +3,9 @@
 // compares the instructions of a step with the bar, "--ready" holds eight contacts on a larger model that is read in
 // place. "--steps" prints the instructions of every step of the recorded script with counting_prices on each model,
 // what greenloop-calibrate fits this processor's prices to; "--priced" compares work at these prices with instructions,
-// with "--more" of three scripts a model. "--impulses" plays motions. "--flip-bit" and "--slow" are their negative
+// with "--more" of three scripts a model. "--impulses" plays motions. "--tools" touches with a ball; "--law-steps" and
+// "--laws" are "--steps" and
+// "--priced" of the laws of contact. "--flip-bit" and "--slow" are their negative
 // controls. Exit status: 0, or which check failed.
 #include <algorithm>
 
@@ -16,10 +18,12 @@
 #include "rt_tests/firmware/image/counted_script.hpp"
 #include "rt_tests/firmware/image/image_driver.hpp"
 #include "rt_tests/firmware/image/instruction_clock.hpp"
+#include "rt_tests/firmware/image/laws.hpp"
 #include "rt_tests/firmware/image/moving.hpp"
 #include "rt_tests/firmware/image/semihosting.hpp"
 #include "rt_tests/firmware/image/stack.hpp"
 #include "rt_tests/firmware/image/timed_loop.hpp"
+#include "rt_tests/firmware/image/touching.hpp"
 #include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/price_table.hpp"
 #include "rt_tests/harness/recorded_run.hpp"
@@ -259,6 +263,45 @@ int compare_priced(std::uint64_t seeds) {
   return status;
 }
 
+constexpr std::uint32_t Prices::*law_prices[] = {&Prices::law,           &Prices::law_block,  &Prices::swept_law,
+                                                 &Prices::projected_law, &Prices::frozen_law, &Prices::law_vector};
+
+// how often a solution of the laws of contact does what each of these is the price of, and its instructions
+int print_laws() {
+  LawProblems problem(1);
+  for (std::uint32_t i = 0; i < LawProblems::problems; ++i) {
+    problem.next();
+    const auto solved = problem.solve({}, arena);
+    if (!solved.valid) {
+      return does_not_run;
+    }
+    for (const auto price : law_prices) {
+      Prices dearer;
+      dearer.*price += 256;
+      print(problem.solve(dearer, arena).work - solved.work);
+      print(" ");
+    }
+    print(solved.instructions);
+    print("\n");
+  }
+  return passed;
+}
+
+int compare_laws() {
+  PredictedInstructions predicted;
+  LawProblems problem(2);
+  for (std::uint32_t i = 0; i < LawProblems::problems; ++i) {
+    problem.next();
+    const auto solved = problem.solve(cortex_m7_prices(), arena);
+    if (!solved.valid) {
+      return does_not_run;
+    }
+    predicted.add(solved.work, solved.instructions);
+  }
+  predicted.print();
+  return predicted.meets_the_bar() ? passed : over_the_bar;
+}
+
 constexpr std::uint32_t bar_of_frames = 6'600'000;  // a period of 60 Hz at 400 MHz
 
 // the recorded motions' digest, then what steps of larger ones take, whose displacements are 60 frames a second
@@ -298,6 +341,23 @@ int run_impulses(bool flip, bool slow) {
   return timing.state_worst <= bar && timing.frame_worst <= bar_of_frames ? passed : over_the_bar;
 }
 
+constexpr std::uint32_t bar_of_tools = 200'000;  // half of 1 ms at 400 MHz
+
+int run_tools(bool slow) {
+  const TouchingTiming timing = time_touching(std::as_bytes(std::span(body_model)), arena, slow);
+  print_line("arena bytes", timing.arena_bytes);
+  print_line("least work", timing.least_work);
+  print_line("most work", timing.most_work);
+  print_line("steps in which the ball touches", timing.touching);
+  print_line("of these at the finest level", timing.finest);
+  print_line("places that may touch, at most", timing.most_contacts);
+  print_line("largest force, mN", static_cast<std::uint64_t>(1000 * timing.most_force));
+  print_line("laws of contact within, millionths", static_cast<std::uint64_t>(1e6F * timing.most_residual));
+  print_line("instructions of such a step, median", timing.median);
+  print_line("worst", timing.worst);
+  return !timing.ran ? does_not_run : timing.worst <= bar_of_tools ? passed : over_the_bar;
+}
+
 }  // namespace
 }  // namespace greenloop::firmware
 
@@ -306,6 +366,9 @@ int main() {
   start_instruction_clock();
   if (command_line_contains("--steps")) {
     return print_steps();
+  }
+  if (command_line_contains("--law-steps")) {
+    return print_laws();
   }
   if (!clock_is_right()) {
     return clock_is_wrong;
@@ -319,8 +382,12 @@ int main() {
     status = run_ready(command_line_contains("--slow"));
   } else if (command_line_contains("--priced")) {
     status = compare_priced(command_line_contains("--more") ? 3 : 1);
+  } else if (command_line_contains("--laws")) {
+    status = compare_laws();
   } else if (command_line_contains("--impulses")) {
     status = run_impulses(command_line_contains("--flip-bit"), command_line_contains("--slow"));
+  } else if (command_line_contains("--tools")) {
+    status = run_tools(command_line_contains("--slow"));
   }
   print_sizes();
   return status;
