@@ -43,6 +43,8 @@ offline::SvgCanvas map(const std::string& name, const char* unit, const SideFiel
   for (const Eigen::Vector3d& place : side.positions) {
     value.push_back(std::max(0.0, field.at(place.x(), place.y())));
   }
+  const double most = *std::max_element(value.begin(), value.end());
+  for (double& one : value) one = one < 0.01 * most ? 0 : one;
   return offline::value_panel(side, offline::view_frame({0, 0, 1}, {0, 1, 0}), name, unit, value);
 }
 
