@@ -135,7 +135,7 @@ RefinedPad::RefinedPad(const Planes& planes, const Material& material, double re
     }
   }
   const auto size = 3 * static_cast<Index>(places_.size());
-  Eigen::SparseMatrix<double> forces(3 * free.count, size);
+  Eigen::SparseMatrix<double> forces(Index{3} * free.count, size);
   forces.setFromTriplets(entries.begin(), entries.end());
   Eigen::SparseMatrix<double> stiffness = offline::assemble_stiffness(mesh, edges, material, free);
   if (is_quarter_) hold_mirrors(mesh, edges, free, stiffness);
