@@ -162,8 +162,8 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
                                       {GREENLOOP_SHAPE_BOX, {0.02, 0.03, 0.01}, nullptr},
                                       {GREENLOOP_SHAPE_PLANE, {}, nullptr},
                                       {GREENLOOP_SHAPE_POLYHEDRON, {}, c_made.polyhedron}};
-  const double way[][3] = {{0, 0, 1}, {0.6, 0, 0.8}, {-0.6, 0, 0.8}, {0, 0.8, 0.6}, {0, 0, 1}, {0, -0.8, 0.6}};
-  const double distance[] = {0.1, 0.13, 0.12, 0.115, 0.105, 0.118};
+  const double way[][3] = {{-0.6, -0.8, 0}, {0.6, 0, 0.8}, {-0.6, 0, 0.8}, {0, 0.8, 0.6}, {0, 0, 1}, {0, -0.8, 0.6}};
+  const double distance[] = {0.1, 0.13, 0.12, 0.115, 0.1, 0.118};
   std::vector<float> rough(greenloop_node_count(&c.model));
   for (std::size_t i = 0; i < rough.size(); ++i) rough[i] = 0.25F * static_cast<float>(i % 8);
   std::size_t touches = 0;
@@ -230,8 +230,7 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
     CHECK(std::memcmp(field, cpp.body.displacement().data(), cpp.body.displacement().size_bytes()) == 0);
   }
   CHECK(touches > 100);
-  // the point stands in the plane's way, and is ahead of it
-  CHECK(std::count(felt, felt + 6, true) >= 5);
+  CHECK(std::count(felt, felt + 6, true) == 6);
 }
 
 TEST_CASE("a local model is the same through C, bit for bit") {

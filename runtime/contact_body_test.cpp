@@ -242,6 +242,7 @@ TEST_CASE("however little a search may take, a point that goes through the body 
       left_out += report.unfinished;
       behind += answer.is_behind ? 1 : 0;
       if (z < 0.95) CHECK((answer.is_behind || report.unfinished == 1));
+      if (answer.is_behind && z > -1) CHECK(norm(answer.force) > 0);
     }
     MESSAGE("steps of ", step, " radii: held in ", behind, ", left out in ", left_out);
     if (step < 1) CHECK(behind > 5);

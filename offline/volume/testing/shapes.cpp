@@ -117,6 +117,44 @@ TetrahedralMesh box(const Eigen::Vector3i& cells, const Eigen::Vector3d& size) {
   return mesh;
 }
 
+TetrahedralMesh box(const Planes& planes) {
+  Eigen::Vector3i cells;
+  for (int axis = 0; axis < 3; ++axis) cells[axis] = static_cast<int>(planes[axis].size()) - 1;
+  TetrahedralMesh mesh = box(cells, cells.cast<double>());
+  for (Eigen::Vector3d& x : mesh.vertices) {
+    for (int axis = 0; axis < 3; ++axis) x[axis] = planes[axis][std::lround(x[axis])];
+  }
+  return mesh;
+}
+
+Planes gel_pad(int middle, int rim, int layers) {
+  constexpr double half_middle = 4e-3, half = 10e-3, height = 3e-3, lowest_over_highest = 4;
+  const double even = 2 * half_middle / middle;
+  const auto reach = [&](double factor) {
+    double length = 0;
+    for (int i = 1; i <= rim; ++i) length += even * std::pow(factor, i);
+    return length;
+  };
+  double low = 1e-3, high = 1e3;  // of the factor
+  for (int i = 0; i < 100; ++i) {
+    const double between = std::sqrt(low * high);
+    (reach(between) < half - half_middle ? low : high) = between;
+  }
+  std::vector<double> across{0};  // from the axis to the side
+  for (int i = 1; i <= middle / 2; ++i) across.push_back(i * even);
+  for (int i = 1; i <= rim; ++i) across.push_back(across.back() + even * std::pow(low, i));
+  across.back() = half;
+  Planes planes;
+  for (std::size_t i = across.size() - 1; i > 0; --i) planes[0].push_back(-across[i]);
+  planes[0].insert(planes[0].end(), across.begin(), across.end());
+  planes[1] = planes[0];
+  const double thinner = std::pow(lowest_over_highest, -1.0 / layers);
+  const double sum = (1 - 1 / lowest_over_highest) / (1 - thinner);
+  for (int i = 0; i <= layers; ++i) planes[2].push_back(height * (1 - std::pow(thinner, i)) / (1 - thinner) / sum);
+  planes[2].back() = height;
+  return planes;
+}
+
 TetrahedralMesh shell(int levels, int layers, double inner, double outer) {
   const auto sphere = ellipsoid(levels, Eigen::Vector3d::Ones());
   const auto triangles = triangles_of_level(sphere, levels);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <vector>
 
 #include "formats/mesh/semi_regular_mesh.hpp"
 #include "formats/mesh/tetrahedral_mesh.hpp"
@@ -16,6 +18,17 @@ namespace greenloop::offline::testing {
 
 /// A box from the origin to `size`, each of its cells split into six tetrahedra.
 [[nodiscard]] TetrahedralMesh box(const Eigen::Vector3i& cells, const Eigen::Vector3d& size);
+
+/// Planes across x, y and z between which cells stand, increasing.
+using Planes = std::array<std::vector<double>, 3>;
+
+/// The same between planes of one's own.
+[[nodiscard]] TetrahedralMesh box(const Planes& planes);
+
+/// The cells of a gel pad 20 x 20 x 3 mm around the z axis, its lower side at 0: `middle`, an even number, of even ones
+/// within 4 mm of the axis along x and y, `rim` more on either side of these, and `layers` along z, each larger than
+/// the one before by the same factor towards the rim and the lower side.
+[[nodiscard]] Planes gel_pad(int middle, int rim, int layers);
 
 /// The ball shell between `inner` and `outer` radius: `layers` layers of a sphere split `levels` times, each prism cut
 /// into three tetrahedra; layer radii grow geometrically. The inner sphere's vertices come first.

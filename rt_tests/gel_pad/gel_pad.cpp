@@ -1,0 +1,89 @@
+// gel_pad PAD.gloop MIDDLE RIM LAYERS [FOLDER]: presses a ball, a cylinder and an edge into a model of a tactile
+// sensor's gel pad, as the loop does, and compares force and pressure with those of refined finite elements of so many
+// cells under the same law of contact. Draws maps of pressures and displacements into FOLDER. The pad:
+// `write_body pad 2 pad.mesh`, its scene offline/scene/examples/pad.toml.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+
+#include "offline/report/mask_figure.hpp"
+#include "offline/report/report.hpp"
+#include "rt_tests/gel_pad/pressed_pad.hpp"
+#include "rt_tests/gel_pad/refined_pad.hpp"
+
+namespace greenloop::gel_pad {
+namespace {
+
+constexpr double reach = 4.1e-3;  // m, farther than any of the indenters touches
+constexpr double shown = 5e-3;    // m, of the pictures, from the middle
+constexpr int steps = 20;
+
+// a piece of the upper side, finer than the crossings of a field
+offline::VisibleSurface shown_side() {
+  constexpr int across = 121;
+  offline::VisibleSurface side;
+  for (int j = 0; j < across; ++j) {
+    for (int i = 0; i < across; ++i) {
+      side.positions.emplace_back(shown * (2.0 * i / (across - 1) - 1), shown * (2.0 * j / (across - 1) - 1), 0);
+      if (i == 0 || j == 0) continue;
+      const int high = i + across * j, low = high - across - 1;
+      side.triangles.push_back({low, low + 1, high});
+      side.triangles.push_back({low, high, high - 1});
+    }
+  }
+  side.fixed.assign(side.positions.size(), 0);
+  return side;
+}
+
+offline::SvgCanvas map(const std::string& name, const char* unit, const SideField& field) {
+  const offline::VisibleSurface side = shown_side();
+  std::vector<double> value;
+  for (const Eigen::Vector3d& place : side.positions) {
+    value.push_back(std::max(0.0, field.at(place.x(), place.y())));
+  }
+  const double most = *std::max_element(value.begin(), value.end());
+  for (double& one : value) one = one < 0.01 * most ? 0 : one;
+  return offline::value_panel(side, offline::view_frame({0, 0, 1}, {0, 1, 0}), name, unit, value);
+}
+
+int run(char** argument, const char* folder) {
+  const ModelFile file = open_model_file(argument[1]);
+  const Model model = Model::open(file.bytes.span()).model;
+  const auto cells = offline::testing::gel_pad(std::atoi(argument[2]), std::atoi(argument[3]), std::atoi(argument[4]));
+  const RefinedPad refined(quarter(cells), {file.view.info->young, file.view.info->poisson}, reach);
+  offline::Figure figure{"gel_pad", "A gel pad under indenters", "", {}, 3};
+  for (const Indenter& indenter : indenters()) {
+    const PressedPad found = press_in_loop(model, indenter, steps);
+    const Pressed expected = refined.press(indenter.shape, indenter.at(indenter.depth));
+    const Difference of = difference(found, expected);
+    std::printf(
+        "%-8s %.2f mm deep: %.4f N on %u places (last change %.1e), refined %.4f N; "
+        "force %+.2f %%, pressure %.2f %% RMS\n",
+        indenter.name.data(), 1e3 * indenter.depth, found.force, found.contacts, found.settled, expected.force,
+        100 * of.force, 100 * of.pressure);
+    const std::string name(indenter.name);
+    figure.panels.push_back(map(name + ", pressure", "Pa", found.pressure));
+    figure.panels.push_back(map(name + ", refined", "Pa", expected.pressure));
+    figure.panels.push_back(map(name + ", depression", "m", found.down));
+  }
+  if (folder != nullptr) offline::write_figures(folder, {figure});
+  return 0;
+}
+
+}  // namespace
+}  // namespace greenloop::gel_pad
+
+int main(int count, char** argument) {
+  if (count != 5 && count != 6) {
+    std::fprintf(stderr, "usage: gel_pad PAD.gloop MIDDLE RIM LAYERS [FOLDER]\n");
+    return 2;
+  }
+  try {
+    return greenloop::gel_pad::run(argument, count == 6 ? argument[5] : nullptr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "gel_pad: %s\n", error.what());
+    return 1;
+  }
+}
