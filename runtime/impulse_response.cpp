@@ -193,6 +193,7 @@ ImpulseResponse::Created ImpulseResponse::create(const Model& model, const Limit
   body.avx2 = has_avx2();
 #endif
   body.least_work = requirement.least_work;
+  body.worst_work = requirement.worst_work;
   body.player.begin(timing.ticks, timing.decay, static_cast<float>(view.info->time_step));
   created.body.body_ = &body;
   return created;
@@ -209,7 +210,8 @@ ImpulseResponse::StepReport ImpulseResponse::step(std::uint32_t impulse, Budget 
   Wanted wanted;
   report.status = check_impulse(body, impulse);
   if (report.status == Status::ok) report.status = check_response(body, response, wanted);
-  const std::uint64_t left = budget.work > body.least_work ? budget.work - body.least_work : 0;
+  const std::uint64_t most = budget.work < body.worst_work ? budget.work : body.worst_work;
+  const std::uint64_t left = most > body.least_work ? most - body.least_work : 0;
   const Fineness fineness = choose_fineness(body, wanted, left);
   if (report.status == Status::ok && (budget.work < body.least_work || fineness.pairs == 0)) {
     report.status = Status::held_over_budget;

@@ -34,11 +34,14 @@ class ImpulseResponse {
 
   /// What a step is asked for; the caller owns the memory. What is empty is not wanted.
   struct Response {
-    std::span<float> coordinate{};            ///< [modes] m, q_u
-    std::span<float> velocity{};              ///< [modes] m/s, q_v
-    std::span<Vec3> displacement{};           ///< [vertices, or `chosen`] m, from the model's shape
-    std::span<Vec3> displacement_rate{};      ///< likewise, m/s
-    std::span<const std::uint32_t> chosen{};  ///< vertices; empty: the first ones, as many as are displaced
+    std::span<float> coordinate{};        ///< [modes] m, q_u
+    std::span<float> velocity{};          ///< [modes] m/s, q_v
+    std::span<Vec3> displacement{};       ///< [vertices, or `chosen`] m, from the model's shape
+    std::span<Vec3> displacement_rate{};  ///< likewise, m/s
+    /// Vertices; empty: the first ones, as many as are displaced. One takes as much as 16 of the first ones, and all no
+    /// more than Requirement::worst_work: of more than a sixteenth of the vertices fewer modes are summed, or it is
+    /// held_over_budget, whatever the budget.
+    std::span<const std::uint32_t> chosen{};
   };
 
   struct StepReport : greenloop::StepReport {

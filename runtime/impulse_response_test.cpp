@@ -254,6 +254,19 @@ TEST_CASE("a vertex has the same displacement among all, among the first and cho
   }
 }
 
+TEST_CASE("however many vertices are chosen, no step takes more than is declared") {
+  const Opened opened({.modes = 12, .groups = 3, .planes = 2});
+  std::set<Status> seen;
+  for (std::size_t count = 1; count <= 100; ++count) {
+    Played played(opened);
+    std::vector<Vec3> some(count), rates(count);
+    const auto report = played.body.step(1, {any_budget}, {{}, {}, some, rates, std::vector<std::uint32_t>(count, 50)});
+    CHECK(report.work <= played.need.worst_work);
+    seen.insert(report.status);
+  }
+  CHECK(seen == std::set<Status>{Status::ok, Status::coarser, Status::held_over_budget});
+}
+
 TEST_CASE("less budget means fewer modes, never more work than it holds, and the same states") {
   const Opened opened({.modes = 12, .groups = 3, .planes = 2});
   Played whole(opened);

@@ -33,6 +33,7 @@ Meter instruction_meter(const std::string& program) {
     const std::string file = folder.write("prices.json", prices_as_json(prices, "")).string();
     std::string out;
     const std::vector<std::uint64_t> instructions = count_step_instructions(
+        "Elastostatic",
         {program, model.name, "--run-steps", "--contacts", std::to_string(options.contacts), "--cycles",
          std::to_string(options.cycles), "--seed", std::to_string(options.seed), "--prices", file},
         out);

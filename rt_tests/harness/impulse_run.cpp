@@ -42,55 +42,91 @@ void add_report(const ImpulseResponse::StepReport& report, Fnv1a& digest) {
   }
 }
 
+bool is_finite(std::span<const Vec3> vectors) {
+  for (const Vec3& v : vectors) {
+    if (!std::isfinite(v.x + v.y + v.z)) return false;
+  }
+  return true;
+}
+
+// what is wrong with a cycle's input itself
+struct Faults {
+  bool unknown = false;  // an impulse or a vertex that there is not
+  bool size = false;     // of a buffer
+};
+
+Faults faults_of(const Cycle& cycle, const ImpulseResponseView& view) {
+  const std::uint32_t vertices = view.info->vertices;
+  Faults faults = {cycle.impulse != ImpulseResponse::no_impulse && cycle.impulse >= view.info->impulses,
+                   cycle.vertices > vertices || cycle.missing > 0};
+  for (std::uint32_t i = 0; i < cycle.chosen_count; ++i) faults.unknown |= cycle.chosen[i] >= vertices;
+  return faults;
+}
+
+// below the worst case; chosen vertices take as much as sixteen others, and may take more than that
+bool is_short(const Cycle& cycle, const ImpulseResponseView& view, const ImpulseResponse::Requirement& need) {
+  return cycle.budget.work < need.worst_work ||
+         std::uint64_t{cycle.chosen_count} * layout::block_vertices > view.info->vertices;
+}
+
+// whether a cycle may have ended so
+bool may_be(Status status, const Cycle& cycle, bool legal, const ImpulseResponseView& view,
+            const ImpulseResponse::Requirement& need) {
+  const Faults faults = faults_of(cycle, view);
+  switch (status) {
+    case Status::held_out_of_range:
+      return faults.unknown;
+    case Status::held_illegal_impulse:
+      return !legal;
+    case Status::held_response_size:
+      return faults.size;
+    case Status::held_over_budget:
+      return is_short(cycle, view, need);
+    default:
+      return answered(status) && !faults.unknown && !faults.size && legal && cycle.budget.work >= need.least_work;
+  }
+}
+
+}  // namespace
+
 Response response_of(const Cycle& cycle, const ImpulseBuffers& buffers) {
   const std::uint32_t count = cycle.chosen_count > 0 ? cycle.chosen_count : cycle.vertices;
-  return {buffers.coordinate,
+  return {buffers.coordinate.first(buffers.coordinate.size() - cycle.missing),
           buffers.velocity,
           buffers.displacement.first(count),
           cycle.rates ? buffers.displacement_rate.first(count) : std::span<Vec3>(),
           {cycle.chosen, cycle.chosen_count}};
 }
 
-// what is wrong with an answer; null: nothing
-const char* check_answer(const ImpulseResponseView& view, const ImpulseBuffers& buffers, ImpulseRun& run) {
+bool may_be_refused(const Cycle& cycle, bool legal, const ImpulseResponseView& view,
+                    const ImpulseResponse::Requirement& need) {
+  const Faults faults = faults_of(cycle, view);
+  return faults.unknown || faults.size || !legal || is_short(cycle, view, need);
+}
+
+const char* what_is_wrong(const Cycle& cycle, const ImpulseResponse::StepReport& report, bool legal,
+                          const ImpulseResponseView& view, const ImpulseResponse::Requirement& need,
+                          const Response& response) {
+  if (report.work > cycle.budget.work || report.work > need.worst_work) return "a step took more than its budget";
+  if (!may_be(report.status, cycle, legal, view, need)) {
+    return answered(report.status) ? "a step was answered that should not be" : "a step was refused that should not be";
+  }
+  if (!answered(report.status)) return nullptr;
+  if (!std::isfinite(state_energy(view, response.coordinate, response.velocity))) return "a state is not finite";
+  const bool finite = is_finite(response.displacement) && is_finite(response.displacement_rate);
+  return finite ? nullptr : "a displacement is not finite";
+}
+
+double state_energy(const ImpulseResponseView& view, std::span<const float> coordinate,
+                    std::span<const float> velocity) {
   double energy = 0;
   const auto balance = static_cast<double>(view.info->velocity_balance);
-  for (std::size_t m = 0; m < buffers.coordinate.size(); ++m) {
-    const auto x = static_cast<double>(buffers.coordinate[m]), v = balance * static_cast<double>(buffers.velocity[m]);
+  for (std::size_t m = 0; m < coordinate.size(); ++m) {
+    const auto x = static_cast<double>(coordinate[m]), v = balance * static_cast<double>(velocity[m]);
     energy += x * x + v * v;
   }
-  if (!std::isfinite(energy)) return "a state is not finite";
-  run.most_energy = energy > run.most_energy ? energy : run.most_energy;
-  for (const auto& vectors : {buffers.displacement, buffers.displacement_rate}) {
-    for (const Vec3& v : vectors) {
-      if (!std::isfinite(v.x + v.y + v.z)) return "a displacement is not finite";
-    }
-  }
-  return nullptr;
+  return energy;
 }
-
-// whether such a cycle may be refused so
-bool may_be(Status status, const Cycle& cycle, const ImpulseResponseView& view, bool legal,
-            const ImpulseResponse::Requirement& need) {
-  const std::uint32_t vertices = view.info->vertices;
-  switch (status) {
-    case Status::held_out_of_range: {
-      bool unknown = cycle.impulse != ImpulseResponse::no_impulse && cycle.impulse >= view.info->impulses;
-      for (std::uint32_t i = 0; i < cycle.chosen_count; ++i) unknown = unknown || cycle.chosen[i] >= vertices;
-      return unknown;
-    }
-    case Status::held_illegal_impulse:
-      return !legal;
-    case Status::held_response_size:
-      return cycle.vertices > vertices;
-    case Status::held_over_budget:
-      return cycle.budget.work < need.worst_work;
-    default:
-      return answered(status);
-  }
-}
-
-}  // namespace
 
 ImpulseScript::ImpulseScript(const Model& model, const ImpulseResponse::Requirement& need, std::uint64_t seed) noexcept
     : impulses_(model.view().impulse_response.info->impulses),
@@ -142,21 +178,15 @@ ImpulseRun run_impulse_script(const Model& model, const ImpulseResponse::Limits&
   for (; run.cycle < cycles && run.error == nullptr; ++run.cycle) {
     const Cycle cycle = script.next();
     const bool legal = cycle.impulse == ImpulseResponse::no_impulse || created.body.may_follow(cycle.impulse);
-    const auto report = created.body.step(cycle.impulse, cycle.budget, response_of(cycle, buffers));
+    const Response response = response_of(cycle, buffers);
+    const auto report = created.body.step(cycle.impulse, cycle.budget, response);
     ++run.by_status[static_cast<std::size_t>(report.status)];
+    run.entered += answered(report.status) && cycle.impulse != ImpulseResponse::no_impulse ? 1 : 0;
     add_report(report, digest);
     const std::uint64_t now = digest_of(buffers);
     digest.add_word(now ^ (flip && run.cycle == cycles / 2 ? 1U : 0U));
-    if (report.work > cycle.budget.work) run.error = "a step took more than its budget";
-    if (!may_be(report.status, cycle, view, legal, need)) run.error = "a step was refused that should not be";
+    run.error = what_is_wrong(cycle, report, legal, view, need, response);
     if (!answered(report.status) && now != last) run.error = "a refused step changed the answer";
-    if (answered(report.status)) {
-      const bool entered = cycle.impulse != ImpulseResponse::no_impulse;
-      run.entered += entered ? 1 : 0;
-      run.continued += !entered && report.distance > 0 ? 1 : 0;
-      run.most_blend = report.blend > run.most_blend ? report.blend : run.most_blend;
-      if (run.error == nullptr) run.error = check_answer(view, buffers, run);
-    }
     last = now;
   }
   run.digest = digest.value();

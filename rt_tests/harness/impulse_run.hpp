@@ -22,6 +22,7 @@ class ImpulseScript {
     std::uint32_t chosen[most_chosen] = {};
     std::uint32_t chosen_count = 0;  ///< > 0: these instead
     bool rates = false;              ///< velocities of vertices too
+    std::uint32_t missing = 0;       ///< modes that the buffer of coordinates has no room for: to be refused
   };
 
   ImpulseScript(const Model& model, const ImpulseResponse::Requirement& need, std::uint64_t seed) noexcept;
@@ -44,6 +45,25 @@ struct ImpulseBuffers {
   std::span<Vec3> displacement_rate;  ///< [vertices + 1]
 };
 
+/// What a cycle asks a body for, in these buffers.
+[[nodiscard]] ImpulseResponse::Response response_of(const ImpulseScript::Cycle& cycle, const ImpulseBuffers& buffers);
+
+/// Whether a cycle may be refused: something is wrong with it, or its budget is below the worst case. legal: whether
+/// its impulse could follow.
+[[nodiscard]] bool may_be_refused(const ImpulseScript::Cycle& cycle, bool legal, const ImpulseResponseView& view,
+                                  const ImpulseResponse::Requirement& need);
+
+/// What is wrong with how a cycle was answered, null: nothing. Work is to be within budget and declaration, what was
+/// asked for finite, and refused is what is wrong and nothing else.
+[[nodiscard]] const char* what_is_wrong(const ImpulseScript::Cycle& cycle, const ImpulseResponse::StepReport& report,
+                                        bool legal, const ImpulseResponseView& view,
+                                        const ImpulseResponse::Requirement& need,
+                                        const ImpulseResponse::Response& response);
+
+/// m^2: |q_u|^2 + rho^2 |q_v|^2 of a state.
+[[nodiscard]] double state_energy(const ImpulseResponseView& view, std::span<const float> coordinate,
+                                  std::span<const float> velocity);
+
 /// A body that ran a script of impulses, or why it did not.
 struct ImpulseRun {
   const char* error = nullptr;  ///< null: it ran, and each cycle kept what is promised
@@ -51,15 +71,11 @@ struct ImpulseRun {
   std::size_t memory_bytes = 0;
   std::uint64_t digest = 0;  ///< of every report and buffer
   std::array<std::uint64_t, statuses> by_status{};
-  std::uint64_t entered = 0;    ///< impulses that were followed
-  std::uint64_t continued = 0;  ///< orbits that went on in others
-  float most_blend = 0;         ///< m, largest difference that blending had to take out
-  double most_energy = 0;       ///< m^2, largest |q_u|^2 + rho^2 |q_v|^2
+  std::uint64_t entered = 0;  ///< impulses that were followed
 };
 
-/// Runs the script by its seed on a model and checks every cycle: work within the budget, finite numbers, refusals
-/// where something is wrong and nowhere else, the last answer and motion on a refusal. With `flip` one bit of one
-/// answer is changed, a negative control.
+/// Runs the script by its seed on a model and checks every cycle (what_is_wrong), and that a refused one leaves the
+/// last answer. With `flip` one bit of one answer is changed, a negative control.
 [[nodiscard]] ImpulseRun run_impulse_script(const Model& model, const ImpulseResponse::Limits& limits,
                                             std::span<std::byte> memory, const ImpulseBuffers& buffers,
                                             std::uint64_t cycles, std::uint64_t seed, bool flip) noexcept;

@@ -41,5 +41,5 @@ downwards runtime loop.hpp constraint.hpp vec.hpp model.hpp mask.hpp stiffness.h
   recorder.hpp recorder hosted
 downwards offline progress.hpp single_threaded_blas.hpp surface remesh wrap volume sources scene simulate reduce compress pipeline report figures cli
 downwards offline/compress wavelet encode measure search
-downwards sim_hw guard body messages device transport control_loop session
+downwards sim_hw guard body messages device transport control_loop motion session
 exit $status

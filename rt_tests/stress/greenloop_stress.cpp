@@ -1,4 +1,5 @@
-// greenloop-stress: random and adversarial contacts on a model, every step checked against what the runtime declares.
+// greenloop-stress: random and adversarial contacts on a model, or impulses on its motions, every step checked against
+// what the runtime declares.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -22,12 +23,15 @@
 #include "rt_tests/harness/loaded_driver.hpp"
 #include "rt_tests/harness/prices_file.hpp"
 #include "rt_tests/harness/time_of.hpp"
+#include "rt_tests/stress/impulse_stress.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 #include "rt_tests/stress/tool_stress.hpp"
 
 namespace {
 
 using greenloop::ElastostaticDriver;
+using greenloop::ImpulseScriptKind;
+using greenloop::ImpulseStressReport;
 using greenloop::InjectedFault;
 using greenloop::ScriptKind;
 using greenloop::StressReport;
@@ -47,14 +51,17 @@ struct Arguments {
   std::string prices;
 };
 
-// all names of scripts, of contacts and of tools
+// all names of scripts, of contacts, tools and impulses
 std::vector<std::string> script_names() {
   std::vector<std::string> names(greenloop::contact_script_names.begin(), greenloop::contact_script_names.end());
   names.insert(names.end(), greenloop::tool_script_names.begin(), greenloop::tool_script_names.end());
+  names.insert(names.end(), greenloop::impulse_script_names.begin(), greenloop::impulse_script_names.end());
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
-// the script that was asked for, among those of contacts or of tools; none: all of them
+// the script that was asked for, among those of contacts, tools or impulses; none: all of them
 template <class Kind, class Names>
 std::optional<Kind> script_of(const std::string& script, const Names& names, const char* others) {
   if (script.empty()) return std::nullopt;
@@ -96,7 +103,8 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(CLI::PositiveNumber);
   app.add_option("--prices", arguments.prices, "JSON file of prices in place of the default ones")
       ->check(CLI::ExistingFile);
-  app.add_option("--rate", arguments.rate, "Hz, whose period steps are compared with; else the model's")
+  app.add_option("--rate", arguments.rate,
+                 "Hz, whose period steps are compared with; else the model's. Of motions it is the loop's, which steps")
       ->check(CLI::PositiveNumber);
   app.add_option("--share", arguments.share, "of the period that a step may take; else the model's")
       ->check(CLI::Range(0.001, 1.0));
@@ -114,19 +122,28 @@ void declare(CLI::App& app, Arguments& arguments) {
   add_choice(app, "--inject", options.fault, faults, "a fault in every hundredth step, to see the verdict fail");
 }
 
-// of the same steps in another process
+// that lists the same steps in another process
+std::vector<std::string> listing(const Arguments& arguments) {
+  return {std::filesystem::read_symlink("/proc/self/exe").string(),
+          arguments.model,
+          "--list-steps",
+          "--cycles",
+          std::to_string(arguments.options.cycles),
+          "--seed",
+          std::to_string(arguments.options.seed)};
+}
+
+greenloop::PredictedWork count_instructions(const std::string& solver, const std::vector<std::string>& command) {
+  std::string out;
+  const std::vector<std::uint64_t> instructions = greenloop::count_step_instructions(solver, command, out);
+  std::istringstream lines(out);
+  return greenloop::compare(greenloop::read_steps(lines), instructions);
+}
+
 greenloop::PredictedWork count_instructions(const Arguments& arguments, const greenloop::StressOptions& options) {
-  std::vector<std::string> command = {std::filesystem::read_symlink("/proc/self/exe").string(),
-                                      arguments.model,
-                                      "--list-steps",
-                                      "--cycles",
-                                      std::to_string(options.cycles),
-                                      "--seed",
-                                      std::to_string(options.seed),
-                                      "--contacts",
-                                      std::to_string(options.contacts),
-                                      "--factors",
-                                      std::to_string(options.factors)};
+  std::vector<std::string> command = listing(arguments);
+  command.insert(command.end(),
+                 {"--contacts", std::to_string(options.contacts), "--factors", std::to_string(options.factors)});
   if (!arguments.prices.empty()) {
     command.insert(command.end(), {"--prices", arguments.prices});
   }
@@ -139,10 +156,7 @@ greenloop::PredictedWork count_instructions(const Arguments& arguments, const gr
   if (options.script) {
     command.insert(command.end(), {"--script", greenloop::name(*options.script)});
   }
-  std::string out;
-  const std::vector<std::uint64_t> instructions = greenloop::count_step_instructions(command, out);
-  std::istringstream lines(out);
-  return greenloop::compare(greenloop::read_steps(lines), instructions);
+  return count_instructions("Elastostatic", command);
 }
 
 // the options for a model
@@ -195,6 +209,51 @@ ToolStressReport stress_tools(const greenloop::Model& model, const Arguments& ar
   return report;
 }
 
+// the options for motions; throws std::runtime_error for those that contacts alone have
+greenloop::ImpulseStressOptions motion_options(const Arguments& arguments) {
+  const greenloop::StressOptions& asked = arguments.options;
+  if (arguments.tools || arguments.loads || asked.contacts > 0 || !arguments.prices.empty()) {
+    throw std::runtime_error(arguments.model + ": motions have no --tools, --loads, --contacts or --prices");
+  }
+  return {.cycles = asked.cycles,
+          .seed = asked.seed,
+          .script = script_of<ImpulseScriptKind>(arguments.script, greenloop::impulse_script_names,
+                                                 "contacts or tools, not of impulses"),
+          .limits = {.rate = static_cast<float>(arguments.rate)},
+          .budget = asked.budget,
+          .histogram_bins = asked.histogram_bins,
+          .fault = asked.fault};
+}
+
+ImpulseStressReport stress_motions(const greenloop::Model& model, const Arguments& arguments) {
+  ImpulseStressReport report{.model = arguments.model, .options = motion_options(arguments)};
+  greenloop::ImpulseStressOptions& options = report.options;
+  const float rate = options.limits.rate;
+  report.rate = static_cast<double>(rate > 0 ? rate : model.view().impulse_response.info->rate);
+  greenloop::offline::ProgressBar bar(arguments.json);
+  bar.begin("stress");
+  options.progress = [&](ImpulseScriptKind kind, std::uint64_t done) {
+    bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  report.result = greenloop::run_impulse_stress(model, options);
+  const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
+  report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
+  bar.end(fmt::format("{} cycles", report.result.cycles));
+  report.time = greenloop::judge_times(report.result.times, report.rate, arguments.share > 0 ? arguments.share : 1,
+                                       arguments.judge_time);
+  if (arguments.count_instructions) {
+    std::vector<std::string> command = listing(arguments);
+    if (options.script) command.insert(command.end(), {"--script", name(*options.script)});
+    if (options.budget > 0) command.insert(command.end(), {"--budget", std::to_string(options.budget)});
+    if (rate > 0) command.insert(command.end(), {"--rate", fmt::format("{}", arguments.rate)});
+    bar.begin("instructions");
+    report.predicted = count_instructions("ImpulseResponse", command);
+    bar.end(fmt::format("of {} steps", report.predicted->all.steps));
+  }
+  return report;
+}
+
 template <class Report>
 int hand_out(const Report& report, bool as_json) {
   if (as_json) {
@@ -237,6 +296,18 @@ int run(const Arguments& arguments) {
   if (!opened) {
     throw std::runtime_error(arguments.model + ": " + greenloop::describe(opened.result));
   }
+  const auto measure_opening = [&] {
+    return greenloop::time_of(15, [&] { (void)greenloop::Model::open(bytes.span()); }) / 1e3;
+  };
+  if (opened.model.problem() == greenloop::layout::Problem::impulse_response) {
+    if (arguments.list_steps) {
+      greenloop::write_steps(greenloop::run_impulses_plainly(opened.model, motion_options(arguments)), std::cout);
+      return 0;
+    }
+    ImpulseStressReport report = stress_motions(opened.model, arguments);
+    report.open_ms = measure_opening();
+    return hand_out(report, arguments.json);
+  }
   greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
   if (arguments.list_steps) {
     const auto options = options_for(opened.model, arguments);
@@ -247,15 +318,17 @@ int run(const Arguments& arguments) {
   }
   if (arguments.tools) return hand_out(stress_tools(opened.model, arguments), arguments.json);
   StressReport report = stress(opened.model, arguments);
-  report.open_ms = greenloop::time_of(15, [&] { (void)greenloop::Model::open(bytes.span()); }) / 1e3;
+  report.open_ms = measure_opening();
   return hand_out(report, arguments.json);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Random and adversarial contacts on a model; every step is checked against its declared work.",
-               "greenloop-stress");
+  CLI::App app(
+      "Random and adversarial contacts on a model, or impulses on its motions; every step is checked against its "
+      "declared work.",
+      "greenloop-stress");
   Arguments arguments;
   arguments.options.contacts = 0;
   declare(app, arguments);

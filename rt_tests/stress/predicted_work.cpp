@@ -132,7 +132,8 @@ std::vector<ReportedStep> read_steps(std::istream& in) {
   return steps;
 }
 
-std::vector<std::uint64_t> count_step_instructions(const std::vector<std::string>& command, std::string& out) {
+std::vector<std::uint64_t> count_step_instructions(const std::string& solver, const std::vector<std::string>& command,
+                                                   std::string& out) {
   const TemporaryFolder folder("greenloop_stress");
   const std::filesystem::path counts = folder.path() / "counts", output = folder.path() / "output";
   // callgrind takes an option only for a name that no other option has
@@ -140,8 +141,8 @@ std::vector<std::uint64_t> count_step_instructions(const std::vector<std::string
                                   "--tool=callgrind",
                                   "--quiet",
                                   "--collect-atstart=no",
-                                  "--toggle-collect=greenloop::Elastostatic::step*",
-                                  "--dump-before=*Elastostatic::step*",
+                                  "--toggle-collect=greenloop::" + solver + "::step*",
+                                  "--dump-before=*" + solver + "::step*",
                                   "--dump-line=no",
                                   "--combine-dumps=yes",
                                   "--callgrind-out-file=" + counts.string()};
@@ -174,6 +175,15 @@ RatioQuantiles quantiles(std::vector<double> ratios) {
 nlohmann::json as_json(const RatioQuantiles& ratios) {
   return {{"steps", ratios.steps}, {"least", ratios.least}, {"p05", ratios.p05},      {"median", ratios.median},
           {"p95", ratios.p95},     {"most", ratios.most},   {"within", ratios.within}};
+}
+
+nlohmann::json as_json(const PredictedWork& predicted) {
+  nlohmann::json all = as_json(predicted.all);
+  all["ways"] = nlohmann::json::object();
+  for (const auto& [way, ratios] : predicted.ways) {
+    all["ways"][way] = as_json(ratios);
+  }
+  return all;
 }
 
 void print_ratios(const std::map<std::string, RatioQuantiles>& ways, const RatioQuantiles& all) {

@@ -29,10 +29,11 @@ template <Driver D>
 void write_steps(const std::vector<ReportedStep>& steps, std::ostream& out);
 [[nodiscard]] std::vector<ReportedStep> read_steps(std::istream& in);
 
-/// Instructions of every call of Elastostatic::step that a program makes, in order, counted by Valgrind (callgrind),
-/// which is run as a program of its own. out: what the program printed. Throws std::runtime_error if it cannot be run
-/// or does not end well.
-[[nodiscard]] std::vector<std::uint64_t> count_step_instructions(const std::vector<std::string>& command,
+/// Instructions of every call of a solver's step that a program makes, in order, counted by Valgrind (callgrind),
+/// which is run as a program of its own. solver: its class; out: what the program printed. Throws std::runtime_error if
+/// it cannot be run or does not end well.
+[[nodiscard]] std::vector<std::uint64_t> count_step_instructions(const std::string& solver,
+                                                                 const std::vector<std::string>& command,
                                                                  std::string& out);
 
 /// Quantiles of some ratios.
@@ -55,6 +56,8 @@ struct PredictedWork {
   std::map<std::string, RatioQuantiles> ways;  ///< by D::way
   std::uint64_t heaviest_instructions = 0;     ///< of the heaviest kind of step
 };
+
+[[nodiscard]] nlohmann::json as_json(const PredictedWork& predicted);
 
 /// Of the steps of run_plainly. Throws std::invalid_argument if there are not as many of both.
 [[nodiscard]] PredictedWork compare(const std::vector<ReportedStep>& steps,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "rt_tests/stress/time_output.hpp"
 #include "sim_hw/control_loop/status_name.hpp"
 
 namespace greenloop {
@@ -23,22 +24,6 @@ json as_json(const ScriptResult& script) {
           {"worst_us", script.worst_us},
           {"force_step_max", script.force_step_max},
           {"digest", fmt::format("{:016x}", script.digest)}};
-}
-
-json as_json(const TimeHistogram& times) {
-  return {{"unit", "us"},           {"clock", "thread CPU time"},
-          {"count", times.count()}, {"overflows", times.overflows()},
-          {"total", times.total()}, {"min", times.least()},
-          {"avg", times.average()}, {"max", times.most()}};
-}
-
-json as_json(const PredictedWork& predicted) {
-  json all = as_json(predicted.all);
-  all["ways"] = json::object();
-  for (const auto& [way, ratios] : predicted.ways) {
-    all["ways"][way] = as_json(ratios);
-  }
-  return all;
 }
 
 json as_json(const StarvedSteps& starved) {
@@ -77,19 +62,6 @@ void print_counts(const StressResult& result) {
 void print_predicted(const PredictedWork& predicted) {
   fmt::print("units of work over instructions:\n");
   print_ratios(predicted.ways, predicted.all);
-}
-
-// as cyclictest prints it; empty bins are left out
-void print_histogram(const TimeHistogram& times) {
-  fmt::print("# Histogram: microseconds of thread CPU time, steps (reading the clock is part of it)\n");
-  for (std::size_t bin = 0; bin < times.count().size(); ++bin) {
-    if (times.count()[bin] > 0) {
-      fmt::print("{:06} {:06}\n", bin, times.count()[bin]);
-    }
-  }
-  fmt::print("# Total: {:09}\n# Min Latencies: {:05.0f}\n# Avg Latencies: {:05.0f}\n# Max Latencies: {:05.0f}\n",
-             times.total(), times.least(), times.average(), times.most());
-  fmt::print("# Histogram Overflows: {:05}\n", times.overflows());
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ class CountedBody {
                                         folder_.write("prices.json", prices_as_json(prices, "")).string()};
     if (budget > 0) command.insert(command.end(), {"--budget", std::to_string(budget)});
     std::string out;
-    const std::vector<std::uint64_t> instructions = count_step_instructions(command, out);
+    const std::vector<std::uint64_t> instructions = count_step_instructions("Elastostatic", command, out);
     std::istringstream lines(out);
     return compare(read_steps(lines), instructions);
   }

@@ -15,6 +15,7 @@ struct MovingBody {
   std::int16_t* whole = nullptr;  ///< [modes] coordinates as sums take them
   bool avx2 = false;              ///< whether the processor has it
   std::uint64_t least_work = 0;   ///< units of a step without displacements, at most
+  std::uint64_t worst_work = 0;   ///< units of any step, at most
 };
 
 /// The body in an arena; null while that counts. Start-up.

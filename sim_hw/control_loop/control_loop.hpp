@@ -29,6 +29,9 @@ struct LoopSetup {
 /// cycle() and answer() use no heap, lock, system call, exception or clock.
 class ControlLoop {
  public:
+  using State = DeviceState;
+  using Command = LoopCommand;
+
   struct Wrench {
     Double3 force, torque;
   };

@@ -18,6 +18,7 @@
 #include "runtime/newest.hpp"
 #include "sim_hw/body/body_surface.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"
+#include "sim_hw/control_loop/run_log.hpp"
 #include "sim_hw/device/encoder.hpp"
 #include "sim_hw/guard/guarded.hpp"
 #include "sim_hw/session/hosted_contact_body.hpp"

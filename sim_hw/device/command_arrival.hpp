@@ -11,6 +11,16 @@ struct InjectedFaults {
   std::int64_t loss_every = 0;    ///< the link loses every so-manieth command; 0: none
 };
 
+/// What a device knows about its link to the loop, counted on its side.
+struct LinkSummary {
+  std::int64_t cycles = 0;         ///< commands received in order
+  std::int64_t late = 0;           ///< of these, not there by the end of their cycle
+  std::int64_t late_injected = 0;  ///< late because the injected faults said so
+  std::int64_t retransmits = 0;    ///< states sent again because no answer came
+  std::int64_t digest = 0;         ///< of the last command received
+  bool stopped = false;            ///< too many late commands in a row
+};
+
 /// When commands arrive in virtual time and what the device does then (the rule of libfranka): a command that is not
 /// there by the end of its cycle is late; it is dropped, the last one is held, and after too many in a row all stops.
 class CommandArrival {

@@ -34,13 +34,7 @@ struct Coupling {
                                 const HandParameters& hand);
 
 /// What the device knows about its run, counted on its side.
-struct DeviceSummary {
-  std::int64_t cycles = 0;         ///< commands received in order
-  std::int64_t late = 0;           ///< of these, not there by the end of their cycle
-  std::int64_t late_injected = 0;  ///< late because the injected faults said so
-  std::int64_t retransmits = 0;    ///< states sent again because no answer came
-  std::int64_t digest = 0;         ///< of the last command received
-  bool stopped = false;            ///< too many late commands in a row
+struct DeviceSummary : LinkSummary {
   // J, of the handles
   double delivered = 0;       ///< by the motors to the hands, net
   double delivered_most = 0;  ///< the most of it at any time, from 0: what the loop has made of nothing
@@ -74,6 +68,9 @@ struct DeviceSetup {
 /// loop's force. It advances one cycle per command, so its time is virtual and every run has the same bits.
 class HapticDevice {
  public:
+  using State = DeviceState;
+  using Command = LoopCommand;
+
   explicit HapticDevice(DeviceSetup setup);
 
   /// What the encoders say at the start of the current cycle.

@@ -11,8 +11,6 @@
 #include <string>
 
 #include "formats/output/streams.hpp"
-#include "sim_hw/transport/channel.hpp"
-#include "sim_hw/transport/lock_step.hpp"
 
 namespace greenloop {
 namespace {
@@ -22,18 +20,9 @@ void close_end(int& end) {
   end = -1;
 }
 
-void run_device(HapticDevice& device) {
-  Channel channel(Channel::multicast);
-  DeviceEnd end(device, [&](const DeviceState& state) { channel.send(state); });
-  channel.on_command([&](const LoopCommand& command) { end.receive(command); });
-  end.start();
-  while (!device.finished()) {
-    if (!channel.receive(DeviceEnd::patience_ms)) end.silence();
-  }
-}
-
 /// The whole life of the child.
-[[noreturn]] void child_main(HapticDevice& device, int start, int summary) {
+[[noreturn]] void child_main(const std::function<void()>& life, std::span<const std::byte> counted, int start,
+                             int summary) {
   (void)prctl(PR_SET_PDEATHSIG, SIGKILL);
   // a terminal interrupts both; the parent ends this one
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) (void)std::signal(signal, SIG_IGN);
@@ -41,9 +30,8 @@ void run_device(HapticDevice& device) {
   try {
     char go = 0;
     if (read(start, &go, 1) == 1) {
-      run_device(device);
-      const DeviceSummary& counted = device.summary();
-      status = write(summary, &counted, sizeof(counted)) == static_cast<ssize_t>(sizeof(counted)) ? 0 : 1;
+      life();
+      status = write(summary, counted.data(), counted.size()) == static_cast<ssize_t>(counted.size()) ? 0 : 1;
     }
   } catch (const std::exception& error) {
     say(std::string("greenloop-loop: ") + error.what() + "\n");
@@ -53,14 +41,14 @@ void run_device(HapticDevice& device) {
 
 }  // namespace
 
-DeviceProcess::DeviceProcess(HapticDevice& device) {
+DeviceProcess::DeviceProcess(const std::function<void()>& life, std::span<std::byte> summary) : summary_(summary) {
   if (pipe(start_pipe_) != 0 || pipe(summary_pipe_) != 0) throw std::runtime_error("device: no pipe for its process");
   child_ = fork();
   if (child_ < 0) throw std::runtime_error("device: its process cannot be started");
   if (child_ == 0) {
     close_end(start_pipe_[1]);
     close_end(summary_pipe_[0]);
-    child_main(device, start_pipe_[0], summary_pipe_[1]);
+    child_main(life, summary_, start_pipe_[0], summary_pipe_[1]);
   }
   close_end(start_pipe_[0]);
   close_end(summary_pipe_[1]);
@@ -90,7 +78,7 @@ bool DeviceProcess::ended() {
 
 void DeviceProcess::read_summary(int exit_status) {
   const bool well = WIFEXITED(exit_status) && WEXITSTATUS(exit_status) == 0;
-  if (!well || read(summary_pipe_[0], &summary_, sizeof(summary_)) != static_cast<ssize_t>(sizeof(summary_))) {
+  if (!well || read(summary_pipe_[0], summary_.data(), summary_.size()) != static_cast<ssize_t>(summary_.size())) {
     throw std::runtime_error("device: its process ended early; no result");
   }
 }

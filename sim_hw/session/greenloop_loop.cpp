@@ -15,6 +15,8 @@
 #include "formats/output/program.hpp"
 #include "formats/output/streams.hpp"
 #include "sim_hw/session/interruption.hpp"
+#include "sim_hw/session/loaded_model.hpp"
+#include "sim_hw/session/motion_session.hpp"
 #include "sim_hw/session/session.hpp"
 #include "sim_hw/session/stability.hpp"
 #include "sim_hw/session/verdict.hpp"
@@ -22,6 +24,7 @@
 namespace {
 
 struct Outputs {
+  std::string script;  // of motions alone: "impulses"
   std::string trace, snapshot, stability;
   std::size_t stability_steps = 8;
   bool json = false, judge_time = false;
@@ -56,7 +59,16 @@ greenloop::Transport read_transport(const std::string& name) {
   return name == "udpm" ? Transport::udpm : name == "memq" ? Transport::memq : Transport::automatic;
 }
 
-void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
+constexpr const char* impulses = "impulses";
+
+// of the hands, and of motions
+std::vector<std::string> script_choices() {
+  std::vector<std::string> names = all_of(greenloop::script_names);
+  names.emplace_back(impulses);
+  return names;
+}
+
+void declare_run(CLI::App& app, greenloop::SessionOptions& options, std::string& script) {
   app.add_option("--seconds", options.seconds, "Virtual time of the run")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 3600.0));
@@ -66,11 +78,14 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
       ->check(CLI::Range(0.001, 1.0));
   app.add_option_function<std::string>(
          "--script",
-         [&options](const std::string& name) {
-           options.script = static_cast<greenloop::Script>(place_of(name, greenloop::script_names));
+         [&options, &script](const std::string& name) {
+           script = name;
+           if (name != impulses) {
+             options.script = static_cast<greenloop::Script>(place_of(name, greenloop::script_names));
+           }
          },
-         "What the hands do (default: all)")
-      ->check(CLI::IsMember(all_of(greenloop::script_names)));
+         "What the hands do (default: all), or impulses, for a model of motions")
+      ->check(CLI::IsMember(script_choices()));
   app.add_option("--friction", options.friction, "Coulomb's coefficient between tools and body")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
@@ -108,8 +123,8 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options) {
          "--transport", [&options](const std::string& name) { options.transport = read_transport(name); },
          "udpm: two processes in a network namespace; memq: one; auto (default): udpm where permitted")
       ->check(CLI::IsMember({"auto", "udpm", "memq"}));
-  app.add_option("--field", options.field_every, "The displacement of the whole body every N cycles")
-      ->capture_default_str()
+  app.add_option("--field", options.field_every,
+                 "The displacement of the whole body every N cycles (default: 1, of motions 60 times a second)")
       ->check(CLI::PositiveNumber);
 }
 
@@ -126,7 +141,7 @@ void declare_faults(CLI::App& app, greenloop::SessionOptions& options) {
 
 void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs) {
   app.add_option("model", options.model, "The model file, .gloop")->required();
-  declare_run(app, options);
+  declare_run(app, options, outputs.script);
   declare_faults(app, options);
   app.add_option("--trace", outputs.trace, "Writes one line per cycle to this CSV file");
   app.add_option("--snapshot", outputs.snapshot, "Writes the field of the largest force to this CSV file");
@@ -173,9 +188,50 @@ int map_stability(const greenloop::SessionOptions& options, const Outputs& outpu
   return stable_below == below ? 0 : 1;
 }
 
-int run(greenloop::SessionOptions options, const Outputs& outputs) {
+// the verdict of a run
+template <class Result, class Verdict>
+int hand_out(const greenloop::SessionOptions& options, const Result& result, const Verdict& verdict, bool as_json) {
+  if (as_json) {
+    greenloop::print_result(greenloop::json_text(greenloop::to_json(options, result, verdict)) + "\n");
+  } else {
+    greenloop::print_result(greenloop::to_text(options, result, verdict));
+  }
+  if (result.interruption != 0) return 128 + result.interruption;
+  return verdict.passed() ? 0 : 1;
+}
+
+// throws std::runtime_error for what motions have not
+void require_motion_options(const CLI::App& app, const greenloop::SessionOptions& options, const Outputs& outputs) {
+  if (!outputs.script.empty() && outputs.script != impulses) {
+    throw std::runtime_error(options.model.string() + ": --script " + outputs.script +
+                             ": a model of motions has impulses alone");
+  }
+  for (const char* const option : {"--friction", "--tools", "--passive", "--hand", "--gain", "--delay", "--fast-rate",
+                                   "--snapshot", "--stability"}) {
+    if (app.get_option(option)->count() > 0) {
+      throw std::runtime_error(options.model.string() + ": " + option + ": a model of motions is not touched");
+    }
+  }
+}
+
+int run_motions(const greenloop::SessionOptions& options, const Outputs& outputs) {
+  greenloop::await_interruption();
+  const greenloop::MotionResult result = greenloop::run_motion_session(options);
+  const greenloop::MotionVerdict verdict = greenloop::judge(result, outputs.judge_time);
+  if (!outputs.trace.empty()) result.log.write_trace(outputs.trace, 1 / result.rate, result.budget.work);
+  return hand_out(options, result, verdict, outputs.json);
+}
+
+int run(const CLI::App& app, greenloop::SessionOptions options, const Outputs& outputs) {
   require_outputs(options, outputs);
   options.keep_records = !outputs.trace.empty();
+  if (greenloop::problem_of(options.model) == greenloop::layout::Problem::impulse_response) {
+    require_motion_options(app, options, outputs);
+    return run_motions(options, outputs);
+  }
+  if (outputs.script == impulses) {
+    throw std::runtime_error(options.model.string() + ": --script impulses: this is no model of motions");
+  }
   if (!outputs.stability.empty()) return map_stability(options, outputs);
   greenloop::await_interruption();
   const greenloop::SessionResult result = greenloop::run_session(options);
@@ -185,13 +241,7 @@ int run(greenloop::SessionOptions options, const Outputs& outputs) {
     result.log.write_trace(outputs.trace, columns, result.device_period);
   }
   if (!outputs.snapshot.empty()) result.log.write_snapshot(outputs.snapshot);
-  if (outputs.json) {
-    greenloop::print_result(greenloop::json_text(greenloop::to_json(options, result, verdict)) + "\n");
-  } else {
-    greenloop::print_result(greenloop::to_text(options, result, verdict));
-  }
-  if (result.interruption != 0) return 128 + result.interruption;
-  return verdict.passed() ? 0 : 1;
+  return hand_out(options, result, verdict, outputs.json);
 }
 
 }  // namespace
@@ -200,10 +250,10 @@ int run(greenloop::SessionOptions options, const Outputs& outputs) {
 /// run could not start. 2: wrong usage. 128 + n: signal n ended the run, with the trace and the verdict of its cycles
 /// until then.
 int main(int argc, char** argv) {
-  CLI::App app{"Drives a control loop on a Greenloop model with a simulated haptic device, in virtual time.",
+  CLI::App app{"Drives a control loop on a Greenloop model with a simulated device, in virtual time.",
                "greenloop-loop"};
   greenloop::SessionOptions options;
   Outputs outputs;
   declare(app, options, outputs);
-  return greenloop::run_program(app, argc, argv, [&] { return run(options, outputs); });
+  return greenloop::run_program(app, argc, argv, [&] { return run(app, options, outputs); });
 }

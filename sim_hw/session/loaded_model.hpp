@@ -7,13 +7,18 @@
 
 namespace greenloop {
 
-/// A verified elastostatic model and the bytes it lives in.
+/// A verified model and the bytes it lives in.
 struct LoadedModel {
   AlignedBytes bytes;
   Model model;
 };
 
-/// Throws std::runtime_error naming the file and the field that is wrong, or its problem if that is another one.
-[[nodiscard]] LoadedModel load_model(const std::filesystem::path& file);
+/// Throws std::runtime_error naming the file and the field that is wrong, or its problem if that is not the one wanted.
+[[nodiscard]] LoadedModel load_model(const std::filesystem::path& file,
+                                     layout::Problem problem = layout::Problem::elastostatic);
+
+/// That of a model; elastostatic if it cannot be opened, as load_model then says. Throws std::runtime_error if there is
+/// no such file.
+[[nodiscard]] layout::Problem problem_of(const std::filesystem::path& file);
 
 }  // namespace greenloop

@@ -7,15 +7,9 @@
 #include <utility>
 
 #include "runtime/contact_body.hpp"
-#include "sim_hw/control_loop/loop_thread.hpp"
 #include "sim_hw/session/agreement.hpp"
-#include "sim_hw/session/device_process.hpp"
 #include "sim_hw/session/hosted_contact_body.hpp"
-#include "sim_hw/session/interruption.hpp"
 #include "sim_hw/session/loaded_model.hpp"
-#include "sim_hw/transport/channel.hpp"
-#include "sim_hw/transport/lock_step.hpp"
-#include "sim_hw/transport/network_namespace.hpp"
 
 namespace greenloop {
 namespace {
@@ -88,62 +82,6 @@ double coupling_compliance(const SessionOptions& options, const DeviceSetup& set
   return setup.coupling.stiffness_scale() / limit;
 }
 
-/// Decides before the run; `transport_reason` says why it is not two processes.
-void choose_transport(const SessionOptions& options, SessionResult& result) {
-  result.transport = "memq";
-  result.processes = 1;
-  if (options.transport == Transport::memq) {
-    result.transport_reason = "asked for";
-    return;
-  }
-  const NamespaceEntry entry = enter_loopback_namespace();
-  if (entry.entered) {
-    result.transport = "udpm";
-    result.processes = 2;
-  } else if (options.transport == Transport::udpm) {
-    throw std::runtime_error("--transport udpm: " + entry.reason + "; use auto or memq");
-  } else {
-    result.transport_reason = entry.reason;
-  }
-}
-
-/// Answers through `channel` what `loop` says, and notes the digest of what was said last.
-LoopEnd loop_end(Channel& channel, LoopThread& loop, SessionResult& result) {
-  const auto answer = [&loop](const DeviceState& state) -> const LoopCommand& { return loop.answer(state); };
-  const auto send = [&channel, &result](const LoopCommand& command) {
-    result.loop_digest = command.digest;
-    channel.send(command);
-  };
-  return {answer, send};
-}
-
-/// Both ends in one process, each driven by the messages of the other.
-void run_in_memory(HapticDevice& device, LoopThread& loop, SessionResult& result) {
-  Channel channel(Channel::memory);
-  DeviceEnd device_end(device, [&](const DeviceState& state) { channel.send(state); });
-  LoopEnd end = loop_end(channel, loop, result);
-  channel.on_state([&](const DeviceState& state) { end.receive(state); });
-  channel.on_command([&](const LoopCommand& command) { device_end.receive(command); });
-  device_end.start();
-  while (!device.finished() && interruption() == 0) {
-    if (!channel.receive(DeviceEnd::patience_ms)) device_end.silence();
-  }
-}
-
-/// The loop's end here, the device in a process of its own.
-void run_loop_process(DeviceProcess& device, LoopThread& loop, SessionResult& result) {
-  Channel channel(Channel::multicast);
-  LoopEnd end = loop_end(channel, loop, result);
-  channel.on_state([&](const DeviceState& state) { end.receive(state); });
-  device.start();
-  while (!device.ended()) {
-    while (interruption() == 0 && channel.receive(20)) {
-    }
-    if (interruption() != 0) return;
-  }
-  result.device = device.summary();
-}
-
 }  // namespace
 
 SessionResult run_session(const SessionOptions& options) {
@@ -186,21 +124,11 @@ SessionResult run_session(const SessionOptions& options) {
                                  .starved = options.script == Script::random ? tenth : Budget{},
                                  .fast = fast,
                                  .reference = reference ? &reference->body() : nullptr,
-                                 .field_every = options.field_every,
+                                 .field_every = options.field_every.value_or(1),
                                  .overrun_cycle = options.overrun_cycle});
-  choose_transport(options, result);
-  // the child must be born before there are threads
-  std::optional<DeviceProcess> child;
-  if (result.processes == 2) child.emplace(device);
-  LoopThread thread(loop, result.log);
-  if (child) {
-    run_loop_process(*child, thread, result);
-  } else {
-    run_in_memory(device, thread, result);
-    result.device = device.summary();
-  }
-  result.allocations = thread.allocations();
-  result.interruption = interruption();
+  choose_transport(options.transport, result);
+  run_link(device, loop, result.log, result);
+  result.device = device.summary();
   return result;
 }
 

@@ -9,10 +9,9 @@
 #include "sim_hw/control_loop/run_log.hpp"
 #include "sim_hw/device/haptic_device.hpp"
 #include "sim_hw/device/script.hpp"
+#include "sim_hw/session/link.hpp"
 
 namespace greenloop {
-
-enum class Transport { automatic, udpm, memq };
 
 /// How the loop is kept from making energy: docs/device_loop.md, "Passivity".
 enum class Passive { none, tank, coupling };
@@ -38,28 +37,22 @@ struct SessionOptions {
   std::int64_t delay = 0;           ///< 0..1000 cycles, from a state to the rendering of its command
   std::optional<double> fast_rate;  ///< Hz, a multiple of the rate: of a loop between the body's steps
   Transport transport = Transport::automatic;
-  std::int64_t field_every = 1;
+  std::optional<std::int64_t> field_every;  ///< cycles, of displacements of the whole body; else the script's
   InjectedFaults faults;
   std::int64_t overrun_cycle = -1;
   bool keep_records = false;  ///< of every cycle, for a trace
 };
 
 /// A run that came to its end, well or badly.
-struct SessionResult {
+struct SessionResult : LinkResult {
   double rate = 0;           ///< Hz
   double device_period = 0;  ///< s, of a cycle of the device, which is the loop's unless there is a fast one
   double share = 1;          ///< of a period
   std::int64_t cycles_asked = 0;
   Budget budget;
   std::uint64_t least_work = 0;
-  std::string transport;         ///< "udpm" or "memq"
-  std::string transport_reason;  ///< why not two processes; empty for udpm
-  int processes = 0;
   std::uint32_t tools = 0;  ///< hands that the script moves
   DeviceSummary device;
-  std::int64_t loop_digest = 0;  ///< of the last command sent
-  std::uint64_t allocations = 0;
-  int interruption = 0;  ///< the signal that ended the run early, 0: none
   RunLog log{0, 0};
 };
 

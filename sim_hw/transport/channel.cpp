@@ -13,6 +13,8 @@ namespace {
 
 constexpr const char* state_name = "DEVICE_STATE";
 constexpr const char* command_name = "LOOP_COMMAND";
+constexpr const char* impulse_name = "IMPULSE_STATE";
+constexpr const char* motion_name = "MOTION_COMMAND";
 
 template <typename Packet>
 void publish(lcm_t* lcm, const char* name, const Packet& packet) {
@@ -57,8 +59,20 @@ void Channel::on_command(std::function<void(const LoopCommand&)> receive) {
   lcm_subscribe(lcm_.get(), command_name, deliver<messages::loop_command, LoopCommand>, &receive_command_);
 }
 
+void Channel::on_state(std::function<void(const ImpulseState&)> receive) {
+  receive_impulse_ = std::move(receive);
+  lcm_subscribe(lcm_.get(), impulse_name, deliver<messages::impulse_state, ImpulseState>, &receive_impulse_);
+}
+
+void Channel::on_command(std::function<void(const MotionCommand&)> receive) {
+  receive_motion_ = std::move(receive);
+  lcm_subscribe(lcm_.get(), motion_name, deliver<messages::motion_command, MotionCommand>, &receive_motion_);
+}
+
 void Channel::send(const DeviceState& state) { publish(lcm_.get(), state_name, to_packet(state)); }
 void Channel::send(const LoopCommand& command) { publish(lcm_.get(), command_name, to_packet(command)); }
+void Channel::send(const ImpulseState& state) { publish(lcm_.get(), impulse_name, to_packet(state)); }
+void Channel::send(const MotionCommand& command) { publish(lcm_.get(), motion_name, to_packet(command)); }
 
 bool Channel::receive(int milliseconds) {
   errno = 0;

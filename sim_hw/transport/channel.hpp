@@ -7,12 +7,14 @@
 #include <string>
 
 #include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/impulse_state.hpp"
 #include "sim_hw/messages/loop_command.hpp"
+#include "sim_hw/messages/motion_command.hpp"
 
 namespace greenloop {
 
-/// Sends and receives the two messages through LCM. Never for the loop itself: it blocks, allocates and calls the
-/// system. One thread uses a channel.
+/// Sends and receives a device's states and a loop's commands through LCM. Never for the loop itself: it blocks,
+/// allocates and calls the system. One thread uses a channel.
 class Channel {
  public:
   /// Only these two places are ever sent to: multicast with a time to live of 0, which stays on this machine, and the
@@ -25,8 +27,12 @@ class Channel {
 
   void on_state(std::function<void(const DeviceState&)> receive);
   void on_command(std::function<void(const LoopCommand&)> receive);
+  void on_state(std::function<void(const ImpulseState&)> receive);
+  void on_command(std::function<void(const MotionCommand&)> receive);
   void send(const DeviceState& state);
   void send(const LoopCommand& command);
+  void send(const ImpulseState& state);
+  void send(const MotionCommand& command);
 
   /// Waits for one message at most `milliseconds` and passes it on. False if none came.
   bool receive(int milliseconds);
@@ -38,6 +44,8 @@ class Channel {
   // filled before the subscription that uses them
   std::function<void(const DeviceState&)> receive_state_;
   std::function<void(const LoopCommand&)> receive_command_;
+  std::function<void(const ImpulseState&)> receive_impulse_;
+  std::function<void(const MotionCommand&)> receive_motion_;
   std::unique_ptr<lcm_t, Destroy> lcm_;
 };
 

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim_hw/device/haptic_device.hpp"
+
 namespace greenloop {
 namespace {
 
@@ -35,12 +37,12 @@ struct Bench {
   std::deque<LoopCommand> commands;
   std::vector<std::int64_t> computed;
   LoopCommand answer{};
-  DeviceEnd device_end{device, [this](const DeviceState& s) { states.push_back(s); }};
-  LoopEnd loop_end{[this](const DeviceState& s) -> const LoopCommand& {
-                     computed.push_back(s.cycle);
-                     return answer = command_for(s.cycle);
-                   },
-                   [this](const LoopCommand& c) { commands.push_back(c); }};
+  DeviceEnd<HapticDevice> device_end{device, [this](const DeviceState& s) { states.push_back(s); }};
+  LoopEnd<DeviceState, LoopCommand> loop_end{[this](const DeviceState& s) -> const LoopCommand& {
+                                               computed.push_back(s.cycle);
+                                               return answer = command_for(s.cycle);
+                                             },
+                                             [this](const LoopCommand& c) { commands.push_back(c); }};
 
   /// Delivers until both queues are empty; `lost()` says whether the next packet is.
   template <typename Lost>
@@ -109,9 +111,9 @@ TEST_CASE("answers that come twice move the device once") {
 TEST_CASE("a device without a loop gives up and says so") {
   Bench bench(3);
   bench.device_end.start();
-  for (int i = 0; i < DeviceEnd::most_silences; ++i) bench.device_end.silence();
+  for (int i = 0; i < most_silences; ++i) bench.device_end.silence();
   CHECK_THROWS_AS(bench.device_end.silence(), std::runtime_error);
-  CHECK(bench.device.summary().retransmits == DeviceEnd::most_silences);
+  CHECK(bench.device.summary().retransmits == most_silences);
 }
 
 }  // namespace

@@ -90,4 +90,45 @@ std::optional<LoopCommand> from_packet(const messages::loop_command& packet) {
   return command;
 }
 
+messages::impulse_state to_packet(const ImpulseState& state) {
+  messages::impulse_state packet{};
+  packet.cycle = state.cycle;
+  packet.impulse = state.impulse;
+  return packet;
+}
+
+messages::motion_command to_packet(const MotionCommand& command) {
+  messages::motion_command packet{};
+  packet.cycle = command.cycle;
+  packet.work = command.work;
+  packet.budget = command.budget;
+  packet.status = command.status;
+  packet.orbit = command.orbit;
+  packet.row = command.row;
+  packet.rank = command.rank;
+  packet.digest = command.digest;
+  packet.num_modes = static_cast<std::int32_t>(command.num_modes);
+  packet.coordinate.assign(command.coordinate, command.coordinate + command.num_modes);
+  return packet;
+}
+
+std::optional<ImpulseState> from_packet(const messages::impulse_state& packet) {
+  return ImpulseState{packet.cycle, packet.impulse};
+}
+
+std::optional<MotionCommand> from_packet(const messages::motion_command& packet) {
+  if (!fits(packet.num_modes, layout::most_modes)) return std::nullopt;
+  MotionCommand command{.cycle = packet.cycle,
+                        .work = packet.work,
+                        .budget = packet.budget,
+                        .status = packet.status,
+                        .orbit = packet.orbit,
+                        .row = packet.row,
+                        .rank = packet.rank,
+                        .digest = packet.digest,
+                        .num_modes = static_cast<std::uint32_t>(packet.num_modes)};
+  std::copy(packet.coordinate.begin(), packet.coordinate.end(), command.coordinate);
+  return command;
+}
+
 }  // namespace greenloop

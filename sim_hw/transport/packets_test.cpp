@@ -91,5 +91,31 @@ TEST_CASE("a packet of more tools or contacts than there is room for is refused"
   CHECK_FALSE(from_packet(command));
 }
 
+TEST_CASE("impulses and motions travel as they are, and too many modes are none") {
+  const auto state = from_packet(to_packet(ImpulseState{7, -1}));
+  REQUIRE(state);
+  CHECK(state->cycle == 7);
+  CHECK(state->impulse == -1);
+  MotionCommand sent{.cycle = 8, .work = 9, .budget = 10, .status = 1, .orbit = 2, .row = 3, .rank = 4, .digest = -5};
+  sent.num_modes = layout::most_modes;
+  for (std::uint32_t m = 0; m < sent.num_modes; ++m) sent.coordinate[m] = static_cast<float>(m) / 3;
+  messages::motion_command packet = to_packet(sent);
+  const auto command = from_packet(packet);
+  REQUIRE(command);
+  CHECK(command->cycle == 8);
+  CHECK(command->work == 9);
+  CHECK(command->budget == 10);
+  CHECK(command->status == 1);
+  CHECK(command->orbit == 2);
+  CHECK(command->row == 3);
+  CHECK(command->rank == 4);
+  CHECK(command->digest == -5);
+  CHECK(std::equal(sent.coordinate, sent.coordinate + layout::most_modes, command->coordinate));
+  packet.num_modes = layout::most_modes + 1;
+  CHECK(!from_packet(packet));
+  packet.num_modes = -1;
+  CHECK(!from_packet(packet));
+}
+
 }  // namespace
 }  // namespace greenloop
