@@ -124,9 +124,9 @@ Eigen::VectorXd SolidDynamics::precondition(const SolidElements::Rotations& vert
   return result;
 }
 
-/// Conjugate gradients: Newton's method needs no more than a few digits of each correction.
+/// Conjugate gradients: Newton's method needs no more than a digit of each correction.
 Eigen::VectorXd SolidDynamics::solve(const SolidElements::Rotations& r, const Eigen::VectorXd& side) {
-  constexpr double tolerance = 1e-2;
+  constexpr double tolerance = 1e-1;
   constexpr int most_iterations = 50;
   const auto vertices = elements_.vertex_rotations(r);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(side.size()), rest = side, z = precondition(vertices, rest), p = z;
@@ -146,7 +146,7 @@ Eigen::VectorXd SolidDynamics::solve(const SolidElements::Rotations& r, const Ei
 }
 
 void SolidDynamics::step(State& state) {
-  constexpr double tolerance = 1e-7;
+  constexpr double tolerance = 1e-5;
   constexpr int most_iterations = 100;
   State next = advanced(state, state.a);
   double size = 0;
