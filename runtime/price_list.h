@@ -14,7 +14,7 @@
   ROW(step, 80, 145, "a step")                                                                   \
   ROW(level, 849, 1180, "a level that is planned")                                               \
   ROW(factor, 2740, 2500, "a factor that is made")                                               \
-  ROW(batch, 48.4, 97, "a batch of rows of a capacitance matrix")                                \
+  ROW(batch, 48.4, 500, "a batch of rows of a capacitance matrix")                               \
   ROW(field, 543, 97.7, "a field")                                                               \
   ROW(checked_contact, 7.61, 12.6, "a contact that is checked")                                  \
   ROW(resolved_contact, 109, 91.1, "a contact that is resolved at a level")                      \
