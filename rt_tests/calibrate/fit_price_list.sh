@@ -13,7 +13,7 @@ trap 'rm -r "$folder"' EXIT
 write_synthetic_models=$(find "$build" -name write_synthetic_models -type f)
 "$write_synthetic_models" "$folder"
 
-"$build/bin/greenloop-calibrate" --instructions "$folder"/sphere_3_*.gloop "$@" -o "$folder/x86_64.json"
+"$build/bin/greenloop-calibrate" --instructions --contacts 12 "$folder"/sphere_3_*.gloop "$@" -o "$folder/x86_64.json"
 bash "$here/set_prices.sh" x86_64 "$folder/x86_64.json" "$list"
 
 firmware=$build/rt_tests/firmware
