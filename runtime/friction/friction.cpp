@@ -8,8 +8,9 @@ namespace greenloop {
 namespace {
 
 constexpr int most_steps = 30;
-constexpr float enough = 0x1p-20F;    // of a change of the multiplier
-constexpr float rounding = 0x1p-21F;  // of a force in space, of its length
+constexpr float enough = 0x1p-20F;      // of a change of the multiplier
+constexpr float rounding = 0x1p-21F;    // of a force in space, of its length
+constexpr float least_normal = 1e-12F;  // N: of smaller forces the squares vanish, and none is left of them
 
 // a unit vector perpendicular to n
 Float4 perpendicular(Float4 n) {
@@ -66,8 +67,9 @@ float share_in_cone(const FrictionContact& contact, float normal, float friction
 }
 
 Float4 in_space(const FrictionContact& contact, const Components& force) {
-  return force.normal > 0 ? combined(contact, force, share_in_cone(contact, force.normal, length(force.tangent)))
-                          : Float4{};
+  return force.normal > least_normal
+             ? combined(contact, force, share_in_cone(contact, force.normal, length(force.tangent)))
+             : Float4{};
 }
 
 // slipping: the friction force at a multiplier x is -p / (compliance + x), component by component; it and the normal
@@ -174,7 +176,7 @@ Float4 force_in_cone(const FrictionContact& contact, Float4 force) noexcept {
   const float normal = dot3(contact.normal, nearest);
   const Float4 tangent = nearest - splat(normal) * contact.normal;
   const float share = share_in_cone(contact, normal, std::sqrt(dot3(tangent, tangent)));
-  return normal > 0 ? splat(normal) * contact.normal + splat(share) * tangent : Float4{};
+  return normal > least_normal ? splat(normal) * contact.normal + splat(share) * tangent : Float4{};
 }
 
 Float4 local_force(const FrictionContact& contact, Float4 free, float& multiplier) noexcept {

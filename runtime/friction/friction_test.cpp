@@ -107,6 +107,25 @@ TEST_CASE("projections onto the cone are the nearest forces in it") {
   }
 }
 
+TEST_CASE("however small a force is, it lies in its cone") {
+  Drawn draw(4);
+  const auto check = [](const FrictionContact& contact, const Vector3d& f) {
+    const Vector3d n = vector(contact.normal);
+    const double normal = f.dot(n);
+    CHECK((f.isZero() || normal > 0));
+    CHECK((f - normal * n).norm() <= (double{contact.friction} + 5e-7) * normal);
+  };
+  for (int k = 0; k < 10000; ++k) {
+    FrictionContact contact;
+    REQUIRE(set_friction_contact(stored(draw.direction()), static_cast<float>(draw(0, 1)), block(Matrix3d::Identity()),
+                                 contact));
+    const Vector3d f = std::pow(10, draw(-40, 0)) * draw.direction();
+    check(contact, vector(force_in_cone(contact, stored(f))));
+    float multiplier = 0;
+    check(contact, vector(local_force(contact, stored(f), multiplier)));
+  }
+}
+
 TEST_CASE("compliances that are not positive definite and values that are not finite are refused") {
   const Float4 n{0, 0, 1, 0};
   FrictionContact contact;
