@@ -17,6 +17,7 @@
 #include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/report/axis.hpp"
+#include "offline/report/motion_report.hpp"
 #include "offline/report/report.hpp"
 
 namespace greenloop::offline {
@@ -79,21 +80,18 @@ void run(const Options& options) {
   require_writable(files);
   if (!options.figures.empty()) require_writable_folder(options.figures);
   const ModelFile file = open_model_file(options.model);
-  if (file.view.problem == layout::Problem::impulse_response) {
-    throw std::runtime_error(options.model +
-                             ": an impulse response model has no report; greenloop inspect "
-                             "shows its modes, orbits and errors");
-  }
   const std::string first = options.traces.empty() ? "" : options.traces.front();
   const auto more = options.traces.begin() + (options.traces.empty() ? 0 : 1);
-  const Report report = make_report(file, {.model = options.model,
-                                           .trace = given(first),
-                                           .snapshot = given(options.snapshot),
-                                           .build = given(options.build),
-                                           .more_traces = {more, options.traces.end()},
-                                           .stability = given(options.stability),
-                                           .provenance = options.provenance,
-                                           .mask = options.mask});
+  const bool motion = file.view.problem == layout::Problem::impulse_response;
+  const ReportInputs inputs{.model = options.model,
+                            .trace = given(first),
+                            .snapshot = given(options.snapshot),
+                            .build = given(options.build),
+                            .more_traces = {more, options.traces.end()},
+                            .stability = given(options.stability),
+                            .provenance = options.provenance,
+                            .mask = options.mask};
+  const Report report = motion ? make_motion_report(file, inputs) : make_report(file, inputs);
   write_report(options, files, report);
   options.json ? print_json(output, report) : print_text(output, report);
 }
