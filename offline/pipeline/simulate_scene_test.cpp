@@ -8,6 +8,8 @@
 #include "formats/mesh/surface_io.hpp"
 #include "formats/testing/temporary_folder.hpp"
 #include "formats/trajectory/trajectory_file.hpp"
+#include "offline/pipeline/build_motion_model.hpp"
+#include "offline/scene/motion_scene.hpp"
 #include "offline/simulate/examples/animal.hpp"
 
 namespace greenloop::offline {
@@ -50,7 +52,8 @@ direction = [0, 1, 0]
 file = "animal.h5"
 )";
 
-TEST_CASE("from a scene to trajectories: the finest level is shown, its feet stay, it goes on and is finished") {
+TEST_CASE(
+    "from a scene to a model: the finest level is shown, its feet stay, it goes on and is finished, and replays") {
   const TemporaryFolder folder("simulate_scene");
   write_surface(folder.path() / "animal.off", examples::animal(1));
   const SimulateRequest request{folder.write("animal.toml", scene_text), {}, false};
@@ -85,6 +88,13 @@ TEST_CASE("from a scene to trajectories: the finest level is shown, its feet sta
   file.reset();
   // once more: nothing is left to do
   CHECK(simulate_scene(request, progress) == record);
+  const auto motion = read_motion_scene(request.scene);
+  REQUIRE(motion);
+  const auto model = build_motion_model(request.scene, *motion, folder.path() / "animal.gloop", progress);
+  CHECK(model["kind"] == "impulse_response");
+  CHECK(model["truncation_error"] < 0.03);
+  CHECK(model["replay_error"]["orbits"] == 1);
+  CHECK(model["replay_error"]["median"] < 0.5);
   const SimulateRequest other{
       folder.write("other.toml", std::string(scene_text).replace(scene_text.find("25 kPa"), 6, "26 kPa")), {}, false};
   CHECK_THROWS_WITH(simulate_scene(other, progress), doctest::Contains("trajectories of another scene"));
