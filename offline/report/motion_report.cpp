@@ -110,7 +110,9 @@ Figure frames_figure(const Model& model) {
                             view.modes, readable(largest / prefix.factor, 3), prefix.symbol),
                 {}};
   if (swings.empty()) return figure;
-  const ViewFrame frame = choose_view(surface, swings.front().displacement);
+  // a little from the side: what moves towards the viewer is not seen to move
+  const ViewFrame facing = choose_view(surface, swings.front().displacement);
+  const ViewFrame frame = view_frame(facing.towards + 0.7 * facing.right + 0.5 * facing.up, facing.up);
   for (const Swing& swing : swings) figure.panels.push_back(swing_panel(surface, swing, frame, largest));
   return figure;
 }
