@@ -101,7 +101,7 @@ void visit_budgets(const test::Body& body, const ExactContacts& exact, const Mod
     limits.max_contacts = static_cast<std::uint32_t>(contacts.size());
     const auto need = Elastostatic::required(model, limits);
     const auto most = 2 * static_cast<double>(need.worst_work[model.level_count() - 1]);
-    for (auto work = static_cast<double>(need.least_work); work < most; work *= 1.1) {
+    for (auto work = static_cast<double>(need.least_work); work < most; work *= 1.07) {
       visit(s, contacts, limits, static_cast<std::uint64_t>(work));
     }
   }

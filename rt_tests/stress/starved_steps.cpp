@@ -89,7 +89,7 @@ Motion move_tool(Hosted<typename D::Solver>& host, const Tool& tool, std::uint64
 }  // namespace
 
 template <Driver D>
-StarvedSteps starved_steps(const Model& model, const StressOptions& options, std::uint64_t cycles) {
+StarvedSteps starved_steps(const Model& model, const StressOptions& options, std::uint64_t cycles, double share) {
   const std::uint32_t held = std::min(options.contacts, most_contacts);
   Hosted<typename D::Solver> host(model, D::limits(held, options.factors, options.prices));
   const Tool tool{path_over(model.view(), options.seed), held, false};
@@ -100,10 +100,11 @@ StarvedSteps starved_steps(const Model& model, const StressOptions& options, std
     const double step = move_tool<D>(host, moved, cycles, std::max(least, budget)).largest_step;
     return finest.largest_step > 0 ? step / finest.largest_step : 0;
   };
-  return {finest.largest_step, over_finest(tool, finest.most_needed / 10), over_finest(tool, finest.most_needed / 4),
-          over_finest(apart, any_budget)};
+  return {finest.largest_step,
+          over_finest(tool, static_cast<std::uint64_t>(share * static_cast<double>(finest.most_needed))),
+          over_finest(tool, finest.most_needed / 4), over_finest(apart, any_budget)};
 }
 
-template StarvedSteps starved_steps<ElastostaticDriver>(const Model&, const StressOptions&, std::uint64_t);
+template StarvedSteps starved_steps<ElastostaticDriver>(const Model&, const StressOptions&, std::uint64_t, double);
 
 }  // namespace greenloop
