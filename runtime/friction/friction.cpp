@@ -145,7 +145,7 @@ bool set_friction_contact(Float4 normal, float friction, const Block<3>& complia
   contact.normal = normal;
   contact.tangent[0] = splat(axes.cosine) * first + splat(axes.sine) * second;
   contact.tangent[1] = splat(axes.cosine) * second - splat(axes.sine) * first;
-  contact.friction = friction;
+  contact.friction = friction < most_friction ? friction : most_friction;
   contact.stiffness = stiffness;
   contact.coupling[0] = (axes.cosine * n1 + axes.sine * n2) * stiffness;
   contact.coupling[1] = (axes.cosine * n2 - axes.sine * n1) * stiffness;

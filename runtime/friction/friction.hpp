@@ -32,6 +32,9 @@ struct FrictionContact {
   float scale = 0;         ///< N/m, of displacements in the natural map: a mean stiffness
 };
 
+/// Coefficients above this act as it does: a wider cone's normal force vanishes in the rounding of its friction force.
+inline constexpr float most_friction = 1000;
+
 /// normal: unit, with a fourth lane of 0; friction >= 0; compliance: of the point, symmetric and positive definite.
 /// False if it is not, or if something is not finite. For the loop, constant work.
 [[nodiscard]] bool set_friction_contact(Float4 normal, float friction, const Block<3>& compliance,

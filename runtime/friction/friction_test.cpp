@@ -126,6 +126,22 @@ TEST_CASE("however small a force is, it lies in its cone") {
   }
 }
 
+TEST_CASE("however rough a contact is, it pushes") {
+  Drawn draw(5);
+  for (int k = 0; k < 20000; ++k) {
+    FrictionContact contact;
+    const float friction = std::pow(10.0F, static_cast<float>(draw(2, 38)));
+    REQUIRE(set_friction_contact(stored(draw.direction()), friction, block(Matrix3d::Identity()), contact));
+    const Vector3d f = std::pow(10, draw(-9, 3)) * draw.direction();
+    float multiplier = 0;
+    for (const Float4 force : {force_in_cone(contact, stored(f)), local_force(contact, stored(f), multiplier)}) {
+      const Vector3d pushed = vector(force), n = vector(contact.normal);
+      CHECK(pushed.dot(n) >= 0);
+      CHECK((pushed.norm() == 0) == (contact_state(contact, force) == ContactState::open));
+    }
+  }
+}
+
 TEST_CASE("compliances that are not positive definite and values that are not finite are refused") {
   const Float4 n{0, 0, 1, 0};
   FrictionContact contact;
