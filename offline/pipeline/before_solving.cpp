@@ -14,6 +14,7 @@
 #include "offline/pipeline/body_problem.hpp"
 #include "offline/pipeline/body_sizes.hpp"
 #include "offline/pipeline/least_work.hpp"
+#include "offline/pipeline/remeshed_skin.hpp"
 #include "offline/pipeline/store_room.hpp"
 #include "offline/volume/boundary_interpolation.hpp"
 #include "offline/volume/thickness.hpp"
@@ -24,8 +25,6 @@ namespace {
 using Flags = std::span<const std::uint32_t>;
 
 constexpr double enough_across = 3;
-/// A wrap is rounded until a base of so many times the size asked for will do.
-constexpr int most_growth = 2;
 
 /// Says what a step needs at least, and refuses a budget that no model of this body could keep.
 void require_possible_work(const Scene& scene, const std::filesystem::path& file, const SemiRegularMesh& mesh,
@@ -118,7 +117,8 @@ ThinPart estimated_thin_part(const SemiRegularMesh& surface, const TriangleMesh&
 
 /// What else would make a large body smaller; empty if nothing would.
 std::string coarser_base(const Scene& scene, const RemeshQuality& remesh) {
-  if (scene.mesh.tetrahedra || scene.mesh.wrap || remesh.base_vertices <= most_growth * scene.remesh.base_vertices) {
+  if (scene.mesh.tetrahedra || scene.mesh.wrap ||
+      remesh.base_vertices <= most_growth_of_wraps * scene.remesh.base_vertices) {
     return "";
   }
   return fmt::format(

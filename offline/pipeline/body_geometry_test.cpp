@@ -43,7 +43,7 @@ std::string refusal(const std::filesystem::path& folder, const std::string& of_s
 
 TEST_CASE("a surface that does not enclose one solid is refused with the way out, which is one") {
   const auto folder = scratch_folder("body_geometry_test");
-  write_surface(folder / "body.off", together(cube(), cube({0.5, 0.5, 0.5})));
+  write_surface(folder / "body.off", joined(cube(), cube({0.5, 0.5, 0.5})));
   const std::string refused = refusal(folder, "");
   CHECK(refused.find("several pieces: 2") != std::string::npos);
   CHECK(refused.find("set [surface] wrap = \"auto\"") != std::string::npos);
@@ -62,7 +62,7 @@ TEST_CASE("a surface that does not enclose one solid is refused with the way out
 
 TEST_CASE("what a wrap refuses names the file and offers no other wrap") {
   const auto folder = scratch_folder("body_geometry_refusal_test");
-  write_surface(folder / "body.off", together(cube(), cube({2, 0, 0})));
+  write_surface(folder / "body.off", joined(cube(), cube({2, 0, 0})));
   const std::string refused = refusal(folder, "wrap = \"auto\"\n");
   CHECK(refused.find("body.off: wrap: 2 separate pieces") != std::string::npos);
   CHECK(refused.find("set [surface] wrap") == std::string::npos);
@@ -71,7 +71,7 @@ TEST_CASE("what a wrap refuses names the file and offers no other wrap") {
 TEST_CASE("a cavity that is asked for stays open in the tetrahedra, and its wall counts as thickness") {
   const auto folder = scratch_folder("body_geometry_cavity_test");
   const auto outer = testing::ellipsoid(3, {1, 1, 1}), inner = testing::ellipsoid(2, {0.6, 0.6, 0.6});
-  write_surface(folder / "body.off", together(finest_surface(outer), finest_surface(inner)));
+  write_surface(folder / "body.off", joined(finest_surface(outer), finest_surface(inner)));
   CHECK(refusal(folder, "").find("cavities = true") != std::string::npos);
 
   const BodyGeometry body = geometry(folder, "cavities = true\n");
@@ -111,7 +111,7 @@ TEST_CASE("tetrahedra keep the cavity that they have") {
 TEST_CASE("a wall that the levels do not resolve is refused with its place") {
   const auto folder = scratch_folder("body_geometry_wall_test");
   const auto outer = testing::ellipsoid(3, {1, 1, 1}), inner = testing::ellipsoid(3, {0.985, 0.985, 0.985});
-  write_surface(folder / "body.off", together(finest_surface(outer), finest_surface(inner)));
+  write_surface(folder / "body.off", joined(finest_surface(outer), finest_surface(inner)));
   const BodyGeometry body = geometry(folder, "cavities = true\n", "base_vertices = 12\n");
   ProgressBar quiet(true);
   std::string refused;

@@ -22,8 +22,7 @@ namespace {
 
 /// Radii of rounding, in edges of a finest triangle, in the order in which they are tried.
 constexpr std::array roundings{0.0, 1.0, 2.0, 4.0};
-/// What a rung may take before the next one is: times the base asked for, and attempts.
-constexpr int most_growth = 2;
+/// Attempts that a rung may take before the next one is.
 constexpr double most_work = 6;
 
 RemeshOptions options_of(const Scene& scene) {
@@ -111,7 +110,7 @@ class Ladder {
          ProgressBar& progress)
       : faces_(faces), notes_(notes), options_(options), progress_(progress), area_(surface_area(faces)) {
     wrapping_.largest_piece = largest_piece;
-    options_.most_base_vertices = most_growth * options.base_vertices;
+    options_.most_base_vertices = most_growth_of_wraps * options.base_vertices;
     options_.most_work = most_work;
   }
 

@@ -12,6 +12,9 @@
 
 namespace greenloop::offline {
 
+/// A wrap whose length is chosen is rounded until a base of so many times the size asked for will do.
+inline constexpr int most_growth_of_wraps = 2;
+
 /// A closed surface and what was made of it; m.
 struct RemeshedSkin {
   PreparedSurface surface;

@@ -12,24 +12,23 @@
 #include <utility>
 
 #include "offline/surface/area_and_volume.hpp"
+#include "offline/surface/surface_edges.hpp"
 
 namespace greenloop::offline {
 namespace {
 
-/// The piece of every vertex, named by one of its vertices.
+/// The piece of every vertex, named by the first of its vertices.
 std::vector<int> pieces_of_vertices(const TriangleMesh& mesh) {
-  std::vector<int> above(mesh.vertices.size());
-  std::iota(above.begin(), above.end(), 0);
-  const auto top = [&](int vertex) {
-    while (above[vertex] != vertex) vertex = above[vertex] = above[above[vertex]];
-    return vertex;
-  };
+  DisjointSets sets(mesh.vertices.size());
   for (const auto& [a, b, c] : mesh.triangles) {
-    above[top(a)] = top(b);
-    above[top(b)] = top(c);
+    sets.unite(a, b);
+    sets.unite(b, c);
   }
-  for (int vertex = 0; vertex < static_cast<int>(above.size()); ++vertex) above[vertex] = top(vertex);
-  return above;
+  std::vector<int> piece;
+  for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+    piece.push_back(sets.find(static_cast<int>(vertex)));
+  }
+  return piece;
 }
 
 std::vector<TriangleMesh> pieces(const TriangleMesh& mesh) {

@@ -26,7 +26,7 @@ TriangleMesh inverted(TriangleMesh mesh) {
 /// A unit cube with two small cubes inside, one of which looks inwards as a drawing of a cavity should.
 TriangleMesh hollow_cube() {
   const auto left = scaled(cube(), 0.2, {0.1, 0.4, 0.4}), right = inverted(scaled(cube(), 0.3, {0.6, 0.4, 0.4}));
-  return together(together(left, cube()), right);
+  return joined(joined(left, cube()), right);
 }
 
 std::string refusal(const TriangleMesh& mesh) {
@@ -60,14 +60,14 @@ TEST_CASE("walls are found again in the boundary of all") {
 }
 
 TEST_CASE("what is no cavity is refused with its place") {
-  CHECK(refusal(together(scaled(cube(), 3, {0, 0, 0}), cube({4, 0, 0}))).find("12 faces at (4, 0, 0) is no cavity") !=
+  CHECK(refusal(joined(scaled(cube(), 3, {0, 0, 0}), cube({4, 0, 0}))).find("12 faces at (4, 0, 0) is no cavity") !=
         std::string::npos);
   const auto nested =
-      together(together(scaled(cube(), 3, {0, 0, 0}), cube({1, 1, 1})), scaled(cube(), 0.2, {1.4, 1.4, 1.4}));
+      joined(joined(scaled(cube(), 3, {0, 0, 0}), cube({1, 1, 1})), scaled(cube(), 0.2, {1.4, 1.4, 1.4}));
   CHECK(refusal(nested).find("12 faces at (1.4, 1.4, 1.4) lies in a cavity") != std::string::npos);
   TriangleMesh many = scaled(cube(), 100, {-1, -1, -1});
   for (std::size_t i = 0; i <= most_cavities; ++i) {
-    many = together(many, scaled(cube(), 0.5, Eigen::Vector3d::Constant(static_cast<double>(i))));
+    many = joined(many, scaled(cube(), 0.5, Eigen::Vector3d::Constant(static_cast<double>(i))));
   }
   CHECK(refusal(many).find("a body may have 64 cavities") != std::string::npos);
 }
@@ -81,7 +81,7 @@ TEST_CASE("pieces inside are refused unless they are asked for, and other defect
   TriangleMesh open = hollow_cube();
   open.triangles.pop_back();
   CHECK_THROWS_AS(static_cast<void>(prepare_surface(open, {}, Inside::cavities)), SurfaceError);
-  const auto crossing = together(cube(), cube({0.5, 0.5, 0.5}));
+  const auto crossing = joined(cube(), cube({0.5, 0.5, 0.5}));
   CHECK_THROWS_AS(static_cast<void>(prepare_surface(crossing, {}, Inside::cavities)), SurfaceError);
 }
 

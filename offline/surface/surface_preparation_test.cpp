@@ -144,7 +144,7 @@ TEST_CASE("a weld that was asked for drops and counts the faces that it collapse
 TEST_CASE("sheets that lie close to each other are not welded to one") {
   TriangleMesh stack;
   for (int i = 0; i < 8; ++i)
-    stack = together(stack, {{{0, 0, 1e-6 * i}, {1, 0, 1e-6 * i}, {0, 1, 1e-6 * i}}, {{0, 1, 2}}});
+    stack = joined(stack, {{{0, 0, 1e-6 * i}, {1, 0, 1e-6 * i}, {0, 1, 1e-6 * i}}, {{0, 1, 2}}});
   check_refused(stack, {"24 boundary edges", "several pieces: 8"});
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("refused: non-manifold edges") {
 }
 
 TEST_CASE("refused: a non-manifold vertex") {
-  auto mesh = together(cube(), cube(Eigen::Vector3d::Ones()));
+  auto mesh = joined(cube(), cube(Eigen::Vector3d::Ones()));
   for (auto& triangle : mesh.triangles) {
     for (int& vertex : triangle) {
       vertex = vertex == 8 ? 7 : vertex;
@@ -203,12 +203,12 @@ TEST_CASE("refused: a non-manifold vertex") {
 
 TEST_CASE("refused: several pieces") {
   check_refused(
-      together(cube(), cube(Eigen::Vector3d(3, 0, 0))),
+      joined(cube(), cube(Eigen::Vector3d(3, 0, 0))),
       {"several pieces: 2 that share no edge, of 12 faces (face 0 at (0.333333, 0.666667, 0)), 12 faces (face 12"});
 }
 
 TEST_CASE("refused: pieces that intersect") {
-  check_refused(together(cube(), cube(Eigen::Vector3d::Constant(0.5))),
+  check_refused(joined(cube(), cube(Eigen::Vector3d::Constant(0.5))),
                 {"several pieces", "pairs of faces that intersect"});
 }
 

@@ -114,7 +114,7 @@ TEST_CASE("a wall inside makes non-manifold edges") {
 }
 
 TEST_CASE("two cubes that share a corner have one non-manifold vertex") {
-  auto mesh = together(cube(), cube(Eigen::Vector3d::Ones()));
+  auto mesh = joined(cube(), cube(Eigen::Vector3d::Ones()));
   for (auto& triangle : mesh.triangles) {
     for (int& vertex : triangle) {
       vertex = vertex == 8 ? 7 : vertex;
@@ -147,7 +147,7 @@ TEST_CASE("a face with a repeated vertex has no area") {
 }
 
 TEST_CASE("two cubes through each other intersect") {
-  const auto report = check_surface(together(cube(), cube(Eigen::Vector3d::Constant(0.5))));
+  const auto report = check_surface(joined(cube(), cube(Eigen::Vector3d::Constant(0.5))));
   CHECK(report.component_sizes.size() == 2);
   CHECK(report.intersecting_faces.size() >= 12);
   CHECK(report.euler_characteristic == 4);

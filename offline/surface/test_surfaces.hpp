@@ -6,6 +6,7 @@
 #include <string>
 
 #include "formats/mesh/surface_io.hpp"
+#include "offline/surface/shells.hpp"
 
 namespace greenloop::offline {
 
@@ -25,16 +26,6 @@ inline TriangleMesh cube(const Eigen::Vector3d& corner = Eigen::Vector3d::Zero()
   mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return mesh;
-}
-
-/// Both surfaces in one mesh.
-inline TriangleMesh together(TriangleMesh a, const TriangleMesh& b) {
-  const int shift = static_cast<int>(a.vertices.size());
-  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-  for (const auto& [i, j, k] : b.triangles) {
-    a.triangles.push_back({i + shift, j + shift, k + shift});
-  }
-  return a;
 }
 
 /// Every face with vertices of its own.

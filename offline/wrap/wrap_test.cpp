@@ -149,7 +149,7 @@ TEST_CASE("a bottle stays open, though its neck is narrow") {
 }
 
 TEST_CASE("bodies that cross become one") {
-  const auto [wrapped, report] = wrap(together(cube(), cube({0.5, 0.5, 0.5})));
+  const auto [wrapped, report] = wrap(joined(cube(), cube({0.5, 0.5, 0.5})));
   const auto found = prepared(wrapped);
   CHECK(found.component_sizes.size() == 1);
   CHECK(found.volume == doctest::Approx(2 - 0.125).epsilon(1e-3));
@@ -160,18 +160,18 @@ TEST_CASE("bodies that cross become one") {
 }
 
 TEST_CASE("an inner shell is filled, and said to be") {
-  const auto [wrapped, report] = wrap(together(cube(), scaled(cube(), 0.5, {0.25, 0.25, 0.25})));
+  const auto [wrapped, report] = wrap(joined(cube(), scaled(cube(), 0.5, {0.25, 0.25, 0.25})));
   CHECK(prepared(wrapped).volume == doctest::Approx(1).epsilon(1e-6));
   CHECK(report.filled_shells == 1);
   CHECK(tells(report, "1 inner shell filled"));
 }
 
 TEST_CASE("crumbs are dropped; several bodies are refused, unless the largest one is asked for") {
-  const auto crumb = wrap(together(cube(), scaled(cube(), 0.1, {1.1, 0, 0})));
+  const auto crumb = wrap(joined(cube(), scaled(cube(), 0.1, {1.1, 0, 0})));
   CHECK(crumb.report.pieces_dropped == 1);
   CHECK(prepared(crumb.mesh).volume == doctest::Approx(1).epsilon(1e-6));
 
-  const auto two = together(cube(), scaled(cube(), 0.5, {1.1, 0, 0}));
+  const auto two = joined(cube(), scaled(cube(), 0.5, {1.1, 0, 0}));
   CHECK(refusal(two).find("2 separate pieces") != std::string::npos);
   CHECK(refusal(two).find("pieces = \"largest\"") != std::string::npos);
   const auto largest = wrap(two, {.length = {}, .largest_piece = true});
@@ -191,7 +191,7 @@ TEST_CASE("an open sheet becomes a plate") {
 
 TEST_CASE("a face that sticks out of a body is dropped") {
   const TriangleMesh fin{{{0.5, 0.5, 0.5}, {1.5, 0.5, 0.5}, {0.5, 0.4, 1.5}}, {{0, 1, 2}}};
-  const auto [wrapped, report] = wrap(together(cube(), fin));
+  const auto [wrapped, report] = wrap(joined(cube(), fin));
   CHECK(prepared(wrapped).volume == doctest::Approx(1).epsilon(1e-3));
   CHECK(!report.plate_thickness);
   CHECK(report.sheet_share > 0.01);
@@ -251,7 +251,7 @@ TEST_CASE("rounding closes a gap") {
 }
 
 TEST_CASE("the same faces give the same bits") {
-  const auto mesh = together(cube(), cube({0.5, 0.4, 0.3}));
+  const auto mesh = joined(cube(), cube({0.5, 0.4, 0.3}));
   const auto first = wrap(mesh).mesh, second = wrap(mesh).mesh;
   CHECK(first.vertices == second.vertices);
   CHECK(first.triangles == second.triangles);
