@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_hw/control_loop/control_loop.hpp"
+#include "sim_hw/control_loop/cycle_tally.hpp"
 
 namespace greenloop {
 
@@ -52,12 +53,8 @@ struct FastLoop {
   [[nodiscard]] static double relative(double squares, double of) { return of > 0 ? std::sqrt(squares / of) : 0; }
 };
 
-/// What all cycles of a run come to.
-struct RunTally {
-  std::int64_t cycles = 0;
-  std::int64_t misses = 0;       ///< cycles that spent more than their budget or had to hold the last response
-  std::int64_t first_miss = -1;  ///< its cycle, -1: none
-  std::uint64_t worst_work = 0;  ///< units
+/// What all cycles of a run come to; a miss is a cycle that was CycleRecord::missed.
+struct RunTally : CycleTally {
   std::int64_t contact_cycles = 0;
   std::uint32_t contacts_max = 0;
   double force_max = 0;                                     ///< N

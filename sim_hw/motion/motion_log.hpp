@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "sim_hw/control_loop/cycle_tally.hpp"
 #include "sim_hw/motion/motion_bounds.hpp"
 #include "sim_hw/motion/motion_loop.hpp"
 
@@ -18,12 +19,9 @@ struct MotionRecord {
   double velocity = 0;  ///< m/s, |q_v|
 };
 
-/// What all cycles of a run come to. Norms are Euclidean, over the modes.
-struct MotionTally {
-  std::int64_t cycles = 0;
-  std::int64_t misses = 0;               ///< cycles that spent more than their budget, or had too little of it
-  std::int64_t first_miss = -1;          ///< its cycle, -1: none
-  std::uint64_t worst_work = 0;          ///< units
+/// What all cycles of a run come to; a miss is one that spent more than its budget, or had too little of it. Norms are
+/// Euclidean, over the modes.
+struct MotionTally : CycleTally {
   std::int64_t entered = 0;              ///< impulses that were followed
   std::int64_t blending = 0;             ///< of these, while an earlier difference was left
   std::int64_t continued = 0;            ///< orbits that went on in others

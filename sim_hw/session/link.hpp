@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "runtime/loop.hpp"
 #include "sim_hw/control_loop/loop_thread.hpp"
 #include "sim_hw/session/device_process.hpp"
 #include "sim_hw/session/interruption.hpp"
@@ -16,8 +17,13 @@ namespace greenloop {
 
 enum class Transport { automatic, udpm, memq };
 
-/// How device and loop talked to each other, and how that ended.
+/// What was asked of device and loop, how they talked to each other, and how that ended.
 struct LinkResult {
+  double rate = 0;   ///< Hz
+  double share = 1;  ///< of a period
+  std::int64_t cycles_asked = 0;
+  Budget budget;
+  std::uint64_t least_work = 0;  ///< units, the least budget
   std::string transport;         ///< "udpm" or "memq"
   std::string transport_reason;  ///< why not two processes; empty for udpm
   int processes = 0;

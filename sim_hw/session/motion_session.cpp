@@ -10,6 +10,7 @@
 #include "formats/write/aligned_bytes.hpp"
 #include "sim_hw/motion/impulse_device.hpp"
 #include "sim_hw/session/loaded_model.hpp"
+#include "sim_hw/session/run_verdict.hpp"
 
 namespace greenloop {
 namespace {
@@ -30,16 +31,6 @@ Budget budget_of(const SessionOptions& options, const ImpulseResponse::Requireme
 }
 
 double square(double x) { return x * x; }
-
-TimeHistogram histogram(const MotionResult& result) {
-  TimeHistogram times(static_cast<std::size_t>(1e6 / result.rate) + 1);
-  for (const float us : result.log.cpu_us()) times.add(static_cast<double>(us));
-  return times;
-}
-
-std::string digest_text(const MotionResult& result) {
-  return fmt::format("{:016x}", static_cast<std::uint64_t>(result.loop_digest));
-}
 
 }  // namespace
 
@@ -79,9 +70,8 @@ MotionResult run_motion_session(const SessionOptions& options) {
 MotionVerdict judge(const MotionResult& result, bool judge_time) {
   MotionVerdict verdict;
   static_cast<MotionTally&>(verdict) = result.log.tally();
-  verdict.time = judge_times(histogram(result), result.rate, result.share, judge_time);
-  verdict.complete = verdict.cycles == result.cycles_asked && result.device.cycles == result.cycles_asked &&
-                     result.device.digest == result.loop_digest && !result.device.stopped;
+  verdict.time = judge_times(histogram(result.log.cpu_us(), result.rate), result.rate, result.share, judge_time);
+  verdict.complete = is_complete(result, result.device, verdict);
   const MotionBounds& bounds = result.bounds;
   verdict.smooth = verdict.position_jump <= rounding * bounds.displacement.jump() &&
                    verdict.velocity_jump <= rounding * bounds.velocity.jump() &&
@@ -141,10 +131,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const MotionResult
 }
 
 std::string to_text(const SessionOptions& options, const MotionResult& result, const MotionVerdict& verdict) {
-  const std::string reason = result.transport_reason.empty() ? "" : " (" + result.transport_reason + ")";
-  std::string text = fmt::format("{}: {} of {} cycles at {} Hz, {} misses, {} late, {} allocations\n",
-                                 verdict.held ? "HELD" : "VIOLATED", verdict.cycles, result.cycles_asked, result.rate,
-                                 verdict.misses, result.device.late, result.allocations);
+  std::string text = headline(verdict.held, result, result.device, verdict);
   text += verdict.time.text("cycle");
   text += fmt::format("  model      {}\n", options.model.string());
   text += fmt::format("  impulses   {}, {} of them in the midst of a blend; {} orbits went on in others\n",
@@ -161,22 +148,8 @@ std::string to_text(const SessionOptions& options, const MotionResult& result, c
   text +=
       fmt::format("  frames     {}, {} of them by fewer than {} modes, the coarsest by {}, off by {:.2g} %\n",
                   verdict.frames, verdict.coarser, result.modes, verdict.least_rank, 100 * verdict.truncation_error);
-  text += fmt::format("  work       at most {} of {} units per cycle ({:.1f} %); the least budget is {}\n",
-                      verdict.worst_work, result.budget.work,
-                      100 * static_cast<double>(verdict.worst_work) / static_cast<double>(result.budget.work),
-                      result.least_work);
-  text += fmt::format("  digest     {}\n", digest_text(result));
-  text += fmt::format("  transport  {}, {} process{}{}, {} retransmissions\n", result.transport, result.processes,
-                      result.processes == 1 ? "" : "es", reason, result.device.retransmits);
-  if (verdict.first_miss >= 0) text += fmt::format("  first miss in cycle {}\n", verdict.first_miss);
-  if (result.interruption != 0) {
-    text += fmt::format("  interrupted by signal {}\n", result.interruption);
-  } else if (result.device.stopped) {
-    text += fmt::format("  stopped    {} late commands in a row\n", CommandArrival::most_in_a_row);
-  } else if (!verdict.complete) {
-    text += "  incomplete: device and loop do not agree on what was sent\n";
-  }
-  return text;
+  text += work_line(result, verdict);
+  return text + ending(verdict.complete, result, result.device, verdict);
 }
 
 }  // namespace greenloop

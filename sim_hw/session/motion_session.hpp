@@ -11,13 +11,8 @@ namespace greenloop {
 
 /// A run of motions that came to its end, well or badly.
 struct MotionResult : LinkResult {
-  double rate = 0;   ///< Hz
-  double share = 1;  ///< of a period
-  std::int64_t cycles_asked = 0;
   std::int64_t field_every = 1;  ///< cycles, of displacements of all vertices
-  Budget budget;
-  std::uint64_t least_work = 0;
-  std::uint32_t modes = 0;  ///< of the model
+  std::uint32_t modes = 0;       ///< of the model
   MotionBounds bounds;
   LinkSummary device;
   MotionLog log{0, 0, 0, false};

@@ -45,13 +45,8 @@ struct SessionOptions {
 
 /// A run that came to its end, well or badly.
 struct SessionResult : LinkResult {
-  double rate = 0;           ///< Hz
   double device_period = 0;  ///< s, of a cycle of the device, which is the loop's unless there is a fast one
-  double share = 1;          ///< of a period
-  std::int64_t cycles_asked = 0;
-  Budget budget;
-  std::uint64_t least_work = 0;
-  std::uint32_t tools = 0;  ///< hands that the script moves
+  std::uint32_t tools = 0;   ///< hands that the script moves
   DeviceSummary device;
   RunLog log{0, 0};
 };

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "sim_hw/session/run_verdict.hpp"
+
 namespace greenloop {
 namespace {
 
@@ -45,17 +47,6 @@ nlohmann::ordered_json fast_json(const FastLoop& fast, double rate) {
           {"local_work", fast.work_most}};
 }
 
-// bins of a microsecond up to the period: beyond it every time is late
-TimeHistogram histogram(const SessionResult& result) {
-  TimeHistogram times(static_cast<std::size_t>(1e6 / result.rate) + 1);
-  for (const float us : result.log.cpu_us()) times.add(static_cast<double>(us));
-  return times;
-}
-
-std::string digest_text(const SessionResult& result) {
-  return fmt::format("{:016x}", static_cast<std::uint64_t>(result.loop_digest));
-}
-
 std::string levels_text(const Verdict& verdict) {
   std::string text;
   for (const auto& [level, cycles] : verdict.levels_used) {
@@ -74,9 +65,8 @@ Verdict judge(const SessionResult& result, bool judge_time) {
   }
   verdict.energy = verdict.last.energy;
   verdict.step_us = step_time(result.log.cpu_us());
-  verdict.time = judge_times(histogram(result), result.rate, result.share, judge_time);
-  verdict.complete = verdict.cycles == result.cycles_asked && result.device.cycles == result.cycles_asked &&
-                     result.device.digest == result.loop_digest && !result.device.stopped;
+  verdict.time = judge_times(histogram(result.log.cpu_us(), result.rate), result.rate, result.share, judge_time);
+  verdict.complete = is_complete(result, result.device, verdict);
   verdict.held = verdict.misses == 0 && result.allocations == 0 && result.device.late <= result.device.late_injected &&
                  verdict.complete;
   return verdict;
@@ -145,10 +135,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
 }
 
 std::string to_text(const SessionOptions& options, const SessionResult& result, const Verdict& verdict) {
-  const std::string reason = result.transport_reason.empty() ? "" : " (" + result.transport_reason + ")";
-  std::string text = fmt::format("{}: {} of {} cycles at {} Hz, {} misses, {} late, {} allocations\n",
-                                 verdict.held ? "HELD" : "VIOLATED", verdict.cycles, result.cycles_asked, result.rate,
-                                 verdict.misses, result.device.late, result.allocations);
+  std::string text = headline(verdict.held, result, result.device, verdict);
   text += verdict.time.text("cycle");
   text += fmt::format("  model      {}\n", options.model.string());
   text += fmt::format("  script     {}: {} cycles in contact, at most {} contacts, {:.3g} N\n",
@@ -170,23 +157,9 @@ std::string to_text(const SessionOptions& options, const SessionResult& result, 
                         100 * FastLoop::relative(fast.error_square, fast.square),
                         100 * FastLoop::relative(fast.held_square, fast.square));
   }
-  text += fmt::format("  work       at most {} of {} units per cycle ({:.1f} %); the least budget is {}\n",
-                      verdict.worst_work, result.budget.work,
-                      100 * static_cast<double>(verdict.worst_work) / static_cast<double>(result.budget.work),
-                      result.least_work);
+  text += work_line(result, verdict);
   text += fmt::format("  levels     {}\n", levels_text(verdict));
-  text += fmt::format("  digest     {}\n", digest_text(result));
-  text += fmt::format("  transport  {}, {} process{}{}, {} retransmissions\n", result.transport, result.processes,
-                      result.processes == 1 ? "" : "es", reason, result.device.retransmits);
-  if (verdict.first_miss >= 0) text += fmt::format("  first miss in cycle {}\n", verdict.first_miss);
-  if (result.interruption != 0) {
-    text += fmt::format("  interrupted by signal {}\n", result.interruption);
-  } else if (result.device.stopped) {
-    text += fmt::format("  stopped    {} late commands in a row\n", CommandArrival::most_in_a_row);
-  } else if (!verdict.complete) {
-    text += "  incomplete: device and loop do not agree on what was sent\n";
-  }
-  return text;
+  return text + ending(verdict.complete, result, result.device, verdict);
 }
 
 }  // namespace greenloop

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim_hw/control_loop/cycle_tally.hpp"
+#include "sim_hw/device/command_arrival.hpp"
+#include "sim_hw/guard/time_histogram.hpp"
+#include "sim_hw/session/link.hpp"
+
+namespace greenloop {
+
+// What the verdicts of contacts and of motions have in common.
+
+/// Of the cycles' processor times, µs: bins of a microsecond up to the period, beyond which every time is late.
+[[nodiscard]] TimeHistogram histogram(const std::vector<float>& cpu_us, double rate);
+
+/// Every cycle was run, and both sides agree on what was sent.
+[[nodiscard]] bool is_complete(const LinkResult& result, const LinkSummary& device, const CycleTally& tally);
+
+/// 16 hexadecimal digits.
+[[nodiscard]] std::string digest_text(const LinkResult& result);
+
+/// "HELD: 1000 of 1000 cycles at 1000 Hz, ...", a line.
+[[nodiscard]] std::string headline(bool held, const LinkResult& result, const LinkSummary& device,
+                                   const CycleTally& tally);
+
+/// Work of the cycles against the budget, a line.
+[[nodiscard]] std::string work_line(const LinkResult& result, const CycleTally& tally);
+
+/// Digest, transport, the first miss, and why a run did not come to its end.
+[[nodiscard]] std::string ending(bool complete, const LinkResult& result, const LinkSummary& device,
+                                 const CycleTally& tally);
+
+}  // namespace greenloop
