@@ -180,6 +180,20 @@ double share_of(const Arguments& arguments, const greenloop::Elastostatic::Inten
   return arguments.share > 0 ? arguments.share : double{intent.share};
 }
 
+// the result of `run`, which tells of its progress, and how long it took
+template <class Report, class Run>
+void run_with_progress(Report& report, greenloop::offline::ProgressBar& bar, Run run) {
+  bar.begin("stress");
+  report.options.progress = [&](auto kind, std::uint64_t done) {
+    bar.update(static_cast<double>(done) / static_cast<double>(report.options.cycles), name(kind));
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  report.result = run();
+  const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
+  report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
+  bar.end(fmt::format("{} cycles", report.result.cycles));
+}
+
 ToolStressReport stress_tools(const greenloop::Model& model, const Arguments& arguments) {
   constexpr std::uint32_t usual_contacts = 64;
   const greenloop::StressOptions& asked = arguments.options;
@@ -194,15 +208,7 @@ ToolStressReport stress_tools(const greenloop::Model& model, const Arguments& ar
   options.histogram_bins = asked.histogram_bins;
   options.fault = asked.fault;
   greenloop::offline::ProgressBar bar(arguments.json);
-  bar.begin("stress");
-  options.progress = [&](ToolScriptKind kind, std::uint64_t done) {
-    bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
-  };
-  const auto begin = std::chrono::steady_clock::now();
-  report.result = greenloop::run_tool_stress(model, options);
-  const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
-  report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
-  bar.end(fmt::format("{} cycles", report.result.cycles));
+  run_with_progress(report, bar, [&] { return greenloop::run_tool_stress(model, options); });
   const auto intent = greenloop::Elastostatic::intended(model);
   report.time = greenloop::judge_times(report.result.times, rate_of(arguments, intent), share_of(arguments, intent),
                                        arguments.judge_time);
@@ -231,15 +237,7 @@ ImpulseStressReport stress_motions(const greenloop::Model& model, const Argument
   const float rate = options.limits.rate;
   report.rate = static_cast<double>(rate > 0 ? rate : model.view().impulse_response.info->rate);
   greenloop::offline::ProgressBar bar(arguments.json);
-  bar.begin("stress");
-  options.progress = [&](ImpulseScriptKind kind, std::uint64_t done) {
-    bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
-  };
-  const auto begin = std::chrono::steady_clock::now();
-  report.result = greenloop::run_impulse_stress(model, options);
-  const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
-  report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
-  bar.end(fmt::format("{} cycles", report.result.cycles));
+  run_with_progress(report, bar, [&] { return greenloop::run_impulse_stress(model, options); });
   report.time = greenloop::judge_times(report.result.times, report.rate, arguments.share > 0 ? arguments.share : 1,
                                        arguments.judge_time);
   if (arguments.count_instructions) {
@@ -268,16 +266,10 @@ StressReport stress(const greenloop::Model& model, const Arguments& arguments) {
   StressReport report{.model = arguments.model, .options = options_for(model, arguments)};
   greenloop::StressOptions& options = report.options;
   greenloop::offline::ProgressBar bar(arguments.json);
-  bar.begin("stress");
-  options.progress = [&](ScriptKind kind, std::uint64_t done) {
-    bar.update(static_cast<double>(done) / static_cast<double>(options.cycles), name(kind));
-  };
-  const auto begin = std::chrono::steady_clock::now();
-  report.result = arguments.loads ? greenloop::run_stress<greenloop::LoadedDriver>(model, options)
-                                  : greenloop::run_stress<ElastostaticDriver>(model, options);
-  const std::chrono::duration<double, std::ratio<60>> minutes = std::chrono::steady_clock::now() - begin;
-  report.minutes_per_million = minutes.count() / (static_cast<double>(report.result.cycles) / 1e6);
-  bar.end(fmt::format("{} cycles", report.result.cycles));
+  run_with_progress(report, bar, [&] {
+    return arguments.loads ? greenloop::run_stress<greenloop::LoadedDriver>(model, options)
+                           : greenloop::run_stress<ElastostaticDriver>(model, options);
+  });
   const auto intent = greenloop::Elastostatic::intended(model);
   report.time = greenloop::judge_times(report.result.times, rate_of(arguments, intent), share_of(arguments, intent),
                                        arguments.judge_time);

@@ -11,6 +11,7 @@
 #include "rt_tests/stress/guarded_steps.hpp"
 #include "rt_tests/stress/impulse_stress_script.hpp"
 #include "rt_tests/stress/predicted_work.hpp"
+#include "rt_tests/stress/report_parts.hpp"
 #include "runtime/impulse_response.hpp"
 #include "sim_hw/guard/time_histogram.hpp"
 #include "sim_hw/guard/time_verdict.hpp"
@@ -42,9 +43,7 @@ struct ImpulseCounts {
 
   [[nodiscard]] std::uint64_t of(Status status) const { return by_status[static_cast<std::size_t>(status)]; }
   [[nodiscard]] std::uint64_t answers() const { return of(Status::ok) + of(Status::coarser); }
-  [[nodiscard]] double declared_over_worst() const {
-    return worst_work > 0 ? static_cast<double>(declared_work) / static_cast<double>(worst_work) : 0;
-  }
+  [[nodiscard]] double declared_over_worst() const { return declared_over(declared_work, worst_work); }
   void add(const ImpulseCounts& other);
 };
 

@@ -3,8 +3,7 @@
 #include <string>
 
 #include "rt_tests/stress/impulse_stress.hpp"
-#include "rt_tests/stress/time_output.hpp"
-#include "sim_hw/control_loop/status_name.hpp"
+#include "rt_tests/stress/report_parts.hpp"
 
 namespace greenloop {
 namespace {
@@ -68,30 +67,22 @@ json ImpulseStressReport::json() const {
                         {"scripts", nlohmann::json::array()},
                         {"first_violation", nullptr},
                         {"verdict", result.held() ? "HELD" : "VIOLATED"}};
-  for (const auto& [name, number] : named(result.violations)) all[name] = number;
-  if (!result.watches_system_calls) all["syscalls"] = nullptr;
+  add_violations(result.violations, result.watches_system_calls, all);
   if (predicted) {
     all["predicted_over_instructions"] = greenloop::as_json(*predicted);
     all["instructions_max"] = predicted->heaviest_instructions;
   }
   for (const ImpulseScriptResult& script : result.scripts) all["scripts"].push_back(as_json(script));
-  for (std::size_t i = 0; i < statuses; ++i) all["statuses"][name(static_cast<Status>(i))] = counts.by_status[i];
+  all["statuses"] = statuses_json(counts.by_status);
   if (result.first_violation) {
-    all["first_violation"] = {{"script", name(result.first_violation->script)},
-                              {"cycle", result.first_violation->cycle},
-                              {"what", result.first_violation->what},
-                              {"seed", options.seed},
-                              {"replay", replay()}};
+    all["first_violation"] = violation_json(*result.first_violation, options.seed, replay());
   }
   return all;
 }
 
 void ImpulseStressReport::print() const {
   fmt::print("{}\n", verdict());
-  if (result.first_violation) {
-    fmt::print("first in script {}, seed {}, cycle {}: {}; again with\n  {}\n", name(result.first_violation->script),
-               options.seed, result.first_violation->cycle, result.first_violation->what, replay());
-  }
+  if (result.first_violation) print_violation(*result.first_violation, options.seed, replay());
   fmt::print("{}\n", time.text("step"));
   const double seconds = static_cast<double>(result.cycles) / rate;
   fmt::print(
@@ -106,12 +97,10 @@ void ImpulseStressReport::print() const {
                s.counts.blending, s.counts.continued, s.counts.worst_work, s.worst_us,
                100 * s.counts.most_energy_share);
   }
-  fmt::print("\nsteps by status:");
+  fmt::print("\n");
   const ImpulseCounts& counts = result.counts;
-  for (std::size_t i = 0; i < statuses; ++i) {
-    if (counts.by_status[i] > 0) fmt::print("  {} {}", name(static_cast<Status>(i)), counts.by_status[i]);
-  }
-  fmt::print("\nworst work {} of {} declared units: declared {:.2f} times the worst\n", counts.worst_work,
+  print_statuses(counts.by_status);
+  fmt::print("worst work {} of {} declared units: declared {:.2f} times the worst\n", counts.worst_work,
              counts.declared_work, counts.declared_over_worst());
   if (predicted) {
     fmt::print("instructions of the heaviest kind of step {}\n", predicted->heaviest_instructions);
@@ -120,9 +109,7 @@ void ImpulseStressReport::print() const {
   fmt::print("largest difference that had to die out {:.3g} m; energy of the state at most {:.3g} m^2, bound {:.3g}\n",
              counts.most_blend, counts.most_energy, result.energy_bound);
   fmt::print("{} limits that are none were refused\n", result.wrong_limits);
-  if (!result.watches_system_calls) {
-    fmt::print("system calls not watched: this kernel has no Syscall User Dispatch\n");
-  }
+  print_if_unwatched(result.watches_system_calls);
   fmt::print("digest {:016x}; {:.2f} minutes per million cycles\n\n", result.digest, minutes_per_million);
   print_histogram(result.times);
 }

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "rt_tests/stress/time_output.hpp"
-#include "sim_hw/control_loop/status_name.hpp"
+#include "rt_tests/stress/report_parts.hpp"
 
 namespace greenloop {
 namespace {
@@ -44,13 +43,8 @@ void print_scripts(const std::vector<ScriptResult>& scripts) {
 }
 
 void print_counts(const StressResult& result) {
-  fmt::print("steps by status:");
-  for (std::size_t i = 0; i < statuses; ++i) {
-    if (result.counts.by_status[i] > 0) {
-      fmt::print("  {} {}", name(static_cast<Status>(i)), result.counts.by_status[i]);
-    }
-  }
-  fmt::print("\nanswers by constraint level:");
+  print_statuses(result.counts.by_status);
+  fmt::print("answers by constraint level:");
   for (std::uint32_t c = 0; c < layout::max_levels; ++c) {
     if (result.counts.by_level[c] > 0) {
       fmt::print("  {}: {}", c, result.counts.by_level[c]);
@@ -102,12 +96,7 @@ nlohmann::json StressReport::json() const {
                         {"scripts", nlohmann::json::array()},
                         {"first_violation", nullptr},
                         {"verdict", result.held() ? "HELD" : "VIOLATED"}};
-  for (const auto& [name, count] : named(result.violations)) {
-    all[name] = count;
-  }
-  if (!result.watches_system_calls) {
-    all["syscalls"] = nullptr;
-  }
+  add_violations(result.violations, result.watches_system_calls, all);
   if (predicted) {
     all["predicted_over_instructions"] = as_json(*predicted);
     all["instructions_max"] = predicted->heaviest_instructions;
@@ -115,9 +104,7 @@ nlohmann::json StressReport::json() const {
   for (const ScriptResult& script : result.scripts) {
     all["scripts"].push_back(as_json(script));
   }
-  for (std::size_t i = 0; i < statuses; ++i) {
-    all["statuses"][name(static_cast<Status>(i))] = result.counts.by_status[i];
-  }
+  all["statuses"] = statuses_json(result.counts.by_status);
   if (result.first_violation) {
     all["first_violation"] = {{"script", name(result.first_violation->script)},
                               {"cycle", result.first_violation->cycle},
@@ -145,9 +132,7 @@ void StressReport::print() const {
   } else {
     fmt::print("instructions not counted (--instructions)\n");
   }
-  if (!result.watches_system_calls) {
-    fmt::print("system calls not watched: this kernel has no Syscall User Dispatch\n");
-  }
+  print_if_unwatched(result.watches_system_calls);
   fmt::print("largest relative step of the forces by a change of level alone {:.3g}\n", result.force_step_max);
   fmt::print(
       "largest step of a moving tool's force at a tenth, a quarter of the finest level's work: {:.2f}, {:.2f} times "

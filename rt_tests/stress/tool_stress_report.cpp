@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include "rt_tests/stress/report_parts.hpp"
 #include "rt_tests/stress/tool_stress.hpp"
-#include "sim_hw/control_loop/status_name.hpp"
 
 namespace greenloop {
 namespace {
@@ -26,14 +26,10 @@ json as_json(const ToolScriptResult& script) {
           {"digest", fmt::format("{:016x}", script.digest)}};
 }
 
-double ratio(std::uint64_t declared, std::uint64_t worst) {
-  return worst > 0 ? static_cast<double>(declared) / static_cast<double>(worst) : 0;
-}
-
 }  // namespace
 
 double ToolStressReport::declared_over_worst() const {
-  return ratio(result.declared.worst_work, result.counts.worst_work);
+  return declared_over(result.declared.worst_work, result.counts.worst_work);
 }
 
 std::string ToolStressReport::replay() const {
@@ -57,7 +53,7 @@ json ToolStressReport::json() const {
                         {"touching",
                          {{"worst_work", counts.worst_touching},
                           {"declared_work", result.declared.touching_work},
-                          {"declared_over_worst", ratio(result.declared.touching_work, counts.worst_touching)},
+                          {"declared_over_worst", declared_over(result.declared.touching_work, counts.worst_touching)},
                           {"contacts", counts.contacts},
                           {"slipping", counts.slipping},
                           {"faults", counts.faults},
@@ -73,26 +69,18 @@ json ToolStressReport::json() const {
                         {"scripts", nlohmann::json::array()},
                         {"first_violation", nullptr},
                         {"verdict", result.held() ? "HELD" : "VIOLATED"}};
-  for (const auto& [name, number] : named(result.violations)) all[name] = number;
-  if (!result.watches_system_calls) all["syscalls"] = nullptr;
+  add_violations(result.violations, result.watches_system_calls, all);
   for (const ToolScriptResult& script : result.scripts) all["scripts"].push_back(as_json(script));
-  for (std::size_t i = 0; i < statuses; ++i) all["statuses"][name(static_cast<Status>(i))] = counts.by_status[i];
+  all["statuses"] = statuses_json(counts.by_status);
   if (result.first_violation) {
-    all["first_violation"] = {{"script", name(result.first_violation->script)},
-                              {"cycle", result.first_violation->cycle},
-                              {"what", result.first_violation->what},
-                              {"seed", options.seed},
-                              {"replay", replay()}};
+    all["first_violation"] = violation_json(*result.first_violation, options.seed, replay());
   }
   return all;
 }
 
 void ToolStressReport::print() const {
   fmt::print("{}\n", verdict());
-  if (result.first_violation) {
-    fmt::print("first in script {}, seed {}, cycle {}: {}; again with\n  {}\n", name(result.first_violation->script),
-               options.seed, result.first_violation->cycle, result.first_violation->what, replay());
-  }
+  if (result.first_violation) print_violation(*result.first_violation, options.seed, replay());
   fmt::print("{}\n", time.text("step"));
   fmt::print("{}: {} cycles of tools, seed {}, at most {} contacts; arena {} bytes, created in {:.1f} ms\n\n", model,
              result.cycles, options.seed, options.contacts, result.declared.bytes, result.create_ms);
@@ -103,20 +91,15 @@ void ToolStressReport::print() const {
                s.counts.answers(), s.counts.of(Status::coarser), s.cycles - s.counts.answers(), s.counts.contacts,
                s.counts.faults, s.counts.unfinished, s.counts.worst_work, s.counts.worst_touching, s.worst_us);
   }
-  fmt::print("\nsteps by status:");
-  for (std::size_t i = 0; i < statuses; ++i) {
-    if (result.counts.by_status[i] > 0) fmt::print("  {} {}", name(static_cast<Status>(i)), result.counts.by_status[i]);
-  }
+  fmt::print("\n");
+  print_statuses(result.counts.by_status);
   const ContactBody::Requirement& declared = result.declared;
-  fmt::print(
-      "\nworst work {} of {} declared units, {:.2f} times the worst; of these finding contacts {} of {}, {:.2f}\n",
-      result.counts.worst_work, declared.worst_work, declared_over_worst(), result.counts.worst_touching,
-      declared.touching_work, ratio(declared.touching_work, result.counts.worst_touching));
+  fmt::print("worst work {} of {} declared units, {:.2f} times the worst; of these finding contacts {} of {}, {:.2f}\n",
+             result.counts.worst_work, declared.worst_work, declared_over_worst(), result.counts.worst_touching,
+             declared.touching_work, declared_over(declared.touching_work, result.counts.worst_touching));
   fmt::print("{} contacts with a force, {} of them slipping, friction over its cone by {:.1g} at most\n",
              result.counts.contacts, result.counts.slipping, result.counts.most_over_cone);
-  if (!result.watches_system_calls) {
-    fmt::print("system calls not watched: this kernel has no Syscall User Dispatch\n");
-  }
+  print_if_unwatched(result.watches_system_calls);
   fmt::print("digest {:016x}; {:.1f} minutes per million cycles\n", result.digest, minutes_per_million);
 }
 
