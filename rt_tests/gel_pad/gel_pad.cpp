@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "offline/report/mask_figure.hpp"
 #include "offline/report/report.hpp"
@@ -48,10 +50,25 @@ offline::SvgCanvas map(const std::string& name, const char* unit, const SideFiel
   return offline::value_panel(side, offline::view_frame({0, 0, 1}, {0, 1, 0}), name, unit, value);
 }
 
+constexpr const char* usage =
+    "usage: gel_pad PAD.gloop MIDDLE RIM LAYERS [FOLDER]\n\n"
+    "Presses a ball, a cylinder and an edge into a model of a gel pad, and compares force and pressure with those of\n"
+    "refined finite elements: MIDDLE cells across its middle, RIM beside it on each side, LAYERS in its thickness,\n"
+    "1 to 1000. Maps of pressures and displacements go into FOLDER.\n";
+
+int cells_of(const char* text) {
+  constexpr int most = 1000;
+  char* end = nullptr;
+  const long cells = std::strtol(text, &end, 10);
+  if (*end != 0 || cells < 1 || cells > most)
+    throw std::runtime_error(std::string(text) + ": 1 to 1000 cells\n" + usage);
+  return static_cast<int>(cells);
+}
+
 int run(char** argument, const char* folder) {
   const ModelFile file = open_model_file(argument[1]);
   const Model model = Model::open(file.bytes.span()).model;
-  const auto cells = offline::testing::gel_pad(std::atoi(argument[2]), std::atoi(argument[3]), std::atoi(argument[4]));
+  const auto cells = offline::testing::gel_pad(cells_of(argument[2]), cells_of(argument[3]), cells_of(argument[4]));
   const RefinedPad refined(quarter(cells), {file.view.info->young, file.view.info->poisson}, reach);
   offline::Figure figure{"gel_pad", "A gel pad under indenters", "", {}, 3};
   for (const Indenter& indenter : indenters()) {
@@ -76,8 +93,9 @@ int run(char** argument, const char* folder) {
 }  // namespace greenloop::gel_pad
 
 int main(int count, char** argument) {
+  if (count == 2 && std::string_view(argument[1]) == "--help") return std::fputs(greenloop::gel_pad::usage, stdout) < 0;
   if (count != 5 && count != 6) {
-    std::fprintf(stderr, "usage: gel_pad PAD.gloop MIDDLE RIM LAYERS [FOLDER]\n");
+    std::fputs(greenloop::gel_pad::usage, stderr);
     return 2;
   }
   try {
