@@ -29,7 +29,7 @@ struct UnilateralContact {
   float weight[3] = {1, 0, 0};                 ///< of each, above 0; 1 in all, or less where a corner cannot move
   float value[3] = {};     ///< m, the point's displacement at which it touches the surface and has not slid along it
   float normal[3] = {};    ///< unit vector out of the surface, to where the point may be
-  float friction = 0;      ///< Coulomb's coefficient, 0 or more
+  float friction = 0;      ///< Coulomb's coefficient, 0 or more; above 1,000 as 1,000
   float softness = 0;      ///< m/N, of the surface itself, 0 or more; above 0 if no node is named
   float force[3] = {};     ///< N, a guess to begin with, as from the last step
   std::uint32_t tool = 0;  ///< whose the surface is: contacts of a tool share its mount

@@ -35,7 +35,7 @@ class ContactBody {
   /// One step's tool.
   struct ToolInput {
     Tool tool;              ///< shape and pose
-    double friction = 0.3;  ///< Coulomb's coefficient, 0 or more
+    double friction = 0.3;  ///< Coulomb's coefficient, 0 or more; above 1,000 as 1,000
     double compliance = 0;  ///< m/N, of a spring between the pose and the tool, which does not turn, 0 or more: a
                             ///< virtual coupling (runtime/passivity.hpp); 0: the tool is at its pose
   };

@@ -23,7 +23,7 @@ typedef struct greenloop_unilateral_contact {
   float weight[3];  /* of each, above 0; 1 in all, or less where a corner cannot move */
   float value[3];   /* m, the point's displacement at which it touches the surface and has not slid along it */
   float normal[3];  /* unit vector out of the surface, to where the point may be */
-  float friction;   /* Coulomb's coefficient, 0 or more */
+  float friction;   /* Coulomb's coefficient, 0 or more; above 1,000 as 1,000 */
   float softness;   /* m/N, of the surface itself, 0 or more; above 0 if no node is named */
   float force[3];   /* N, a guess to begin with, as from the last step */
   uint32_t tool;    /* whose the surface is: contacts of a tool share its mount */
@@ -99,7 +99,7 @@ typedef struct greenloop_tool {
   greenloop_shape shape;
   double position[3];   /* m, of its origin, in the frame of the model */
   double quaternion[4]; /* w, x, y, z of unit length: turns the tool's axes into the model's */
-  double friction;      /* Coulomb's coefficient, 0 or more */
+  double friction;      /* Coulomb's coefficient, 0 or more; above 1,000 as 1,000 */
   double compliance;    /* m/N, of a spring between the pose and the tool, 0 or more; 0: the tool is at its pose */
 } greenloop_tool;
 
