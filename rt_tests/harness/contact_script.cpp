@@ -308,7 +308,8 @@ void ContactScript::draw_budget() {
   if (kind_ == ScriptKind::hunt) {
     // the budget of the level's answer or of one at a finer level, and such as do not quite hold one
     const std::uint64_t works[] = {least, dear_[dear_set_].work, dear_.back().work, ~std::uint64_t{0}};
-    step_.budget = std::max(least, works[below(std::size(works))] - below(2) * below(least));
+    const std::uint64_t work = works[below(std::size(works))];
+    step_.budget = std::max(least, work - below(2) * below(work / 4));
     return;
   }
   switch (below(8)) {

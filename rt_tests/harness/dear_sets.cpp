@@ -1,22 +1,28 @@
 #include "rt_tests/harness/dear_sets.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "formats/write/aligned_bytes.hpp"
 #include "rt_tests/harness/loaded_driver.hpp"
+#include "rt_tests/harness/set_works.hpp"
 #include "runtime/elastostatic/body.hpp"
-#include "runtime/elastostatic/planner.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
 
 namespace greenloop {
 namespace {
 
 constexpr int most_starts = 12;
-constexpr std::uint64_t most_effort = 20'000'000;  // about: visits and coefficients of the sets of a level
+constexpr std::uint64_t most_effort = 800'000'000;  // at the finest level, a quarter at the next, and so on
+constexpr std::size_t draws = 64;                   // of which the nearest is taken
+constexpr std::size_t patience = 4;                 // exchanges of every node in vain
 
 // a body, as the solver keeps it
 class OpenBody {
@@ -41,105 +47,153 @@ class OpenBody {
   Body* body_ = nullptr;
 };
 
-// one node for each column of a level
-struct Candidate {
-  std::uint32_t column;
-  std::uint32_t node;
-};
-
+// the work that sets of contacts may take of a step: answered at a level, or at the next coarser one by a budget that
+// does not hold that, the rest of which goes into the finer factor by slices
 class Hunt {
  public:
-  Hunt(Body& body, std::uint32_t level, std::size_t contacts, std::uint64_t seed)
-      : body_(&body), contacts_(contacts), random_(seed + level) {
-    std::map<std::uint32_t, std::uint32_t> nodes;
-    for (const std::uint32_t node : touchable_nodes(*body.view)) {
-      nodes.emplace(column_of(*body.view, body.facts, node, level), node);
+  Hunt(Body& body, const Model& model, const BlockNeighbours& neighbours, std::uint32_t level, std::uint64_t seed)
+      : model_(&model), contacts_(body.counts.max_contacts), random_(seed + level), works_(body, neighbours, level) {
+    if (level > model.view().info->coarsest_constraint_level) coarser_.emplace(body, neighbours, level - 1);
+    std::map<std::uint32_t, std::uint32_t> nodes;  // one for each column
+    for (const std::uint32_t node : touchable_nodes(model.view())) {
+      nodes.emplace(column_of(model.view(), body.facts, node, level), node);
     }
-    for (const auto& [column, node] : nodes) candidates_.push_back({column, node});
-    size_ = most_ = std::min(contacts, candidates_.size());
+    for (const auto& [column, node] : nodes) nodes_.push_back(node);
+    most_ = std::min(contacts_, nodes_.size());
+    order_by_blocks(body, level);
   }
 
-  DearSet dearest() {
-    order_by_cost();
-    DearSet dearest = improved();
-    for (int start = 1; start < most_starts && effort_ < most_effort; ++start) {
-      std::shuffle(candidates_.begin(), candidates_.end(), random_);
-      size_ =
-          start % 2 == 0 ? most_ : 1 + random_() % most_;  // fewer may be dearer, by another way of making the factor
-      DearSet other = improved();
-      if (other.work > dearest.work) dearest = std::move(other);
+  // effort: about the coefficients and blocks that are looked at
+  DearSet dearest(std::uint64_t effort) {
+    for (int start = 0; start < most_starts && this->effort() < effort; ++start) {
+      begin(start);
+      improve(this->effort() + effort / 4);
+      keep_dearest();
     }
-    return dearest;
+    return dearest_;
   }
 
  private:
-  // planning, a fresh factor, forces and the field
-  std::uint64_t work_of(std::vector<std::uint32_t> columns) {
-    const ModelCounts& model = body_->counts;
-    std::sort(columns.begin(), columns.end());
-    clear(body_->touched);
-    touch(body_->refinement, columns.data(), static_cast<std::uint32_t>(columns.size()), body_->touched);
-    SetCounts set;
-    set.contacts = std::max(contacts_ * columns.size() / most_, columns.size());
-    set.columns = columns.size();
-    count_factor({static_cast<std::uint32_t>(columns.size()), columns.data()}, body_->touched, body_->cost,
-                 body_->stored, set);
-    effort_ += set.visits + set.coefficients;
-    const std::uint32_t finest = model.levels - 1;
-    const std::uint64_t field =
-        model.forces_only
-            ? 0
-            : field_work(model, set, {finest, finest}, count_field_blocks(body_->field_blocks, body_->touched, finest));
-    return plan_set_work(model, set) + factor_work(model, set) + force_work(model.prices, set) + field;
+  [[nodiscard]] std::uint64_t effort() const { return works_.effort() + (coarser_ ? coarser_->effort() : 0); }
+
+  void add(std::uint32_t node) {
+    works_.add(node);
+    if (coarser_) coarser_->add(node);
+  }
+  void remove(std::uint32_t node) {
+    works_.remove(node);
+    if (coarser_) coarser_->remove(node);
   }
 
-  void order_by_cost() {
-    std::vector<std::pair<std::uint64_t, std::size_t>> cost;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) cost.emplace_back(work_of({candidates_[i].column}), i);
-    std::sort(cost.rbegin(), cost.rend());
-    std::vector<Candidate> ordered;
-    ordered.reserve(candidates_.size());
-    for (const auto& [work, i] : cost) ordered.push_back(candidates_[i]);
-    candidates_ = std::move(ordered);
+  // of the set, of about so many nodes
+  Works most_works(std::size_t nodes) {
+    const std::uint64_t contacts = std::max(contacts_ * nodes / most_, nodes);
+    Works works = works_.works(contacts);
+    if (coarser_) {
+      const std::uint64_t sliced = works.spent - works.field + coarser_->works(contacts).spent;
+      works.spent = std::max(works.spent, std::min(works.needed, sliced));
+    }
+    return works;
   }
 
-  [[nodiscard]] std::vector<std::uint32_t> first_columns() const {
-    std::vector<std::uint32_t> columns;
-    for (std::size_t i = 0; i < size_; ++i) columns.push_back(candidates_[i].column);
-    return columns;
+  void order_by(const std::function<double(std::uint32_t)>& cost) {
+    std::vector<std::pair<double, std::uint32_t>> keys;
+    for (const std::uint32_t node : nodes_) keys.emplace_back(cost(node), node);
+    std::sort(keys.begin(), keys.end());
+    std::transform(keys.begin(), keys.end(), nodes_.begin(), [](const auto& key) { return key.second; });
   }
 
-  // the set is the first candidates, which change places with others
-  DearSet improved() {
-    std::uint64_t work = work_of(first_columns());
-    const std::uint64_t most = effort_ + most_effort / 2;
-    std::size_t vain = size_ < candidates_.size() ? 0 : candidates_.size();
-    while (vain < candidates_.size() && effort_ < most) {
-      const std::size_t in = random_() % size_;
-      const std::size_t out = size_ + random_() % (candidates_.size() - size_);
-      std::swap(candidates_[in], candidates_[out]);
-      const std::uint64_t changed = work_of(first_columns());
-      if (changed > work) {
-        work = changed;
-        vain = 0;
-      } else {
-        ++vain;
-        std::swap(candidates_[in], candidates_[out]);
+  // those first whose functionals have the most blocks
+  void order_by_blocks(const Body& body, std::uint32_t level) {
+    order_by([&](std::uint32_t node) {
+      const std::uint32_t* const blocks = body.cost.blocks_of(column_of(*body.view, body.facts, node, level));
+      return -std::accumulate(blocks, blocks + level + 1, 0.0);
+    });
+  }
+
+  [[nodiscard]] double distance(std::uint32_t a, std::uint32_t b) const {
+    const Vec3 from = model_->position(a);
+    const Vec3 to = model_->position(b);
+    return std::hypot(to.x - from.x, to.y - from.y, to.z - from.z);
+  }
+
+  // the first set: the dearest nodes, nodes side by side, any, or fewer, which may be dearer by another way of making
+  // the factor
+  void begin(int start) {
+    for (const std::uint32_t node : set_) remove(node);
+    std::vector<std::uint32_t> ordered = nodes_;
+    if (start > 0) std::shuffle(nodes_.begin(), nodes_.end(), random_);
+    if (start % 3 == 1)
+      order_by([this, middle = nodes_.front()](std::uint32_t node) { return distance(middle, node); });
+    const std::size_t size = start > 0 && start % 3 == 0 ? 1 + random_() % most_ : most_;
+    set_.assign(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(size));
+    nodes_ = std::move(ordered);
+    for (const std::uint32_t node : set_) add(node);
+  }
+
+  // the dearer by itself, the more often
+  std::uint32_t any_node() {
+    const double share = static_cast<double>(random_()) / static_cast<double>(std::mt19937_64::max());
+    return nodes_[std::min(static_cast<std::size_t>(share * share * static_cast<double>(nodes_.size())),
+                           nodes_.size() - 1)];
+  }
+
+  // the nearest of some that are drawn
+  std::uint32_t near_node(std::uint32_t node) {
+    std::uint32_t near = node;
+    double least = HUGE_VAL;
+    for (std::size_t drawn = 0; drawn < draws; ++drawn) {
+      const std::uint32_t other = nodes_[random_() % nodes_.size()];
+      const double away = distance(node, other);
+      if (other != node && away < least) {
+        near = other;
+        least = away;
       }
     }
-    DearSet set;
-    for (std::size_t i = 0; i < size_; ++i) set.nodes.push_back(candidates_[i].node);
-    set.work = work;
-    return set;
+    return near;
   }
 
-  Body* body_;
+  // nodes are exchanged for others as long as that is found to take more work
+  void improve(std::uint64_t effort) {
+    found_ = most_works(set_.size());
+    std::size_t vain = 0;
+    while (vain < patience * nodes_.size() && this->effort() < effort) {
+      ++vain;
+      std::uint32_t& out = set_[random_() % set_.size()];
+      const std::uint32_t in = random_() % 2 == 0 ? any_node() : near_node(out);
+      if (std::find(set_.begin(), set_.end(), in) != set_.end()) continue;
+      add(in);
+      remove(out);
+      const Works changed = most_works(set_.size());
+      if (changed.spent > found_.spent) {
+        found_ = changed;
+        out = in;
+        vain = 0;
+      } else {
+        add(out);
+        remove(in);
+      }
+    }
+  }
+
+  void keep_dearest() {
+    if (found_.spent > most_spent_) {
+      most_spent_ = found_.spent;
+      dearest_ = {set_, found_.needed};
+    }
+  }
+
+  const Model* model_;
   std::size_t contacts_;
-  std::size_t most_ = 0;
-  std::size_t size_ = 0;
-  std::vector<Candidate> candidates_;
   std::mt19937_64 random_;
-  std::uint64_t effort_ = 0;
+  SetWorks works_;
+  std::optional<SetWorks> coarser_;
+  std::vector<std::uint32_t> nodes_;  // one for each column, the dearest first
+  std::size_t most_ = 0;
+  std::vector<std::uint32_t> set_;
+  Works found_;
+  DearSet dearest_;
+  std::uint64_t most_spent_ = 0;
 };
 
 }  // namespace
@@ -147,9 +201,11 @@ class Hunt {
 template <Driver D>
 std::vector<DearSet> dear_sets(const Model& model, const typename D::Solver::Limits& limits, std::uint64_t seed) {
   const OpenBody open(model, limits);
+  const BlockNeighbours neighbours(model.view());
   std::vector<DearSet> sets;
+  std::uint32_t finer = model.view().levels - model.view().info->coarsest_constraint_level;
   for (std::uint32_t c = model.view().info->coarsest_constraint_level; c < model.view().levels; ++c) {
-    sets.push_back(Hunt(open.body(), c, limits.max_contacts, seed).dearest());
+    sets.push_back(Hunt(open.body(), model, neighbours, c, seed).dearest(most_effort >> 2 * --finer));
   }
   return sets;
 }
