@@ -20,9 +20,9 @@ namespace greenloop {
 namespace {
 
 constexpr int most_starts = 12;
-constexpr std::uint64_t most_effort = 800'000'000;  // at the finest level, a quarter at the next, and so on
-constexpr std::size_t draws = 64;                   // of which the nearest is taken
-constexpr std::size_t patience = 4;                 // exchanges of every node in vain
+constexpr std::uint64_t most_effort = 2'000'000'000;  // at the finest level, a quarter at the next, and so on
+constexpr std::size_t draws = 64;                     // of which the nearest is taken
+constexpr std::size_t patience = 4;                   // exchanges of every node in vain
 
 // a body, as the solver keeps it
 class OpenBody {
@@ -65,12 +65,17 @@ class Hunt {
 
   // effort: about the coefficients and blocks that are looked at
   DearSet dearest(std::uint64_t effort) {
+    DearSet dearest;
+    std::uint64_t most_spent = 0;
     for (int start = 0; start < most_starts && this->effort() < effort; ++start) {
       begin(start);
       improve(this->effort() + effort / 4);
-      keep_dearest();
+      if (found_spent_ > most_spent) {
+        most_spent = found_spent_;
+        dearest = found_;
+      }
     }
-    return dearest_;
+    return dearest;
   }
 
  private:
@@ -85,15 +90,20 @@ class Hunt {
     if (coarser_) coarser_->remove(node);
   }
 
-  // of the set, of about so many nodes
-  Works most_works(std::size_t nodes) {
-    const std::uint64_t contacts = std::max(contacts_ * nodes / most_, nodes);
-    Works works = works_.works(contacts);
+  // whether the set may take more work than that; it is what is found then
+  bool is_dearer(std::uint64_t spent) {
+    const std::uint64_t contacts = std::max(contacts_ * set_.size() / most_, set_.size());
+    const NeededWork needed = works_.needed(contacts);
+    if (needed.whole <= spent) return false;
+    std::uint64_t most = needed.whole - works_.unmet();
     if (coarser_) {
-      const std::uint64_t sliced = works.spent - works.field + coarser_->works(contacts).spent;
-      works.spent = std::max(works.spent, std::min(works.needed, sliced));
+      const std::uint64_t coarser = coarser_->needed(contacts).whole;
+      most = std::max(most, std::min(needed.whole, most - needed.field + coarser - coarser_->unmet()));
     }
-    return works;
+    if (most <= spent) return false;
+    found_ = {set_, needed.whole};
+    found_spent_ = most;
+    return true;
   }
 
   void order_by(const std::function<double(std::uint32_t)>& cost) {
@@ -155,32 +165,27 @@ class Hunt {
 
   // nodes are exchanged for others as long as that is found to take more work
   void improve(std::uint64_t effort) {
-    found_ = most_works(set_.size());
+    is_dearer(found_spent_ = 0);
     std::size_t vain = 0;
     while (vain < patience * nodes_.size() && this->effort() < effort) {
       ++vain;
-      std::uint32_t& out = set_[random_() % set_.size()];
+      std::uint32_t& at = set_[random_() % set_.size()];
+      const std::uint32_t out = at;
       const std::uint32_t in = random_() % 2 == 0 ? any_node() : near_node(out);
       if (std::find(set_.begin(), set_.end(), in) != set_.end()) continue;
-      add(in);
-      remove(out);
-      const Works changed = most_works(set_.size());
-      if (changed.spent > found_.spent) {
-        found_ = changed;
-        out = in;
+      exchange(at, in);
+      if (is_dearer(found_spent_)) {
         vain = 0;
       } else {
-        add(out);
-        remove(in);
+        exchange(at, out);
       }
     }
   }
 
-  void keep_dearest() {
-    if (found_.spent > most_spent_) {
-      most_spent_ = found_.spent;
-      dearest_ = {set_, found_.needed};
-    }
+  void exchange(std::uint32_t& at, std::uint32_t node) {
+    remove(at);
+    add(node);
+    at = node;
   }
 
   const Model* model_;
@@ -191,9 +196,8 @@ class Hunt {
   std::vector<std::uint32_t> nodes_;  // one for each column, the dearest first
   std::size_t most_ = 0;
   std::vector<std::uint32_t> set_;
-  Works found_;
-  DearSet dearest_;
-  std::uint64_t most_spent_ = 0;
+  DearSet found_;
+  std::uint64_t found_spent_ = 0;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "rt_tests/harness/set_works.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "runtime/elastostatic/planner.hpp"
 
@@ -34,16 +35,33 @@ std::uint32_t SetWorks::column(std::uint32_t node) const { return column_of(*bod
 
 void SetWorks::add(std::uint32_t node) {
   const std::uint32_t column = this->column(node);
-  if (nodes_[column_place(column)]++ > 0) return;
-  columns_.insert(std::lower_bound(columns_.begin(), columns_.end(), column), column);
-  for (const std::uint32_t coefficient : functional(column)) add_dependent(coefficient);
+  if (nodes_[column_place(column)]++ == 0) {
+    columns_.insert(std::lower_bound(columns_.begin(), columns_.end(), column), column);
+  }
 }
 
 void SetWorks::remove(std::uint32_t node) {
   const std::uint32_t column = this->column(node);
-  if (--nodes_[column_place(column)] > 0) return;
-  columns_.erase(std::lower_bound(columns_.begin(), columns_.end(), column));
-  for (const std::uint32_t coefficient : functional(column)) remove_dependent(coefficient);
+  if (--nodes_[column_place(column)] == 0) {
+    columns_.erase(std::lower_bound(columns_.begin(), columns_.end(), column));
+  }
+}
+
+// those that are new before those that are gone, so that what they share stays
+void SetWorks::follow_columns() {
+  std::vector<std::uint32_t> changed;
+  std::set_difference(columns_.begin(), columns_.end(), followed_.begin(), followed_.end(),
+                      std::back_inserter(changed));
+  for (const std::uint32_t column : changed) {
+    for (const std::uint32_t coefficient : functional(column)) add_dependent(coefficient);
+  }
+  changed.clear();
+  std::set_difference(followed_.begin(), followed_.end(), columns_.begin(), columns_.end(),
+                      std::back_inserter(changed));
+  for (const std::uint32_t column : changed) {
+    for (const std::uint32_t coefficient : functional(column)) remove_dependent(coefficient);
+  }
+  followed_ = columns_;
 }
 
 const std::vector<std::uint32_t>& SetWorks::functional(std::uint32_t column) {
@@ -84,30 +102,31 @@ void SetWorks::remove_dependent(std::uint32_t coefficient) {
   }
 }
 
-Works SetWorks::works(std::uint64_t contacts) {
+NeededWork SetWorks::needed(std::uint64_t contacts) {
   const ModelCounts& model = body_->counts;
   const ColumnSet all{static_cast<std::uint32_t>(columns_.size()), columns_.data()};
   clear(body_->touched);
   touch(body_->refinement, all.column, all.count, body_->touched);
-  SetCounts set;
+  SetCounts& set = counts_;
+  set = {};
   set.contacts = contacts;
   set.columns = all.count;
   count_factor(all, body_->touched, body_->cost, body_->stored, set);
-  effort_ += set.visits + 2 * set.coefficients;
+  effort_ += 4 * (set.visits + set.coefficients);
   const std::uint32_t finest = model.levels - 1;
-  Works works;
+  NeededWork needed;
   if (!model.forces_only) {
-    works.field =
+    needed.field =
         field_work(model, set, {finest, finest}, count_field_blocks(body_->field_blocks, body_->touched, finest));
   }
-  works.needed = plan_set_work(model, set) + factor_work(model, set) + force_work(model.prices, set) + works.field;
-  works.spent = works.needed - unmet_work(set);
-  return works;
+  needed.whole = plan_set_work(model, set) + factor_work(model, set) + force_work(model.prices, set) + needed.field;
+  return needed;
 }
 
-// what the planner takes to be met and is not, in one batch of rows
-std::uint64_t SetWorks::unmet_work(const SetCounts& set) const {
+std::uint64_t SetWorks::unmet() {
+  follow_columns();
   const ModelCounts& model = body_->counts;
+  const SetCounts& set = counts_;
   const std::uint64_t blocks = std::min({set.stored, set.slots * (set.slots + 1) / 2, set.column.meetings});
   const std::uint64_t meetings =
       has_panel(model.capacitance_room, set.slots, set.columns) ? 0 : set.column.meetings - meetings_;
