@@ -133,8 +133,9 @@ class Hunt {
     for (const std::uint32_t node : set_) remove(node);
     std::vector<std::uint32_t> ordered = nodes_;
     if (start > 0) std::shuffle(nodes_.begin(), nodes_.end(), random_);
-    if (start % 3 == 1)
+    if (start % 3 == 1) {
       order_by([this, middle = nodes_.front()](std::uint32_t node) { return distance(middle, node); });
+    }
     const std::size_t size = start > 0 && start % 3 == 0 ? 1 + random_() % most_ : most_;
     set_.assign(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(size));
     nodes_ = std::move(ordered);
