@@ -219,6 +219,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   response.displacement = {body.displacement, body.nodes};
   response.state = {body.state, count};
   response.gap = {body.gap, count};
+  response.yield = {body.yield, count};
   static_cast<Elastostatic::UnilateralReport&>(report) = body.elastostatic.step(
       std::span<const UnilateralContact>(body.contact, count), loads, {budget.work - work}, response);
   report.touching_work = work;
@@ -249,7 +250,7 @@ std::span<const Vec4> ContactBody::displacement() const noexcept { return {body_
 void ContactBody::forget(std::uint32_t tool) noexcept {
   if (tool >= body_->max_tools) return;
   body_->search.forget(tool);
-  body_->grips.forget(tool);
+  let_go(*body_, tool);
   body_->sag[tool] = {};
 }
 

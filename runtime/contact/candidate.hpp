@@ -18,6 +18,7 @@ struct Candidate {
   std::uint32_t tool = 0;                 ///< by its place among the tools
   std::uint32_t feature = layout::none;   ///< the point of the tool (Shape::point) that comes near; none: its surface
   double gap = 0;                         ///< m, along the normal; negative where the point is inside the tool
+  double depth = 0;                       ///< m, how deep it would be inside but for its force of the last step
   Double3 normal;                         ///< unit, out of the tool, on the side that the body was on
   Double3 position;                       ///< m, of the point of the body, displaced
 };

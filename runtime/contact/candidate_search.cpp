@@ -46,7 +46,9 @@ bool comes_before(const Candidate& a, const Candidate& b) {
   return is_node_a ? a.node[0] < b.node[0] : a.feature < b.feature;
 }
 
-bool is_deeper(const Candidate& a, const Candidate& b) { return a.gap != b.gap ? a.gap < b.gap : comes_before(a, b); }
+bool is_deeper(const Candidate& a, const Candidate& b) {
+  return a.depth != b.depth ? a.depth > b.depth : comes_before(a, b);
+}
 
 // of room for so many, and listing those that there are
 std::uint64_t list_work(std::uint64_t room, std::uint64_t count) {
@@ -274,7 +276,11 @@ void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Pr
 
 // While there are too many, those in order_ are a heap with the shallowest first, which goes; its slot is the next to
 // be written to, as beyond the count there stand the slots that are free.
-void CandidateSearch::take(const Candidate& candidate) noexcept {
+void CandidateSearch::take(Candidate candidate) noexcept {
+  candidate.depth = -candidate.gap;
+  for (int k = 0; k < 3 && candidate.node[k] < held_out_.size(); ++k) {
+    candidate.depth += candidate.weight[k] * double{held_out_[candidate.node[k]]};
+  }
   candidate_[order_[count_++]] = candidate;
   if (count_ <= limits_.max_candidates) return;
   const auto order = [this](std::uint32_t a, std::uint32_t b) { return is_deeper(candidate_[a], candidate_[b]); };

@@ -72,6 +72,8 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.energy_contact = arena.take<EnergyContact>(std::uint64_t{2} * body.max_contacts);
   body.force = arena.take<Vec3>(body.max_contacts);
   body.gap = arena.take<Vec4>(body.max_contacts);
+  body.yield = arena.take<float>(body.max_contacts);
+  body.held_out = arena.take_zeroed<float>(body.nodes);
   body.state = arena.take<ContactState>(body.max_contacts);
   body.answered = arena.take<ContactBody::Contact>(body.max_contacts);
   body.tool_answer = arena.take<ContactBody::ToolAnswer>(limits.max_tools);
@@ -102,6 +104,7 @@ bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& li
   const auto made_search = CandidateSearch::create(search_limits(limits, margin), search);
   if (!made_search) return false;
   body.search = made_search.search;
+  body.search.heed({body.held_out, body.nodes});
   return true;
 }
 

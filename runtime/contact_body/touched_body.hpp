@@ -42,6 +42,8 @@ struct TouchedBody {
   Double3* stick_place = nullptr;            ///< [max_contacts] m, where each stands if it does not slip
   Vec3* force = nullptr;                     ///< [max_contacts]
   Vec4* gap = nullptr;                       ///< [max_contacts]
+  float* yield = nullptr;                    ///< [max_contacts] m
+  float* held_out = nullptr;                 ///< [nodes] m, how far the contacts of the last answer push each
   ContactState* state = nullptr;             ///< [max_contacts]
   ContactBody::Contact* answered = nullptr;  ///< [max_contacts] of the last answer
   std::uint32_t answered_count = 0;

@@ -141,16 +141,17 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
     const std::uint64_t factors = planned + part + dropped + displaced + factor_work(counts, most);
     const std::uint64_t forces = factors + most_force_work(counts, most, least_iterations(limits.iterations));
     const std::uint64_t answer = factors + most_force_work(counts, most, limits.iterations) + field(c, finest);
+    const std::uint64_t cuts =
+        finest * (count_field_work(counts.prices, most) + count_field_work(counts.prices, most_of.forces[c].set));
     if (c == finest) {
-      requirement.worst_work[c] = answer + older;
+      planned += limits.iterations > 0 ? cuts : 0;
+      requirement.worst_work[c] = answer + older + cuts;
     } else {
       // the budget of such a step did not hold an answer of the next finer level; what is not the answer's is bounded
       // by refining_work, too. Where contacts wait it did not hold the whole answer of this level
       const std::uint64_t refining = checking + smaller(limits.refining_work, finer_answer);
       requirement.worst_work[c] = smaller(finer_answer, larger(answer, refining) + older);
     }
-    const std::uint64_t cuts =
-        finest * (count_field_work(counts.prices, most) + count_field_work(counts.prices, most_of.forces[c].set));
     // with few contacts a finer level may take less than planning it and answering at a coarser one
     least_answer = smaller(least_answer, forces + field(c, finest));
     requirement.least_work = smaller(least_answer, forces + cuts + field(c, 0));
