@@ -132,28 +132,6 @@ TEST_CASE("contacts come and go without jumps of the force while a ball slides")
   CHECK(most <= 0.02);
 }
 
-TEST_CASE("with less room than a ball touches places, what is pushed stays, and so does the force") {
-  const TestModel model(sphere);
-  auto limits = TouchableBody::usual();
-  limits.elastostatic.max_contacts = 5;
-  TouchableBody touched(model, limits);
-  const double body_radius = radius_of(model), radius = 0.5 * body_radius;
-  double last = 0;
-  std::uint32_t left_out = 0;
-  for (int k = 0; k < 80; ++k) {
-    const double depth = 0.002 * body_radius * std::min(k, 40);
-    const auto report = touched.step({ball(radius, {0, 0, body_radius + radius - depth}, 0.3)});
-    REQUIRE(answered(report.status));
-    const double force = norm(touched.body.tools()[0].force);
-    if (k >= 60) {
-      CHECK(std::fabs(force - last) <= 1e-3 * force);
-      left_out = std::max(left_out, report.left_out);
-    }
-    last = force;
-  }
-  CHECK(left_out > 0);
-}
-
 TEST_CASE("a tool with a bad pose is left out by name, and what it was stays") {
   const TestModel model(sphere);
   TouchableBody touched(model);

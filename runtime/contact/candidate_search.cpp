@@ -70,9 +70,14 @@ std::uint64_t weight_of(const Shape& shape, std::uint32_t most_points) {
   return 1 + (points <= most_points ? points : 0);
 }
 
+// of a tool's point, given its nearest place
+std::uint64_t take_point_work(const SurfaceSizes& surface, std::uint64_t room) {
+  return 3 * surface.surround_work() + CandidateSearch::most_places * take_work(room);
+}
+
 // of a tool's point: so that one that moves a little is not left out
 std::uint64_t least_point_work(const SurfaceSizes& surface, std::uint64_t room) {
-  return Proxy::reserve(surface) + 2 * DeformedSurface::patch_work + take_work(room);
+  return Proxy::reserve(surface) + 2 * DeformedSurface::patch_work + take_point_work(surface, room);
 }
 
 // of a node that is a candidate, at most
@@ -149,7 +154,7 @@ CandidateSearch::Found CandidateSearch::find(const DeformedSurface& surface, std
 
 std::uint64_t CandidateSearch::find_work(const DeformedSurface& surface, std::span<const Tool> tools) const noexcept {
   const std::size_t heeded = std::min<std::size_t>(tools.size(), limits_.max_tools);
-  const std::uint64_t taken = take_work(limits_.max_candidates);
+  const std::uint64_t taken = take_point_work(surface.sizes(), limits_.max_candidates);
   std::uint64_t work = list_work(limits_.max_candidates, limits_.max_candidates);
   for (const Tool& tool : tools.first(heeded)) {
     const std::uint64_t box = box_price + tool.shape.distance_work();
@@ -247,14 +252,19 @@ void CandidateSearch::look_at_node(const Step& step, std::uint32_t node) noexcep
 // false if the work did not suffice for one of them; nodes have as large a share as all points
 bool CandidateSearch::look_at_points(const Step& step) noexcept {
   const std::uint64_t points = step.shape.point_count(), taken = take_work(limits_.max_candidates);
+  const std::uint64_t kept = take_point_work(step.surface.sizes(), limits_.max_candidates);
   const std::uint64_t least = least_point_work(step.surface.sizes(), limits_.max_candidates);
   bool all = true;
   for (std::uint32_t i = 0; i < points; ++i) {
     Proxy& proxy = proxy_[std::size_t{limits_.max_points} * step.tool + i];
     const double margin = limits_.margin + step.shape.point_radius();
     const std::uint64_t share = std::max(less(step.most, step.work) / (2 * points - i), least);
-    proxy.move(step.surface, step.present.to_model(step.shape.point(i)), margin, step.work, step.work + share - taken);
-    if (proxy.point().triangle != layout::none && proxy.height() <= margin) take_point(step, i, proxy);
+    const Double3 place = step.present.to_model(step.shape.point(i));
+    proxy.move(step.surface, place, margin, step.work, step.work + share - kept);
+    if (proxy.point().triangle != layout::none && proxy.height() <= margin) {
+      take_point(step, i, proxy);
+      if (step.shape.point_radius() < limits_.fine_radius && !proxy.is_held()) take_beside(step, place, proxy);
+    }
     step.work += taken;
     all = all && !proxy.is_left_out();
   }
@@ -272,6 +282,46 @@ void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Pr
         .gap = proxy.height() - step.shape.point_radius(),
         .normal = -proxy.normal(),
         .position = proxy.position()});
+}
+
+// Where the surface is hollow, as under a small tool, several of its triangles are near, and which is the nearest
+// changes from step to step.
+void CandidateSearch::take_beside(const Step& step, const Double3& centre, const Proxy& proxy) noexcept {
+  const double radius = step.shape.point_radius();
+  const std::uint32_t nearest = proxy.point().triangle;
+  const auto& corner = step.surface.triangle(nearest).node;
+  std::uint32_t places = 1;
+  const auto look = [&](std::uint32_t t, int k) {
+    step.work += SurfacePrices::triangle;
+    bool is_new = t != nearest && places < most_places;
+    for (const std::uint32_t node : step.surface.triangle(t).node) {
+      for (int j = 0; j < k; ++j) is_new = is_new && node != corner[j];
+    }
+    if (!is_new) return;
+    const ClosestSurfacePoint near = step.surface.closest_in(t, centre);
+    const double* w = near.point.weight;
+    const Double3 way = step.surface.position(near.point) - centre;
+    const double distance = norm(way);
+    const bool is_within = w[0] > 0 && w[1] > 0 && w[2] > 0 && distance > 0 && distance <= limits_.margin + radius;
+    if (!is_within || dot(way, step.surface.triangle_normal(t)) >= 0) return;
+    ++places;
+    step.work += take_work(limits_.max_candidates);
+    const auto& [a, b, c] = step.surface.triangle(t).node;
+    take({.node = {a, b, c},
+          .weight = {w[0], w[1], w[2]},
+          .triangle = t,
+          .tool = step.tool,
+          .feature = Shape::max_points + t,
+          .gap = distance - radius,
+          .normal = (1 / distance) * way,
+          .position = centre + way});
+  };
+  for (int k = 0; k < 3; ++k) {
+    step.work += step.surface.around_work();
+    TrianglePoint at{nearest, {0, 0, 0}};
+    at.weight[k] = 1;
+    step.surface.visit_around(at, [&](std::uint32_t t) { look(t, k); });
+  }
 }
 
 // While there are too many, those in order_ are a heap with the shallowest first, which goes; its slot is the next to

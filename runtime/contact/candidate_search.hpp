@@ -22,7 +22,12 @@ class CandidateSearch {
     std::uint32_t max_points = 8;      ///< of one shape, at most Shape::max_points
     std::uint32_t max_candidates = 1;  ///< of a step, at least 1
     double margin = 1e-3;              ///< m, >= 0: candidates have gaps of no more
+    double fine_radius = 0;  ///< m: of a point with a smaller radius around it places in the triangles beside its
+                             ///< nearest one are candidates, too
   };
+  /// Candidates that a tool's point is at most: the nearest place, and those beside it.
+  static constexpr std::uint32_t most_places = 5;
+
   struct Created;
 
   struct Found {
@@ -95,6 +100,7 @@ class CandidateSearch {
   void look_at_node(const Step& step, std::uint32_t node) noexcept;
   [[nodiscard]] bool look_at_points(const Step& step) noexcept;
   void take_point(const Step& step, std::uint32_t point, const Proxy& proxy) noexcept;
+  void take_beside(const Step& step, const Double3& centre, const Proxy& proxy) noexcept;
   void take(Candidate candidate) noexcept;
 
   Limits limits_;

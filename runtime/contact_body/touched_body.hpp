@@ -28,6 +28,7 @@ struct TouchedBody {
 
   Tool* tool = nullptr;                     ///< [max_tools] of this step
   Placement* placement = nullptr;           ///< [max_tools] the same, after the answer where its spring lets it be
+  Placement* last_placement = nullptr;      ///< [max_tools] of the step before, after its answer
   Double3* sag = nullptr;                   ///< [max_tools] m, of the last answer
   std::span<const float> factor;            ///< [nodes] on coefficients of friction, or empty
   ToolPoint* point = nullptr;               ///< [max_contacts] of the last answer
