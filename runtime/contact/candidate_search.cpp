@@ -70,14 +70,14 @@ std::uint64_t weight_of(const Shape& shape, std::uint32_t most_points) {
   return 1 + (points <= most_points ? points : 0);
 }
 
-// of a tool's point, given its nearest place
-std::uint64_t take_point_work(const SurfaceSizes& surface, std::uint64_t room) {
-  return 3 * surface.surround_work() + CandidateSearch::most_places * take_work(room);
+// of the places beside the nearest one of a tool's point
+std::uint64_t beside_work(const SurfaceSizes& surface, std::uint64_t room) {
+  return 3 * surface.surround_work() + (CandidateSearch::most_places - 1) * take_work(room);
 }
 
 // of a tool's point: so that one that moves a little is not left out
 std::uint64_t least_point_work(const SurfaceSizes& surface, std::uint64_t room) {
-  return Proxy::reserve(surface) + 2 * DeformedSurface::patch_work + take_point_work(surface, room);
+  return Proxy::reserve(surface) + 2 * DeformedSurface::patch_work + take_work(room);
 }
 
 // of a node that is a candidate, at most
@@ -154,13 +154,14 @@ CandidateSearch::Found CandidateSearch::find(const DeformedSurface& surface, std
 
 std::uint64_t CandidateSearch::find_work(const DeformedSurface& surface, std::span<const Tool> tools) const noexcept {
   const std::size_t heeded = std::min<std::size_t>(tools.size(), limits_.max_tools);
-  const std::uint64_t taken = take_point_work(surface.sizes(), limits_.max_candidates);
+  const std::uint64_t taken = take_work(limits_.max_candidates);
   std::uint64_t work = list_work(limits_.max_candidates, limits_.max_candidates);
   for (const Tool& tool : tools.first(heeded)) {
     const std::uint64_t box = box_price + tool.shape.distance_work();
-    work += tool_price + surface.box_count() * box +
-            surface.node_count() * most_node_work(surface, tool.shape, limits_.max_candidates) +
-            limits_.max_points * (Proxy::move_work(surface) + taken);
+    work +=
+        tool_price + surface.box_count() * box +
+        surface.node_count() * most_node_work(surface, tool.shape, limits_.max_candidates) +
+        limits_.max_points * (Proxy::move_work(surface) + taken + beside_work(surface.sizes(), limits_.max_candidates));
   }
   return work;
 }
@@ -252,20 +253,21 @@ void CandidateSearch::look_at_node(const Step& step, std::uint32_t node) noexcep
 // false if the work did not suffice for one of them; nodes have as large a share as all points
 bool CandidateSearch::look_at_points(const Step& step) noexcept {
   const std::uint64_t points = step.shape.point_count(), taken = take_work(limits_.max_candidates);
-  const std::uint64_t kept = take_point_work(step.surface.sizes(), limits_.max_candidates);
+  const std::uint64_t beside = beside_work(step.surface.sizes(), limits_.max_candidates);
   const std::uint64_t least = least_point_work(step.surface.sizes(), limits_.max_candidates);
   bool all = true;
   for (std::uint32_t i = 0; i < points; ++i) {
     Proxy& proxy = proxy_[std::size_t{limits_.max_points} * step.tool + i];
     const double margin = limits_.margin + step.shape.point_radius();
     const std::uint64_t share = std::max(less(step.most, step.work) / (2 * points - i), least);
+    const std::uint64_t most = step.work + share;
     const Double3 place = step.present.to_model(step.shape.point(i));
-    proxy.move(step.surface, place, margin, step.work, step.work + share - kept);
-    if (proxy.point().triangle != layout::none && proxy.height() <= margin) {
-      take_point(step, i, proxy);
-      if (step.shape.point_radius() < limits_.fine_radius && !proxy.is_held()) take_beside(step, place, proxy);
-    }
+    proxy.move(step.surface, place, margin, step.work, most - taken);
+    const bool is_near = proxy.point().triangle != layout::none && proxy.height() <= margin;
+    if (is_near) take_point(step, i, proxy);
     step.work += taken;
+    const bool is_fine = step.shape.point_radius() < limits_.fine_radius && !proxy.is_held();
+    if (is_near && is_fine && step.work + beside <= most) take_beside(step, place, proxy);
     all = all && !proxy.is_left_out();
   }
   return all;
