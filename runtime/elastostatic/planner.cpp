@@ -180,18 +180,18 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   plan.fits = plan.factor <= whole && planned_work(plan) + preparing <= limit;
 }
 
-// takes details of the field away, the finest first, while the answer does not fit
-void cut_field(Body& body, const Task& task, Plan& plan) {
+// takes details of the field away, the finest first, while the answer does not fit; knows_factor: of the level
+void cut_field(Body& body, const Task& task, bool knows_factor, Plan& plan) {
   while (!plan.fits && plan.field_levels.details > 0) {
-    const bool held = holds_answer(task, plan);
     --plan.field_levels.details;
     plan.work += count_field_work(body.counts.prices, plan.counts) +
                  (body.is_loaded ? count_field_work(body.counts.prices, body.loads->counts.forces) : 0);
     plan.field = planned_field_work(body, plan);
-    plan.fits = planned_work(plan) <= task.budget;
-    if (!held && holds_answer(task, plan)) {
+    if (!knows_factor && holds_answer(task, plan)) {
       plan_factor(body, task, plan);
+      knows_factor = true;
     }
+    plan.fits = knows_factor && planned_work(plan) <= task.budget;
   }
 }
 
@@ -216,11 +216,12 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wa
   plan.field_levels = {wants.finest_displaced, wants.finest_displaced};
   for (std::uint32_t c = finest + 1; !plan.fits && c-- > coarsest;) {
     plan_set(body, task, c, plan);
-    if (holds_answer(task, plan) || c == coarsest) {
+    const bool knows_factor = holds_answer(task, plan) || c == coarsest;
+    if (knows_factor) {
       plan_factor(body, task, plan);
     }
-    if (!plan.fits && wants.field && c == finest && c > coarsest && wants.keeps_level) {
-      cut_field(body, task, plan);
+    if (wants.field && wants.keeps_level && c == finest && c > coarsest) {
+      cut_field(body, task, knows_factor, plan);
     }
     if (!plan.fits && c > coarsest && plan.wanted.exists && plan.wanted.level == c) {
       plan_without_new(body, task, plan);
@@ -229,8 +230,8 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wa
       plan.field_levels.details = wants.finest_displaced;
     }
   }
-  if (!plan.fits && wants.field) {
-    cut_field(body, task, plan);
+  if (wants.field) {
+    cut_field(body, task, true, plan);
   }
   return plan;
 }

@@ -135,17 +135,18 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
   std::uint64_t least_answer = ~std::uint64_t{0};
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     const SetCounts& most = most_of.contacts[c].set;
+    const std::uint64_t cuts =
+        finest * (count_field_work(counts.prices, most) + count_field_work(counts.prices, most_of.forces[c].set));
+    // details of the field go before the finest level does, where surfaces touch
+    planned += c == finest && limits.iterations > 0 ? cuts : 0;
     planned += plan_set_work(counts, most) + (counts.takes_loads() ? plan_loads_work(counts, most, loads(c)) : 0);
     const std::uint64_t displaced =
         counts.takes_loads() ? displace_by_loads_work(counts, most, loads(c), most_coupling_blocks(most, loads(c))) : 0;
     const std::uint64_t factors = planned + part + dropped + displaced + factor_work(counts, most);
     const std::uint64_t forces = factors + most_force_work(counts, most, least_iterations(limits.iterations));
     const std::uint64_t answer = factors + most_force_work(counts, most, limits.iterations) + field(c, finest);
-    const std::uint64_t cuts =
-        finest * (count_field_work(counts.prices, most) + count_field_work(counts.prices, most_of.forces[c].set));
     if (c == finest) {
-      planned += limits.iterations > 0 ? cuts : 0;
-      requirement.worst_work[c] = answer + older + cuts;
+      requirement.worst_work[c] = answer + older;
     } else {
       // the budget of such a step did not hold an answer of the next finer level; what is not the answer's is bounded
       // by refining_work, too. Where contacts wait it did not hold the whole answer of this level
