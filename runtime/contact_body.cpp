@@ -44,11 +44,14 @@ std::uint32_t put_corners(const TouchedBody& body, const Candidate& candidate, U
 }
 
 // where a contact's point has to go to stand on the tool where it touched it, without slipping, from where it is
-Double3 way_to_stick(const Candidate& candidate, const Placement& placement, const Grip* grip) {
+Double3 way_to_stick(const TouchedBody& body, const Candidate& candidate, const Grip* grip) {
   const Double3& n = candidate.normal;
   const Double3 out = -candidate.gap * n;
   if (grip == nullptr || !grip->touches) return out;
-  const Double3 way = placement.to_model(grip->anchor) - candidate.position;
+  // of another point than the last step's nothing is known but that the tool has moved
+  const Double3 anchor =
+      grip->is_at(candidate) ? grip->anchor : body.last_placement[candidate.tool].to_tool(candidate.position);
+  const Double3 way = body.placement[candidate.tool].to_model(anchor) - candidate.position;
   return out + way - dot(n, way) * n;
 }
 
@@ -67,7 +70,7 @@ UnilateralContact contact_of(const TouchedBody& body, const Candidate& candidate
                              const ContactBody::ToolInput& tool, Double3& stick_place) {
   UnilateralContact contact;
   const std::uint32_t corners = put_corners(body, candidate, contact);
-  const Double3 way = way_to_stick(candidate, body.placement[candidate.tool], grip);
+  const Double3 way = way_to_stick(body, candidate, grip);
   stick_place = candidate.position + way;
   put(contact.value, pushed_displacement(body, candidate) + way - body.sag[candidate.tool]);
   put(contact.normal, candidate.normal);
@@ -170,7 +173,8 @@ std::uint64_t most_touching_work(const TouchedBody& body, std::span<const Tool> 
   std::uint64_t points = 0;
   for (const Tool& tool : tools) points += tool.shape.check() == Shape::Error::none ? tool.shape.point_count() : 0;
   return body.deformed.update_work() + (whole < body.search_work ? whole : body.search_work) +
-         tools.size() * tool_price + contacts * contact_price + most_choosing(contacts, points);
+         tools.size() * tool_price + contacts * contact_price +
+         most_choosing(contacts, CandidateSearch::most_places * points);
 }
 
 ContactBody::StepReport held(Status status) {
@@ -191,7 +195,10 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   std::uint64_t work = tools.size() * tool_price;
   body.deformed.update({body.displacement, body.nodes}, work);
   const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work, work + body.search_work);
-  for (std::uint32_t t = 0; t < tools.size(); ++t) body.placement[t] = place(shapes[t].pose).placement;
+  for (std::uint32_t t = 0; t < tools.size(); ++t) {
+    body.last_placement[t] = body.placement[t];
+    body.placement[t] = place(shapes[t].pose).placement;
+  }
   StepReport report;
   report.left_out = found.left_out;
   report.deepest_left_out = found.left_out > 0 ? -found.deepest_left_out.gap : 0;
@@ -219,6 +226,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   response.displacement = {body.displacement, body.nodes};
   response.state = {body.state, count};
   response.gap = {body.gap, count};
+  response.yield = {body.yield, count};
   static_cast<Elastostatic::UnilateralReport&>(report) = body.elastostatic.step(
       std::span<const UnilateralContact>(body.contact, count), loads, {budget.work - work}, response);
   report.touching_work = work;
@@ -249,7 +257,7 @@ std::span<const Vec4> ContactBody::displacement() const noexcept { return {body_
 void ContactBody::forget(std::uint32_t tool) noexcept {
   if (tool >= body_->max_tools) return;
   body_->search.forget(tool);
-  body_->grips.forget(tool);
+  let_go(*body_, tool);
   body_->sag[tool] = {};
 }
 

@@ -194,8 +194,9 @@ void prepare_factor(Body& body, const Contacts& all, const Plan& plan, bool movi
   const std::uint64_t left = limit - report.work - foreseeing;
   const std::uint64_t made = waits && plan.cached == nullptr ? plan.factor : 0;
   const std::uint64_t most = most_slice_work(body.counts, whole) + drop_batch_work(body.counts.prices, body.job) - made;
-  const FactorProgress progress = continue_factor(body.job, body.factor_tools(), body.other.all(), whole,
-                                                  {left < most ? left : most, moving || waits, waits});
+  const FactorProgress progress =
+      continue_factor(body.job, body.factor_tools(), body.other.all(), whole,
+                      {left < most ? left : most, moving || waits, waits || all.found != nullptr});
   report.work += progress.work;
   report.details.pending_work = progress.pending;
   if (progress.pending == 0 && glides) {
@@ -336,6 +337,10 @@ void answer(Body& body, const Contacts& contacts, const Plan& plan, std::uint64_
     const std::span<const Constraint> held_nodes = contacts.are_held() ? contacts.held : std::span<const Constraint>();
     reconstruct(body, held_nodes, {set.columns, set.column, body.column_force}, plan.field_levels,
                 response.displacement);
+    const bool lacks_details = plan.field_levels.details < plan.field_levels.nodes;
+    if (contacts.found != nullptr && lacks_details && set.level() + 1 == body.counts.levels) {
+      place_contacts({contacts.surfaces, set}, body.unilateral, response.displacement);
+    }
   }
   report.work = work;
   report.constraint_level = set.level();
@@ -401,6 +406,7 @@ void carry_out(Body& body, const Accepted& accepted, Budget budget, const Elasto
     wants.rows = contacts.mixed_counts.rows;
   } else if (contacts.found != nullptr) {
     wants.corners = contacts.corners();
+    wants.keeps_level = true;
   }
   wants.iterations = least_iterations(body.counts.iterations);
   const Plan& plan = *new (body.plan) Plan(make_plan(body, contacts.held, wants));

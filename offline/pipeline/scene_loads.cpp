@@ -44,16 +44,18 @@ Eigen::AlignedBox3d bounding_box(const std::vector<Vector3d>& positions) {
 // N per Pa on each surface node: a third of what each of its triangles takes
 std::vector<Vector3d> pressure_forces(const PressureLoad& load, const TriangleMesh& surface) {
   const auto& x = surface.vertices;
-  const auto pressed = evaluate(load.region, x, bounding_box(x));
+  const auto pressure = node_pressures(load, x, bounding_box(x));
   std::vector<Vector3d> forces(x.size(), Vector3d::Zero());
   bool any = false;
   for (const auto& [a, b, c] : surface.triangles) {
-    if (!pressed[a] || !pressed[b] || !pressed[c]) continue;
+    const double least = std::min({pressure[a], pressure[b], pressure[c]});
+    const double most = std::max({pressure[a], pressure[b], pressure[c]});
+    if (!((load.mask ? most : least) > 0)) continue;
     any = true;
     const Vector3d outward = (x[b] - x[a]).cross(x[c] - x[a]) / 2;
     const Vector3d force =
         load.direction ? Vector3d(outward.norm() * load.direction->stableNormalized()) : Vector3d(-outward);
-    for (const int node : {a, b, c}) forces[node] += force / 3;
+    for (const int node : {a, b, c}) forces[node] += pressure[node] / 3 * force;
   }
   if (!any) {
     throw SceneError(

@@ -51,6 +51,20 @@ TEST_CASE("loads: the canonical text says them, reads back and stays; columns do
   CHECK(body_text(scene) == body_text(parse_scene(smallest, "s.toml")));
 }
 
+TEST_CASE("loads: a mask is read with its sphere, written again, and refused with another shape") {
+  const std::string finger = "[[loads]]\nname = \"finger\"\nmask = true\n";
+  const std::string sphere = "sphere = { center = [0.5, 1, 0.5], radius = \"1 cm\" }\n";
+  const Scene scene = parse_scene(smallest + finger + sphere + palm, "s.toml");
+  REQUIRE(scene.pressures.size() == 2);
+  CHECK(scene.pressures[0].mask);
+  CHECK(!scene.pressures[1].mask);
+  const Scene again = parse_scene(canonical_text(scene), "s.toml");
+  CHECK(again.pressures[0].mask);
+  CHECK(std::get<SphereRegion>(again.pressures[0].region).radius == 0.01);
+  check_refused(smallest + finger + "above = 0.9\naxis = \"y\"\n", {"loads[0].mask: goes with a sphere"});
+  check_refused(smallest + "[[loads]]\nname = \"a\"\nmask = 2\n" + sphere, {"loads[0].mask", "true or false"});
+}
+
 TEST_CASE("loads: gravity without a density, beside other keys, or of another type is refused by name") {
   check_refused(smallest + gravity,
                 {"loads[0].gravity: needs the body's mass", "[material] density = \"1000 kg/m^3\""});
@@ -98,6 +112,8 @@ TEST_CASE("loads: a pressure on nothing, or on nodes that nothing is stored of, 
   CHECK(problem_of(smallest + low).find("loads: \"sole\": the region holds no triangle that can move") == 0);
   const std::string half = "[[touched]]\nabove = 0.5\naxis = \"y\"\n[[read]]\nabove = 0.7\naxis = \"y\"\n";
   const std::string middle = "[[loads]]\nname = \"waist\"\nabove = 0.3\naxis = \"y\"\n";
+  const std::string finger = "mask = true\nsphere = { center = [0, 0, 0], radius = 0.05 }\n";
+  CHECK(problem_of(smallest + "[[loads]]\nname = \"toe\"\n" + finger).find("loads: \"toe\": the region holds no") == 0);
   CHECK(problem_of(smallest + half + middle)
             .find("loads: \"waist\": the region holds 8 nodes that are neither touched nor read, of 28") == 0);
 }

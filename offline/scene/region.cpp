@@ -34,9 +34,13 @@ std::vector<bool> select(const BoxRegion& region, Positions positions, const Box
   return flags_where(positions, [&](const Eigen::Vector3d& p) { return inside.contains(p); });
 }
 
+double radius_of(const SphereRegion& region, const Box& box) {
+  return region.radius_in_metres ? region.radius : region.radius * box.sizes().maxCoeff();
+}
+
 std::vector<bool> select(const SphereRegion& region, Positions positions, const Box& box) {
   const Eigen::Vector3d center = at_fractions(box, region.center);
-  const double radius = region.radius_in_metres ? region.radius : region.radius * box.sizes().maxCoeff();
+  const double radius = radius_of(region, box);
   return flags_where(positions, [&](const Eigen::Vector3d& p) { return (p - center).norm() <= radius; });
 }
 
@@ -57,6 +61,18 @@ std::vector<bool> select(const NearestRegion& region, Positions positions, const
 
 std::vector<bool> evaluate(const Region& region, Positions positions, const Box& box) {
   return std::visit([&](const auto& shape) { return select(shape, positions, box); }, region);
+}
+
+std::vector<double> linear_mask(const SphereRegion& region, Positions positions, const Box& box) {
+  const Eigen::Vector3d center = at_fractions(box, region.center);
+  const double radius = radius_of(region, box);
+  const auto vertex = std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
+    return (a - center).squaredNorm() < (b - center).squaredNorm();
+  });
+  std::vector<double> mask(positions.size());
+  std::transform(positions.begin(), positions.end(), mask.begin(),
+                 [&](const Eigen::Vector3d& p) { return std::max(0.0, 1 - (p - *vertex).norm() / radius); });
+  return mask;
 }
 
 std::vector<bool> evaluate(std::span<const Region> regions, Positions positions, const Box& box) {

@@ -41,6 +41,11 @@ using Region = std::variant<HalfSpace, BoxRegion, SphereRegion, NearestRegion>;
 [[nodiscard]] std::vector<bool> evaluate(const Region& region, std::span<const Eigen::Vector3d> positions,
                                          const Eigen::AlignedBox3d& box);
 
+/// The linear function of a vertex mask (James & Pai 2001, section 6.1.1) at each position: 1 at the one nearest to the
+/// sphere's center, falling to 0 at the radius around that. Work: linear.
+[[nodiscard]] std::vector<double> linear_mask(const SphereRegion& region, std::span<const Eigen::Vector3d> positions,
+                                              const Eigen::AlignedBox3d& box);
+
 /// The union of several regions; no flag is set if there are none.
 [[nodiscard]] std::vector<bool> evaluate(std::span<const Region> regions, std::span<const Eigen::Vector3d> positions,
                                          const Eigen::AlignedBox3d& box);

@@ -58,15 +58,16 @@ void name_empty_regions(const std::string& role, const NodeSet& set, const std::
 void name_unstored_pressures(const Scene& scene, const NodeSets& sets, std::span<const Eigen::Vector3d> positions,
                              const Eigen::AlignedBox3d& box, std::vector<std::string>& problems) {
   for (const PressureLoad& load : scene.pressures) {
-    const auto pressed = evaluate(load.region, positions, box);
-    std::size_t movable = 0, unstored = 0;
-    for (std::size_t i = 0; i < pressed.size(); ++i) {
-      if (!pressed[i] || sets.fixed.holds[i]) continue;
+    const auto pressure = node_pressures(load, positions, box);
+    std::size_t pressed = 0, movable = 0, unstored = 0;
+    for (std::size_t i = 0; i < pressure.size(); ++i) {
+      pressed += pressure[i] > 0 ? 1 : 0;
+      if (pressure[i] == 0 || sets.fixed.holds[i]) continue;
       ++movable;
       unstored += sets.touched.holds[i] || sets.read.holds[i] ? 0 : 1;
     }
     const std::string which = "loads: \"" + load.name + "\": the region holds ";
-    if (movable == 0 || std::count(pressed.begin(), pressed.end(), true) < 3) {
+    if (movable == 0 || (!load.mask && pressed < 3)) {
       problems.push_back(which + "no triangle that can move; the bounding box goes from " + box_text(box));
     } else if (unstored > 0) {
       problems.push_back(which + std::to_string(unstored) + " nodes that are neither touched nor read, of " +
@@ -76,6 +77,13 @@ void name_unstored_pressures(const Scene& scene, const NodeSets& sets, std::span
 }
 
 }  // namespace
+
+std::vector<double> node_pressures(const PressureLoad& load, std::span<const Eigen::Vector3d> positions,
+                                   const Eigen::AlignedBox3d& box) {
+  if (load.mask) return linear_mask(std::get<SphereRegion>(load.region), positions, box);
+  const auto pressed = evaluate(load.region, positions, box);
+  return {pressed.begin(), pressed.end()};
+}
 
 SceneError::SceneError(std::vector<std::string> problems)
     : std::runtime_error(lines(problems)), problems_(std::move(problems)) {}

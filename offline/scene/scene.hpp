@@ -98,12 +98,18 @@ struct StepBudget {
   [[nodiscard]] std::optional<std::int64_t> asked_work() const;
 };
 
-/// A pressure on the part of the surface whose triangles have all their corners in a region.
+/// A pressure on the part of the surface whose triangles have all their corners in a region, or that of a mask.
 struct PressureLoad {
   std::string name;  ///< printable ASCII, 1 to longest_load_name letters, none twice
   Region region;
   std::optional<Eigen::Vector3d> direction;  ///< of any length but 0; none: inwards, along the normals
+  bool mask = false;  ///< the region is a sphere: of the node nearest to its center (James & Pai 2001, section 6.1)
 };
+
+/// What a load of 1 Pa presses each node with [Pa]: 1 in its region, or the linear function of its mask, 1 at the node
+/// and 0 from the radius on. Linear in the nodes.
+[[nodiscard]] std::vector<double> node_pressures(const PressureLoad& load, std::span<const Eigen::Vector3d> positions,
+                                                 const Eigen::AlignedBox3d& box);
 
 /// Letters of a load's name, and pressures of a scene.
 inline constexpr std::size_t longest_load_name = sizeof(layout::LoadRecord::name) - 1;

@@ -264,6 +264,10 @@ void read_pressure(const Table& table, std::vector<PressureLoad>& pressures) {
   if (direction != nullptr && direction->value<std::string>() != "normal")
     load.direction = table.direction("direction");
   auto region = read_region(table);
+  set_if(load.mask, table.boolean("mask"));
+  if (load.mask && region && !std::holds_alternative<SphereRegion>(*region)) {
+    table.refuse("mask", "goes with a sphere, the mask's vertex is the one nearest to its center");
+  }
   if (pressures.size() == most_pressures) {
     table.refuse_table("there are at most " + std::to_string(most_pressures) + " pressures");
   } else if (region) {
@@ -275,7 +279,7 @@ void read_pressure(const Table& table, std::vector<PressureLoad>& pressures) {
 /// Gravity, or the pressure on a region.
 void read_loads(const Table& scene, Scene& result) {
   read_tables(scene, "loads", "gravity = true",
-              {"gravity", "name", "direction", "below", "above", "axis", "box", "sphere", "near", "count"},
+              {"gravity", "name", "direction", "mask", "below", "above", "axis", "box", "sphere", "near", "count"},
               [&](const Table& table) {
                 table.has("gravity") ? read_gravity(table, result.density, result.gravity)
                                      : read_pressure(table, result.pressures);

@@ -128,7 +128,8 @@ std::string loads_text(const Scene& scene) {
   for (const PressureLoad& load : scene.pressures) {
     text += "\n[[loads]]\nname = " + string(load.name) + "\n" +
             std::visit([](const auto& shape) { return region_text(shape); }, load.region) +
-            "direction = " + (load.direction ? triple(*load.direction) : string("normal")) + "\n";
+            "direction = " + (load.direction ? triple(*load.direction) : string("normal")) + "\n" +
+            (load.mask ? "mask = true\n" : "");
   }
   return text;
 }

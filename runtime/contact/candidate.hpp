@@ -16,8 +16,10 @@ struct Candidate {
   double weight[3] = {};                  ///< in 0..1 with sum 1
   std::uint32_t triangle = layout::none;  ///< none: it is a node alone
   std::uint32_t tool = 0;                 ///< by its place among the tools
-  std::uint32_t feature = layout::none;   ///< the point of the tool (Shape::point) that comes near; none: its surface
+  std::uint32_t feature = layout::none;   ///< the point of the tool (Shape::point) that comes near; none: its surface;
+                                          ///< from Shape::max_points on: a triangle beside the nearest place of a point
   double gap = 0;                         ///< m, along the normal; negative where the point is inside the tool
+  double depth = 0;                       ///< m, how deep it would be inside but for its force of the last step
   Double3 normal;                         ///< unit, out of the tool, on the side that the body was on
   Double3 position;                       ///< m, of the point of the body, displaced
 };

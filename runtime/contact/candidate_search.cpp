@@ -46,7 +46,9 @@ bool comes_before(const Candidate& a, const Candidate& b) {
   return is_node_a ? a.node[0] < b.node[0] : a.feature < b.feature;
 }
 
-bool is_deeper(const Candidate& a, const Candidate& b) { return a.gap != b.gap ? a.gap < b.gap : comes_before(a, b); }
+bool is_deeper(const Candidate& a, const Candidate& b) {
+  return a.depth != b.depth ? a.depth > b.depth : comes_before(a, b);
+}
 
 // of room for so many, and listing those that there are
 std::uint64_t list_work(std::uint64_t room, std::uint64_t count) {
@@ -66,6 +68,11 @@ std::uint64_t less(std::uint64_t a, std::uint64_t b) { return a > b ? a - b : 0;
 std::uint64_t weight_of(const Shape& shape, std::uint32_t most_points) {
   const std::uint32_t points = shape.check() == Shape::Error::none ? shape.point_count() : 0;
   return 1 + (points <= most_points ? points : 0);
+}
+
+// of the places beside the nearest one of a tool's point
+std::uint64_t beside_work(const SurfaceSizes& surface, std::uint64_t room) {
+  return 3 * surface.surround_work() + (CandidateSearch::most_places - 1) * take_work(room);
 }
 
 // of a tool's point: so that one that moves a little is not left out
@@ -151,9 +158,10 @@ std::uint64_t CandidateSearch::find_work(const DeformedSurface& surface, std::sp
   std::uint64_t work = list_work(limits_.max_candidates, limits_.max_candidates);
   for (const Tool& tool : tools.first(heeded)) {
     const std::uint64_t box = box_price + tool.shape.distance_work();
-    work += tool_price + surface.box_count() * box +
-            surface.node_count() * most_node_work(surface, tool.shape, limits_.max_candidates) +
-            limits_.max_points * (Proxy::move_work(surface) + taken);
+    work +=
+        tool_price + surface.box_count() * box +
+        surface.node_count() * most_node_work(surface, tool.shape, limits_.max_candidates) +
+        limits_.max_points * (Proxy::move_work(surface) + taken + beside_work(surface.sizes(), limits_.max_candidates));
   }
   return work;
 }
@@ -245,15 +253,21 @@ void CandidateSearch::look_at_node(const Step& step, std::uint32_t node) noexcep
 // false if the work did not suffice for one of them; nodes have as large a share as all points
 bool CandidateSearch::look_at_points(const Step& step) noexcept {
   const std::uint64_t points = step.shape.point_count(), taken = take_work(limits_.max_candidates);
+  const std::uint64_t beside = beside_work(step.surface.sizes(), limits_.max_candidates);
   const std::uint64_t least = least_point_work(step.surface.sizes(), limits_.max_candidates);
   bool all = true;
   for (std::uint32_t i = 0; i < points; ++i) {
     Proxy& proxy = proxy_[std::size_t{limits_.max_points} * step.tool + i];
     const double margin = limits_.margin + step.shape.point_radius();
     const std::uint64_t share = std::max(less(step.most, step.work) / (2 * points - i), least);
-    proxy.move(step.surface, step.present.to_model(step.shape.point(i)), margin, step.work, step.work + share - taken);
-    if (proxy.point().triangle != layout::none && proxy.height() <= margin) take_point(step, i, proxy);
+    const std::uint64_t most = step.work + share;
+    const Double3 place = step.present.to_model(step.shape.point(i));
+    proxy.move(step.surface, place, margin, step.work, most - taken);
+    const bool is_near = proxy.point().triangle != layout::none && proxy.height() <= margin;
+    if (is_near) take_point(step, i, proxy);
     step.work += taken;
+    const bool is_fine = step.shape.point_radius() < limits_.fine_radius && !proxy.is_held();
+    if (is_near && is_fine && step.work + beside <= most) take_beside(step, place, proxy);
     all = all && !proxy.is_left_out();
   }
   return all;
@@ -272,9 +286,53 @@ void CandidateSearch::take_point(const Step& step, std::uint32_t point, const Pr
         .position = proxy.position()});
 }
 
+// Where the surface is hollow, as under a small tool, several of its triangles are near, and which is the nearest
+// changes from step to step.
+void CandidateSearch::take_beside(const Step& step, const Double3& centre, const Proxy& proxy) noexcept {
+  const double radius = step.shape.point_radius();
+  const std::uint32_t nearest = proxy.point().triangle;
+  const auto& corner = step.surface.triangle(nearest).node;
+  std::uint32_t places = 1;
+  const auto look = [&](std::uint32_t t, int k) {
+    step.work += SurfacePrices::triangle;
+    bool is_new = t != nearest && places < most_places;
+    for (const std::uint32_t node : step.surface.triangle(t).node) {
+      for (int j = 0; j < k; ++j) is_new = is_new && node != corner[j];
+    }
+    if (!is_new) return;
+    const ClosestSurfacePoint near = step.surface.closest_in(t, centre);
+    const double* w = near.point.weight;
+    const Double3 way = step.surface.position(near.point) - centre;
+    const double distance = norm(way);
+    const bool is_within = w[0] > 0 && w[1] > 0 && w[2] > 0 && distance > 0 && distance <= limits_.margin + radius;
+    if (!is_within || dot(way, step.surface.triangle_normal(t)) >= 0) return;
+    ++places;
+    step.work += take_work(limits_.max_candidates);
+    const auto& [a, b, c] = step.surface.triangle(t).node;
+    take({.node = {a, b, c},
+          .weight = {w[0], w[1], w[2]},
+          .triangle = t,
+          .tool = step.tool,
+          .feature = Shape::max_points + t,
+          .gap = distance - radius,
+          .normal = (1 / distance) * way,
+          .position = centre + way});
+  };
+  for (int k = 0; k < 3; ++k) {
+    step.work += step.surface.around_work();
+    TrianglePoint at{nearest, {0, 0, 0}};
+    at.weight[k] = 1;
+    step.surface.visit_around(at, [&](std::uint32_t t) { look(t, k); });
+  }
+}
+
 // While there are too many, those in order_ are a heap with the shallowest first, which goes; its slot is the next to
 // be written to, as beyond the count there stand the slots that are free.
-void CandidateSearch::take(const Candidate& candidate) noexcept {
+void CandidateSearch::take(Candidate candidate) noexcept {
+  candidate.depth = -candidate.gap;
+  for (int k = 0; k < 3 && candidate.node[k] < held_out_.size(); ++k) {
+    candidate.depth += candidate.weight[k] * double{held_out_[candidate.node[k]]};
+  }
   candidate_[order_[count_++]] = candidate;
   if (count_ <= limits_.max_candidates) return;
   const auto order = [this](std::uint32_t a, std::uint32_t b) { return is_deeper(candidate_[a], candidate_[b]); };

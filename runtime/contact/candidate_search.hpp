@@ -22,7 +22,12 @@ class CandidateSearch {
     std::uint32_t max_points = 8;      ///< of one shape, at most Shape::max_points
     std::uint32_t max_candidates = 1;  ///< of a step, at least 1
     double margin = 1e-3;              ///< m, >= 0: candidates have gaps of no more
+    double fine_radius = 0;  ///< m: of a point with a smaller radius around it places in the triangles beside its
+                             ///< nearest one are candidates, too
   };
+  /// Candidates that a tool's point is at most: the nearest place, and those beside it.
+  static constexpr std::uint32_t most_places = 5;
+
   struct Created;
 
   struct Found {
@@ -58,6 +63,10 @@ class CandidateSearch {
   /// leaping, and that are no polyhedra of many faces. Constant work.
   [[nodiscard]] static std::uint64_t usual_find_work(const Limits& limits, const SurfaceSizes& surface) noexcept;
 
+  /// How far its force holds each node out of the tools, m, [nodes], >= 0; it counts where there is no room for all:
+  /// what is pushed is no less deep than what is not. Read by every `find` from now on; empty: 0.
+  void heed(std::span<const float> held_out) noexcept { held_out_ = held_out; }
+
   /// Of the last step. For the loop.
   [[nodiscard]] ToolFault fault(std::uint32_t tool) const noexcept { return tool_[tool].fault; }
   /// Of one of the tool's points, as of the last step in which the tool had no fault.
@@ -91,7 +100,8 @@ class CandidateSearch {
   void look_at_node(const Step& step, std::uint32_t node) noexcept;
   [[nodiscard]] bool look_at_points(const Step& step) noexcept;
   void take_point(const Step& step, std::uint32_t point, const Proxy& proxy) noexcept;
-  void take(const Candidate& candidate) noexcept;
+  void take_beside(const Step& step, const Double3& centre, const Proxy& proxy) noexcept;
+  void take(Candidate candidate) noexcept;
 
   Limits limits_;
   ToolState* tool_ = nullptr;       ///< [max_tools]
@@ -100,6 +110,7 @@ class CandidateSearch {
   Candidate* listed_ = nullptr;     ///< [max_candidates]
   std::uint32_t* order_ = nullptr;  ///< [max_candidates + 1] of candidate_
   std::uint32_t* spare_ = nullptr;  ///< as many
+  std::span<const float> held_out_;
   std::uint32_t count_ = 0;
   Found found_;
 };

@@ -38,6 +38,19 @@ void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Gr
   body.grips.add(made);
 }
 
+// how far contacts push the nodes of a place
+void hold_out(TouchedBody& body, const std::uint32_t (&node)[3], float yield) {
+  for (int k = 0; k < 3 && node[k] != layout::none; ++k) body.held_out[node[k]] = yield;
+}
+
+// of this answer's contacts instead of the last one's
+void remember_pushed(TouchedBody& body, std::uint32_t count) {
+  for (const Grip& grip : body.grips.all()) hold_out(body, grip.node, 0);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (body.yield[i] > 0) hold_out(body, body.candidate[i].node, body.yield[i]);
+  }
+}
+
 bool is_behind(const TouchedBody& body, std::uint32_t tool) {
   bool behind = false;
   const std::uint32_t points = body.search.fault(tool) == ToolFault::none ? body.tool[tool].shape.point_count() : 0;
@@ -138,7 +151,15 @@ void account_energy(TouchedBody& body, std::uint32_t count) noexcept {
   body.energy = {account.in, account.stored, account.dissipated, account.lost, generated};
 }
 
+void let_go(TouchedBody& body, std::uint32_t tool) noexcept {
+  for (const Grip& grip : body.grips.all()) {
+    if (tool_of_key(grip.key) == tool) hold_out(body, grip.node, 0);
+  }
+  body.grips.forget(tool);
+}
+
 void write_answer(TouchedBody& body, std::uint32_t count, std::uint32_t tools) noexcept {
+  remember_pushed(body, count);
   body.tool_count = tools;
   body.answered_count = count;
   body.grips.begin();

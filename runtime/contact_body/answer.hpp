@@ -20,6 +20,9 @@ void let_sag(TouchedBody& body, std::uint32_t count, std::span<const ContactBody
 /// What the contacts of this step did, and those of the last that are none now; before these are forgotten.
 void account_energy(TouchedBody& body, std::uint32_t count) noexcept;
 
+/// What a tool holds on to, and pushes, is forgotten. Linear in the contacts.
+void let_go(TouchedBody& body, std::uint32_t tool) noexcept;
+
 /// What is handed out of so many tools, and what the next step knows of this one's contacts.
 void write_answer(TouchedBody& body, std::uint32_t count, std::uint32_t tools) noexcept;
 

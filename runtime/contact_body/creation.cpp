@@ -34,8 +34,8 @@ double mean_edge(const Surface& surface, Vec4* normal) {
 // memory that a part carves itself
 std::span<std::byte> piece(Arena& arena, std::size_t bytes) { return {arena.take<std::byte>(bytes), bytes}; }
 
-CandidateSearch::Limits search_limits(const ContactBody::Limits& limits, double margin) {
-  return {limits.max_tools, limits.max_points, limits.elastostatic.max_contacts, margin};
+CandidateSearch::Limits search_limits(const ContactBody::Limits& limits, double margin, double fine_radius) {
+  return {limits.max_tools, limits.max_points, limits.elastostatic.max_contacts, margin, fine_radius};
 }
 
 // units that a search may take, those that it has to have, and of all that finds contacts
@@ -45,13 +45,14 @@ struct TouchingWork {
 
 TouchingWork touching_work_of(const Model& model, const ContactBody::Limits& limits) {
   const SurfaceSizes surface = DeformedSurface::sizes(model, model.level_count() - 1);
-  const CandidateSearch::Limits searched = search_limits(limits, 0);
+  const CandidateSearch::Limits searched = search_limits(limits, 0, 0);
   TouchingWork work;
   work.least_search = CandidateSearch::least_find_work(searched, surface);
   work.search = limits.search_work > 0 ? limits.search_work : CandidateSearch::usual_find_work(searched, surface);
   const std::uint64_t contacts = limits.elastostatic.max_contacts;
-  work.whole = surface.update_work() + work.search + limits.max_tools * tool_price + contacts * contact_price +
-               most_choosing(contacts, std::uint64_t{limits.max_tools} * limits.max_points);
+  work.whole =
+      surface.update_work() + work.search + limits.max_tools * tool_price + contacts * contact_price +
+      most_choosing(contacts, std::uint64_t{CandidateSearch::most_places} * limits.max_tools * limits.max_points);
   return work;
 }
 
@@ -61,6 +62,7 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.max_tools = limits.max_tools;
   body.tool = arena.take<Tool>(limits.max_tools);
   body.placement = arena.take<Placement>(limits.max_tools);
+  body.last_placement = arena.take<Placement>(limits.max_tools);
   body.sag = arena.take_zeroed<Double3>(limits.max_tools);
   body.point = arena.take<ToolPoint>(body.max_contacts);
   body.candidate = arena.take<Candidate>(body.max_contacts);
@@ -72,6 +74,8 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.energy_contact = arena.take<EnergyContact>(std::uint64_t{2} * body.max_contacts);
   body.force = arena.take<Vec3>(body.max_contacts);
   body.gap = arena.take<Vec4>(body.max_contacts);
+  body.yield = arena.take<float>(body.max_contacts);
+  body.held_out = arena.take_zeroed<float>(body.nodes);
   body.state = arena.take<ContactState>(body.max_contacts);
   body.answered = arena.take<ContactBody::Contact>(body.max_contacts);
   body.tool_answer = arena.take<ContactBody::ToolAnswer>(limits.max_tools);
@@ -86,7 +90,7 @@ bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& li
   const auto surface = piece(arena, Surface::required(model, finest).bytes);
   const auto elastostatic = piece(arena, elastostatic_bytes);
   const auto deformed = piece(arena, DeformedSurface::required(model, finest));
-  const auto search = piece(arena, CandidateSearch::required(search_limits(limits, 0)));
+  const auto search = piece(arena, CandidateSearch::required(search_limits(limits, 0, 0)));
   if (surface.data() == nullptr) return true;  // it only counts
   const auto made_surface = Surface::create(model, finest, surface);
   const auto made_body = Elastostatic::create(model, limits.elastostatic, elastostatic);
@@ -99,9 +103,10 @@ bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& li
   body.mean_edge = mean_edge(body.surface, body.displacement);
   const double margin = limits.margin > 0 ? limits.margin : 0.25 * body.mean_edge;
   for (std::uint32_t i = 0; i < body.nodes; ++i) body.displacement[i] = {};
-  const auto made_search = CandidateSearch::create(search_limits(limits, margin), search);
+  const auto made_search = CandidateSearch::create(search_limits(limits, margin, 2 * body.mean_edge), search);
   if (!made_search) return false;
   body.search = made_search.search;
+  body.search.heed({body.held_out, body.nodes});
   return true;
 }
 

@@ -28,6 +28,7 @@ struct TouchedBody {
 
   Tool* tool = nullptr;                     ///< [max_tools] of this step
   Placement* placement = nullptr;           ///< [max_tools] the same, after the answer where its spring lets it be
+  Placement* last_placement = nullptr;      ///< [max_tools] of the step before, after its answer
   Double3* sag = nullptr;                   ///< [max_tools] m, of the last answer
   std::span<const float> factor;            ///< [nodes] on coefficients of friction, or empty
   ToolPoint* point = nullptr;               ///< [max_contacts] of the last answer
@@ -42,6 +43,8 @@ struct TouchedBody {
   Double3* stick_place = nullptr;            ///< [max_contacts] m, where each stands if it does not slip
   Vec3* force = nullptr;                     ///< [max_contacts]
   Vec4* gap = nullptr;                       ///< [max_contacts]
+  float* yield = nullptr;                    ///< [max_contacts] m
+  float* held_out = nullptr;                 ///< [nodes] m, how far the contacts of the last answer push each
   ContactState* state = nullptr;             ///< [max_contacts]
   ContactBody::Contact* answered = nullptr;  ///< [max_contacts] of the last answer
   std::uint32_t answered_count = 0;

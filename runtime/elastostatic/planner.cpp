@@ -125,14 +125,15 @@ void plan_factor(Body& body, const Task& task, Plan& plan) {
   }
 }
 
-// whether a contact may wait: one that was not held, for less steps than a glide takes
-bool may_wait(const Body& body, std::uint32_t node) {
+// whether a contact may wait, for less steps than a glide takes: one that was not held, or where the level is kept any
+bool may_wait(const Body& body, const Task& task, std::uint32_t node) {
   const std::uint32_t place = body.last.place(node);
   const std::uint32_t waited = place == layout::none ? 0 : body.last.waited(place);
-  return (place == layout::none || waited > 0) && waited + 1 < body.counts.glide_cycles;
+  return (task.keeps_level || place == layout::none || waited > 0) && waited + 1 < body.counts.glide_cycles;
 }
 
-// whether all contacts may wait that the nearest factor lacks: a quarter of them at most
+// whether all contacts may wait that the nearest factor lacks: a quarter of them at most, or where the level is kept
+// any but all
 bool others_may_wait(const Body& body, const Task& task) {
   const FactorChanges& changes = body.changes;
   std::size_t waiting = 0;
@@ -140,19 +141,20 @@ bool others_may_wait(const Body& body, const Task& task) {
     const std::uint32_t column = body.planned.column[body.planned.place[i]];
     if (std::binary_search(changes.in, changes.in + changes.added, column)) {
       ++waiting;
-      if (!may_wait(body, task.contacts[i].node)) {
+      if (!may_wait(body, task, task.contacts[i].node)) {
         return false;
       }
     }
   }
-  return 4 * waiting <= task.contacts.size();
+  return task.keeps_level || 4 * waiting <= task.contacts.size();
 }
 
 // plans an answer by what the nearest factor has of the set, if only the factor is too dear: contacts that are new wait
 void plan_without_new(Body& body, const Task& task, Plan& plan) {
   plan.work += resolve_contacts_work(body.counts.prices, task.contacts.size());
   FactorChanges& changes = body.changes;
-  if (changes.base == nullptr || changes.added == 0 || !others_may_wait(body, task)) {
+  if (changes.base == nullptr || changes.added == 0 || changes.added == plan.counts.columns ||
+      !others_may_wait(body, task)) {
     return;
   }
   const std::uint64_t whole = plan.factor;
@@ -178,6 +180,21 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   plan.fits = plan.factor <= whole && planned_work(plan) + preparing <= limit;
 }
 
+// takes details of the field away, the finest first, while the answer does not fit; knows_factor: of the level
+void cut_field(Body& body, const Task& task, bool knows_factor, Plan& plan) {
+  while (!plan.fits && plan.field_levels.details > 0) {
+    --plan.field_levels.details;
+    plan.work += count_field_work(body.counts.prices, plan.counts) +
+                 (body.is_loaded ? count_field_work(body.counts.prices, body.loads->counts.forces) : 0);
+    plan.field = planned_field_work(body, plan);
+    if (!knows_factor && holds_answer(task, plan)) {
+      plan_factor(body, task, plan);
+      knows_factor = true;
+    }
+    plan.fits = knows_factor && planned_work(plan) <= task.budget;
+  }
+}
+
 }  // namespace
 
 std::uint64_t plan_set_work(const ModelCounts& model, const SetCounts& set) noexcept {
@@ -199,19 +216,22 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wa
   plan.field_levels = {wants.finest_displaced, wants.finest_displaced};
   for (std::uint32_t c = finest + 1; !plan.fits && c-- > coarsest;) {
     plan_set(body, task, c, plan);
-    if (holds_answer(task, plan) || c == coarsest) {
+    const bool knows_factor = holds_answer(task, plan) || c == coarsest;
+    if (knows_factor) {
       plan_factor(body, task, plan);
+    }
+    if (wants.field && wants.keeps_level && c == finest && c > coarsest) {
+      cut_field(body, task, knows_factor, plan);
     }
     if (!plan.fits && c > coarsest && plan.wanted.exists && plan.wanted.level == c) {
       plan_without_new(body, task, plan);
     }
+    if (!plan.fits && c == finest) {
+      plan.field_levels.details = wants.finest_displaced;
+    }
   }
-  while (!plan.fits && wants.field && plan.field_levels.details > 0) {
-    --plan.field_levels.details;
-    plan.work += count_field_work(body.counts.prices, plan.counts) +
-                 (body.is_loaded ? count_field_work(body.counts.prices, body.loads->counts.forces) : 0);
-    plan.field = planned_field_work(body, plan);
-    plan.fits = planned_work(plan) <= wants.budget;
+  if (wants.field) {
+    cut_field(body, task, true, plan);
   }
   return plan;
 }

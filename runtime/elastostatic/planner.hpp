@@ -13,6 +13,7 @@ struct Wants {
   std::uint64_t budget = 0;
   bool field = false;
   std::uint32_t finest_displaced = 0;  ///< level of the nodes that are displaced
+  bool keeps_level = false;            ///< details of the field go before the finest constraint level does
   std::uint32_t corners = 0;           ///< as of SetCounts
   std::uint32_t iterations = 0;
   std::uint32_t rows = 0;

@@ -135,6 +135,10 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
   std::uint64_t least_answer = ~std::uint64_t{0};
   for (std::uint32_t c = view.levels; c-- > coarsest;) {
     const SetCounts& most = most_of.contacts[c].set;
+    const std::uint64_t cuts =
+        finest * (count_field_work(counts.prices, most) + count_field_work(counts.prices, most_of.forces[c].set));
+    // details of the field go before the finest level does, where surfaces touch
+    planned += c == finest && limits.iterations > 0 ? cuts : 0;
     planned += plan_set_work(counts, most) + (counts.takes_loads() ? plan_loads_work(counts, most, loads(c)) : 0);
     const std::uint64_t displaced =
         counts.takes_loads() ? displace_by_loads_work(counts, most, loads(c), most_coupling_blocks(most, loads(c))) : 0;
@@ -149,8 +153,6 @@ void bound_work(const ModelView& view, const Elastostatic::Limits& limits, const
       const std::uint64_t refining = checking + smaller(limits.refining_work, finer_answer);
       requirement.worst_work[c] = smaller(finer_answer, larger(answer, refining) + older);
     }
-    const std::uint64_t cuts =
-        finest * (count_field_work(counts.prices, most) + count_field_work(counts.prices, most_of.forces[c].set));
     // with few contacts a finer level may take less than planning it and answering at a coarser one
     least_answer = smaller(least_answer, forces + field(c, finest));
     requirement.least_work = smaller(least_answer, forces + cuts + field(c, 0));

@@ -127,6 +127,14 @@ std::uint32_t gather(const UnilateralSet& all, const Factor& factor, std::uint32
   return scratch.held = count;
 }
 
+// how far its own force pushes a contact along its normal, m
+float yield_of(const UnilateralScratch& scratch, std::uint32_t held) {
+  const Float4 pushed = product(scratch.compliance.at(held, held), load_vector<3>(&scratch.force[held].x));
+  const Vec4& n = scratch.candidate[held].normal;
+  const float along = pushed[0] * n.x + pushed[1] * n.y + pushed[2] * n.z;
+  return along > 0 ? along : 0;
+}
+
 void add_to_columns(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t count,
                     float* column_force) {
   for (std::uint32_t k = 0; k < 3 * all.set.columns; ++k) {
@@ -236,6 +244,20 @@ ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, s
   return answer;
 }
 
+void place_contacts(const UnilateralSet& all, const UnilateralScratch& scratch, std::span<Vec4> displacement) noexcept {
+  for (std::uint32_t k = 0; k < scratch.held; ++k) {
+    const std::uint32_t i = scratch.contact[k];
+    const std::span<const UnilateralCorner> corners = corners_of(scratch, i);
+    if (corners.size() != 1 || corners[0].weight != 1) continue;
+    const std::uint32_t node = scratch.hold[corners[0].hold].node;
+    if (node >= displacement.size()) continue;
+    const float* const value = all.contacts[i].value;
+    const Vec4& gap = scratch.gap[k];
+    displacement[node] = {without_tiny(value[0] + gap.x), without_tiny(value[1] + gap.y),
+                          without_tiny(value[2] + gap.z), 0};
+  }
+}
+
 void hand_out_unilateral(const UnilateralSet& all, UnilateralScratch& scratch,
                          const UnilateralOutput& output) noexcept {
   const auto contacts = static_cast<std::uint32_t>(all.contacts.size());
@@ -258,6 +280,9 @@ void hand_out_unilateral(const UnilateralSet& all, UnilateralScratch& scratch,
     }
     if (!output.gap.empty()) {
       output.gap[i] = waits ? Vec4{} : scratch.gap[held];
+    }
+    if (!output.yield.empty()) {
+      output.yield[i] = waits ? 0 : yield_of(scratch, held);
     }
     held += waits ? 0 : 1;
   }

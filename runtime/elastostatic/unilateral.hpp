@@ -79,11 +79,16 @@ ContactAnswer solve_unilateral(const UnilateralSet& all, const Factor& factor, s
                                const ContactAccuracy& accuracy, std::uint64_t allowance, UnilateralScratch& scratch,
                                float* column_force) noexcept;
 
+/// Puts nodes that are contacts by themselves where their answer says, in a field that lacks details; of a set at the
+/// finest level. displacement: of the nodes that are displaced. For the loop; linear in the corners.
+void place_contacts(const UnilateralSet& all, const UnilateralScratch& scratch, std::span<Vec4> displacement) noexcept;
+
 /// Where an answer goes.
 struct UnilateralOutput {
   std::span<Vec3> force;  ///< [contacts] N
   std::span<ContactState> state;
   std::span<Vec4> gap;
+  std::span<float> yield;
 };
 
 /// Writes what it found: also hold_force. For the loop; linear in the corners.
