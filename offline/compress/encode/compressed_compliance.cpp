@@ -47,23 +47,29 @@ constexpr std::size_t weight_numbers<double> = 1;
 template <unsigned N, class Weight>
 class FeltCoefficient {
  public:
-  FeltCoefficient(const double* weights, std::size_t nodes) : displacement_(RowBlocks::Zero(N, block_begin<N>(nodes))) {
+  FeltCoefficient(const double* weights, std::size_t nodes) : displacement_(nodes, SquareMatrix<N>::Zero()) {
     constexpr std::size_t numbers = weight_numbers<Weight>;
     for (std::size_t k = 0; k < nodes; ++k) {
       const double* const own = weights + numbers * k;
-      if (any(own, numbers)) reach_.emplace_back(static_cast<Eigen::Index>(k), load(own, Weight()));
+      if (any(own, numbers)) reach_.emplace_back(k, load(own, Weight()));
     }
   }
 
   // forces on `other` move this one by `block`
   void feel(const SquareMatrix<N>& block, const FeltCoefficient& other) {
-    for (const auto& [node, weight] : other.reach_) displacement_.template middleCols<N>(N * node) += block * weight;
+    for (const auto& [node, weight] : other.reach_) displacement_[node] += block * weight;
   }
 
   // adds what it moves its nodes by
   void move(const SquareMatrix<N>& root, RowBlocks& nodes) const {
-    const RowBlocks moved = root * displacement_;
-    for (const auto& [node, weight] : reach_) nodes.middleRows<N>(N * node) += transposed(weight) * moved;
+    RowBlocks displacement(N, nodes.cols());
+    for (std::size_t k = 0; k < displacement_.size(); ++k) {
+      displacement.middleCols<N>(block_begin<N>(k)) = displacement_[k];
+    }
+    const RowBlocks moved = root * displacement;
+    for (const auto& [node, weight] : reach_) {
+      nodes.middleRows<N>(block_begin<N>(node)) += transposed(weight) * moved;
+    }
   }
 
  private:
@@ -74,8 +80,8 @@ class FeltCoefficient {
   static double transposed(double weight) { return weight; }
   static SquareMatrix<N> transposed(const SquareMatrix<N>& weight) { return weight.transpose(); }
 
-  std::vector<std::pair<Eigen::Index, Weight>> reach_;
-  RowBlocks displacement_;
+  std::vector<std::pair<std::size_t, Weight>> reach_;
+  std::vector<SquareMatrix<N>> displacement_;  // by node
 };
 
 // a view of a model whose components are N
