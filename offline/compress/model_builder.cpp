@@ -182,10 +182,18 @@ void store_errors(const CompressionReport& report, ModelData& model) {
 // An encoding of the whole model, measured on everything.
 struct Measured {
   Trial trial;
-  std::vector<PatternErrors> patterns;  // at the finest level; only of a trial that meets the rest
   FieldError field;
   std::vector<std::size_t> worst_patches;
   double least_eigenvalue = 0;  // m/N, estimated; only of a trial that meets the accuracy
+};
+
+// The encoding that a model is made with, the columns as transformed for it, and the patches it was searched with.
+struct Choice {
+  WaveletCompliance<3> compliance;
+  double floor = 0;  // of the couplings that they keep
+  std::vector<std::size_t> searched;
+  FoundEncoding found;
+  Measured measured;
 };
 
 // One build. The columns are transformed again with a lower floor if no encoding of the one at hand is accurate enough.
@@ -210,13 +218,24 @@ class Build {
   }
 
   [[nodiscard]] BuiltModel run() {
-    for (double floor = first_floor; !meets_with(floor); floor /= 4) {
+    const Choice choice = choose();
+    encode_couplings(choice.compliance, choice.found.encoding, model_);
+    report_.trials.push_back(choice.measured.trial);
+    describe(choice);
+    describe_levels(choice);
+    store_errors(report_, model_);
+    describe_frontier(choice);
+    if (progress_) progress_(1.0, "done");
+    return {std::move(model_), std::move(report_)};
+  }
+
+  [[nodiscard]] Choice choose() {
+    for (double floor = first_floor;; floor /= 4) {
+      if (auto choice = choose_with(floor)) return std::move(*choice);
       if (floor > least_floor) continue;
       if (closest_pattern_) unreachable_field(input_.accuracy, *closest_pattern_);
       unreachable_accuracy(input_.accuracy, closest_);
     }
-    if (progress_) progress_(1.0, "done");
-    return {std::move(model_), std::move(report_)};
   }
 
  private:
@@ -257,10 +276,14 @@ class Build {
     }
   }
 
-  // searches and measures until an encoding meets the accuracy on everything; false: none does with this floor
-  [[nodiscard]] bool meets_with(double floor) {
-    const WaveletCompliance<3> compliance = transform(floor);
-    const TrialBench bench{compliance, model_, sample_.columns(), input_.accuracy, input_.step_work};
+  [[nodiscard]] TrialBench bench_of(const WaveletCompliance<3>& compliance) const {
+    return {compliance, model_, sample_.columns(), input_.accuracy, input_.step_work};
+  }
+
+  // searches and measures until an encoding meets the accuracy on everything; none: none does with this floor
+  [[nodiscard]] std::optional<Choice> choose_with(double floor) {
+    WaveletCompliance<3> compliance = transform(floor);
+    const TrialBench bench = bench_of(compliance);
     std::vector<std::size_t> searched = worst_patches(bench, sample_.patches(), search_patches, ranking_threshold);
     Accuracy aim = input_.accuracy;
     aim.patch_force *= safety;
@@ -268,22 +291,18 @@ class Build {
       Trial chosen =
           search_encoding(bench, sample_.patches().choose(searched), aim, floor, report_.trials, part(0.3, 0.6));
       closest_ = chosen;
-      if (!chosen.meets(aim)) return false;
-      const auto found = meet_patterns(bench, sample_.patches().choose(searched), floor, chosen);
-      if (!found) return false;
-      const Measured measured = measure(found->model, chosen);
+      if (!chosen.meets(aim)) return {};
+      auto found = meet_patterns(bench, sample_.patches().choose(searched), floor, chosen);
+      if (!found) return {};
+      Measured measured = measure(found->model, chosen);
       if (measured.trial.meets(input_.accuracy) && measured.least_eigenvalue > 0) {
-        encode_couplings(compliance, found->encoding, model_);
-        describe(measured);
-        describe_levels(compliance, measured, found->model);
-        describe_frontier(bench, sample_.patches().choose(searched), floor, found->model);
-        return true;
+        return Choice{std::move(compliance), floor, std::move(searched), std::move(*found), std::move(measured)};
       }
       closest_ = measured.trial;
       add_patches(measured.worst_patches, searched);
       tighten(aim, measured);
     }
-    return false;
+    return {};
   }
 
   // takes a smaller threshold where the fields of what people do ask for it; none: none down to the floor will do
@@ -300,7 +319,7 @@ class Build {
   }
 
   [[nodiscard]] Measured measure(const ModelFile& encoded, const Trial& chosen) {
-    Measured measured{.trial = chosen, .patterns = {}, .field = FieldError(read_), .worst_patches = {}};
+    Measured measured{.trial = chosen, .field = FieldError(read_), .worst_patches = {}};
     const CompressedCompliance<3> all(encoded.view);
     FieldError error;
     visit_exact_columns(input_, part(0.65, 0.75), [&](std::size_t row, const auto& exact, double area) {
@@ -317,7 +336,6 @@ class Build {
     }
     if (measured.trial.meets(input_.accuracy)) {
       measured.least_eigenvalue = estimate_least_eigenvalue(all, part(0.75, 0.85));
-      measured.patterns = summarise(AnsweredContacts(encoded.view, all, contacts_).all_errors(all.finest()));
     }
     return measured;
   }
@@ -334,21 +352,22 @@ class Build {
     aim.worst_column *= std::min(1.0, 0.98 * wanted.worst_column / trial.worst_column);
   }
 
-  void describe(const Measured& measured) {
-    report_.encoding = measured.trial.encoding;
-    report_.trials.push_back(measured.trial);
-    report_.lambda_min = certificate_share * measured.least_eigenvalue;
+  void describe(const Choice& choice) {
+    report_.encoding = choice.found.encoding;
+    report_.lambda_min = certificate_share * choice.measured.least_eigenvalue;
     report_.patches = sample_.patches().size();
   }
 
-  void describe_levels(const WaveletCompliance<3>& compliance, const Measured& finest, const ModelFile& encoded) {
+  void describe_levels(const Choice& choice) {
+    const ModelFile& encoded = choice.found.model;
+    const Measured& finest = choice.measured;
     const CompressedCompliance<3> complete(encoded.view);
     const AnsweredContacts answered(encoded.view, complete, contacts_);
     for (std::uint32_t level = model_.info.coarsest_constraint_level; level < wavelet_.finest(); ++level) {
       const AlignedBytes bytes(truncate_to_level({encoded.bytes.span().begin(), encoded.bytes.span().end()}, level));
       ModelView cut;
       if (!verify(bytes.span(), cut).ok()) throw std::logic_error("compression: a cut model does not verify");
-      report_.levels.push_back(measure_coarse(input_, wavelet_, compliance, cut, level));
+      report_.levels.push_back(measure_coarse(input_, wavelet_, choice.compliance, cut, level));
       report_.levels.back().patterns = summarise(answered.all_errors(level));
     }
     report_.levels.push_back({.level = static_cast<std::uint32_t>(wavelet_.finest()),
@@ -359,7 +378,7 @@ class Build {
                               .field_rms_error = finest.field.rms(),
                               .field_column_error = finest.field.worst_column(),
                               .field = field_size(encoded.view),
-                              .patterns = finest.patterns});
+                              .patterns = summarise(choice.found.errors)});
     for (std::size_t details = 0; details < wavelet_.finest(); ++details) {
       const auto errors = answered.all_errors(model_.info.coarsest_constraint_level, details);
       report_.cut_errors.push_back(worst_field_error(summarise(errors)));
@@ -369,24 +388,22 @@ class Build {
       level.kept_blocks = encoded.view.level[level.level].counts->kept_blocks;
       level.dense_blocks = encoded.view.level[level.level].counts->dense_blocks;
     }
-    report_.trials.back().bytes = encoded.bytes.size();
   }
 
   // the chosen point with the errors measured on everything
-  void describe_frontier(const TrialBench& bench, const ContactPatches& patches, double floor,
-                         const ModelFile& encoded) {
-    store_errors(report_, model_);
-    const auto samples = sample_levels(input_.mesh, wavelet_, bench.compliance, model_.info.coarsest_constraint_level);
+  void describe_frontier(const Choice& choice) {
+    const auto samples = sample_levels(input_.mesh, wavelet_, choice.compliance, model_.info.coarsest_constraint_level);
     std::vector<Trial> trials = report_.trials;
-    trials.back().levels = level_costs(encoded, input_.step_work);
+    trials.back().levels = level_costs(choice.found.model, input_.step_work);
     for (std::size_t i = 0; i < report_.levels.size(); ++i) {
       trials.back().levels[i].rms = report_.levels[i].rms_error;
       trials.back().levels[i].worst_column = report_.levels[i].worst_column_error;
       trials.back().levels[i].patch_force = report_.levels[i].patch_force_error;
     }
-    fill_gaps(report_.encoding.threshold, floor, trials);
+    fill_gaps(report_.encoding.threshold, choice.floor, trials);
     leave_out_near(report_.encoding.threshold, trials);
-    report_.frontier = measure_frontier(bench, patches, samples, trials);
+    report_.frontier =
+        measure_frontier(bench_of(choice.compliance), sample_.patches().choose(choice.searched), samples, trials);
   }
 
   const CompressionInput& input_;
@@ -405,5 +422,7 @@ class Build {
 }  // namespace
 
 BuiltModel build_model(const CompressionInput& input, const Progress& progress) { return Build(input, progress).run(); }
+
+Trial chosen_trial(const CompressionInput& input) { return Build(input, {}).choose().measured.trial; }
 
 }  // namespace greenloop::offline

@@ -74,4 +74,8 @@ struct BuiltModel {
 /// only.
 [[nodiscard]] BuiltModel build_model(const CompressionInput& input, const Progress& progress);
 
+/// What build_model's model comes to, the last of its report's trials, without making the rest of the report. Work:
+/// most of build_model's. Throws as it does. Offline only.
+[[nodiscard]] Trial chosen_trial(const CompressionInput& input);
+
 }  // namespace greenloop::offline

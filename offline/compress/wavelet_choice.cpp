@@ -1,7 +1,7 @@
 #include "offline/compress/wavelet_choice.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -73,7 +73,6 @@ class SampledBody {
 struct Comparison {
   std::vector<WaveletTrial> trials;
   layout::Wavelet best = layout::Wavelet::lifted_linear;  // also if no trial meets the accuracy
-  std::optional<BuiltModel> model;                        // of the best
 };
 
 double cost(const CompressionInput& input, const Trial& trial) {
@@ -81,10 +80,10 @@ double cost(const CompressionInput& input, const Trial& trial) {
   return static_cast<double>(trial.bytes) * (weigh_work ? static_cast<double>(trial.step_work) : 1.0);
 }
 
-// none if the accuracy cannot be met
-std::optional<BuiltModel> try_build(const CompressionInput& input) {
+// of 0 bytes if the accuracy cannot be met
+Trial tried(const CompressionInput& input) {
   try {
-    return build_model(input, {});
+    return chosen_trial(input);
   } catch (const std::runtime_error&) {
     return {};
   }
@@ -92,16 +91,13 @@ std::optional<BuiltModel> try_build(const CompressionInput& input) {
 
 Comparison compare_wavelets(CompressionInput input, const Progress& progress) {
   Comparison comparison;
-  double least = 0;
+  double least = std::numeric_limits<double>::infinity();
   for (const layout::Wavelet wavelet : layout::wavelets) {
     input.wavelet = wavelet;
-    WaveletTrial trial{.wavelet = wavelet, .nodes = input.column_nodes.size(), .trial = {}};
-    auto built = try_build(input);
-    if (built) trial.trial = built->report.trials.back();
-    if (built && (!comparison.model || cost(input, trial.trial) < least)) {
+    const WaveletTrial trial{.wavelet = wavelet, .nodes = input.column_nodes.size(), .trial = tried(input)};
+    if (trial.trial.bytes > 0 && cost(input, trial.trial) < least) {
       least = cost(input, trial.trial);
       comparison.best = wavelet;
-      comparison.model = std::move(built);
     }
     comparison.trials.push_back(trial);
     const auto done = static_cast<double>(comparison.trials.size());
@@ -127,14 +123,14 @@ BuiltModel build_with_best_wavelet(CompressionInput input, const Progress& progr
     return build_model(input, progress);
   }
   const std::size_t level = comparison_level(wavelet, least_rows);
-  const bool whole = level == wavelet.finest();
-  Comparison comparison = whole ? compare_wavelets(input, progress)
-                                : compare_wavelets(SampledBody(input, wavelet, level).input(), progress);
+  Comparison comparison = level == wavelet.finest()
+                              ? compare_wavelets(input, progress)
+                              : compare_wavelets(SampledBody(input, wavelet, level).input(), progress);
   input.wavelet = comparison.best;
   const Progress rest = [&](double fraction, std::string_view stage) {
     if (progress) progress(comparison_share + (1 - comparison_share) * fraction, stage);
   };
-  BuiltModel built = whole && comparison.model ? std::move(*comparison.model) : build_model(input, rest);
+  BuiltModel built = build_model(input, rest);
   built.report.wavelets = std::move(comparison.trials);
   if (progress) progress(1.0, "done");
   return built;

@@ -11,28 +11,18 @@
 namespace greenloop::offline {
 namespace {
 
-// y += M f for every column; M: N N numbers N c + r
+// y += M f for every column
 template <unsigned N>
-void multiply(const float* m, bool transposed, std::size_t columns, const double* f, double* y) {
+void multiply(const SquareMatrixF<N>& matrix, std::size_t columns, const double* f, double* y) {
+  const SquareMatrix<N> m = matrix.template cast<double>();
   for (std::size_t k = 0; k < columns; ++k, f += N, y += N) {
-    for (unsigned r = 0; r < N; ++r) {
-      for (unsigned c = 0; c < N; ++c) y[r] += static_cast<double>(transposed ? m[N * r + c] : m[N * c + r]) * f[c];
-    }
+    Eigen::Map<Eigen::Matrix<double, N, 1>> sum(y);
+    for (unsigned c = 0; c < N; ++c) sum += m.col(c) * f[c];
   }
 }
 
 bool any(const double* f, std::size_t count) {
   return std::any_of(f, f + count, [](double x) { return x != 0; });
-}
-
-template <unsigned N>
-void append(const SquareMatrix<N>& matrix, std::vector<float>& matrices) {
-  for (unsigned k = 0; k < N * N; ++k) matrices.push_back(static_cast<float>(matrix.data()[k]));
-}
-
-template <unsigned N>
-SquareMatrix<N> matrix(const std::vector<float>& matrices, std::size_t i) {
-  return Eigen::Map<const SquareMatrixF<N>>(matrices.data() + block_numbers<N> * i).template cast<double>();
 }
 
 using RowBlocks = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -47,23 +37,29 @@ constexpr std::size_t weight_numbers<double> = 1;
 template <unsigned N, class Weight>
 class FeltCoefficient {
  public:
-  FeltCoefficient(const double* weights, std::size_t nodes) : displacement_(RowBlocks::Zero(N, block_begin<N>(nodes))) {
+  FeltCoefficient(const double* weights, std::size_t nodes) : displacement_(nodes, SquareMatrix<N>::Zero()) {
     constexpr std::size_t numbers = weight_numbers<Weight>;
     for (std::size_t k = 0; k < nodes; ++k) {
       const double* const own = weights + numbers * k;
-      if (any(own, numbers)) reach_.emplace_back(static_cast<Eigen::Index>(k), load(own, Weight()));
+      if (any(own, numbers)) reach_.emplace_back(k, load(own, Weight()));
     }
   }
 
   // forces on `other` move this one by `block`
   void feel(const SquareMatrix<N>& block, const FeltCoefficient& other) {
-    for (const auto& [node, weight] : other.reach_) displacement_.template middleCols<N>(N * node) += block * weight;
+    for (const auto& [node, weight] : other.reach_) displacement_[node] += block * weight;
   }
 
   // adds what it moves its nodes by
   void move(const SquareMatrix<N>& root, RowBlocks& nodes) const {
-    const RowBlocks moved = root * displacement_;
-    for (const auto& [node, weight] : reach_) nodes.middleRows<N>(N * node) += transposed(weight) * moved;
+    RowBlocks displacement(N, nodes.cols());
+    for (std::size_t k = 0; k < displacement_.size(); ++k) {
+      displacement.middleCols<N>(block_begin<N>(k)) = displacement_[k];
+    }
+    const RowBlocks moved = root * displacement;
+    for (const auto& [node, weight] : reach_) {
+      nodes.middleRows<N>(block_begin<N>(node)) += transposed(weight) * moved;
+    }
   }
 
  private:
@@ -74,8 +70,8 @@ class FeltCoefficient {
   static double transposed(double weight) { return weight; }
   static SquareMatrix<N> transposed(const SquareMatrix<N>& weight) { return weight.transpose(); }
 
-  std::vector<std::pair<Eigen::Index, Weight>> reach_;
-  RowBlocks displacement_;
+  std::vector<std::pair<std::size_t, Weight>> reach_;
+  std::vector<SquareMatrix<N>> displacement_;  // by node
 };
 
 // a view of a model whose components are N
@@ -88,6 +84,26 @@ const ModelView& checked(const ModelView& view) {
   return view;
 }
 
+// calls visit(row, column, its block) for every coupling
+template <unsigned N, class Visit>
+void visit_couplings(const ModelView& view, Visit visit) {
+  for (std::uint32_t level = 0; level < view.levels; ++level) {
+    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
+      const CouplingsView& couplings = view.level[level].couplings[layer];
+      for (std::uint32_t j = 0; j < couplings.columns; ++j) {
+        for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
+          SquareMatrixF<N> block;
+          for (std::uint32_t k = 0; k < N * N; ++k) {
+            const std::int16_t value = stored_value<N>(couplings, layout::value_bits[layer], b, k);
+            block.data()[k] = view.info->quantum[layer] * static_cast<float>(value);
+          }
+          visit(stored_row(couplings, b), view.level[level].domain_begin + j, block);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 template <unsigned N>
@@ -95,48 +111,27 @@ CompressedCompliance<N>::CompressedCompliance(const ModelView& view) : wavelet_(
   for (std::uint32_t level = 0; level < view.levels; ++level) {
     const LevelView& at = view.level[level];
     for (std::uint32_t i = 0; i < at.counts->domain_count; ++i) {
-      append<N>(symmetric_matrix(at.scales_of<N>()[i].root), root_);
-      append<N>(symmetric_matrix(at.scales_of<N>()[i].diagonal), diagonal_);
+      root_.push_back(symmetric_matrix(at.scales_of<N>()[i].root).template cast<float>());
+      diagonal_.push_back(symmetric_matrix(at.scales_of<N>()[i].diagonal).template cast<float>());
     }
   }
-  link(load_couplings(view));
+  link(view);
 }
 
 template <unsigned N>
-std::vector<typename CompressedCompliance<N>::Ends> CompressedCompliance<N>::load_couplings(const ModelView& view) {
-  std::vector<Ends> ends;
-  for (std::uint32_t level = 0; level < view.levels; ++level) {
-    for (std::uint32_t layer = 0; layer < layout::layers; ++layer) {
-      const CouplingsView& couplings = view.level[level].couplings[layer];
-      for (std::uint32_t j = 0; j < couplings.columns; ++j) {
-        for (std::uint32_t b = couplings.begin[j]; b < couplings.begin[j + 1]; ++b) {
-          for (std::uint32_t k = 0; k < N * N; ++k) {
-            const std::int16_t value = stored_value<N>(couplings, layout::value_bits[layer], b, k);
-            block_.push_back(view.info->quantum[layer] * static_cast<float>(value));
-          }
-          ends.emplace_back(stored_row(couplings, b), view.level[level].domain_begin + j);
-        }
-      }
-    }
-  }
-  return ends;
-}
-
-template <unsigned N>
-void CompressedCompliance<N>::link(const std::vector<Ends>& ends) {
+void CompressedCompliance<N>::link(const ModelView& view) {
   link_begin_.assign(wavelet_.rows() + 1, 0);
-  for (const auto& [row, column] : ends) {
+  visit_couplings<N>(view, [&](std::uint32_t row, std::uint32_t column, const SquareMatrixF<N>&) {
     ++link_begin_[row + 1];
     ++link_begin_[column + 1];
-  }
+  });
   for (std::size_t i = 1; i < link_begin_.size(); ++i) link_begin_[i] += link_begin_[i - 1];
-  links_.resize(2 * ends.size());
+  links_.resize(link_begin_.back());
   auto next = link_begin_;
-  for (std::uint32_t b = 0; b < ends.size(); ++b) {
-    const auto& [row, column] = ends[b];
-    links_[next[column]++] = {.other = row, .block = b, .transposed = false};
-    links_[next[row]++] = {.other = column, .block = b, .transposed = true};
-  }
+  visit_couplings<N>(view, [&](std::uint32_t row, std::uint32_t column, const SquareMatrixF<N>& block) {
+    links_[next[column]++] = {.other = row, .block = block};
+    links_[next[row]++] = {.other = column, .block = block.transpose()};
+  });
 }
 
 template <unsigned N>
@@ -173,21 +168,16 @@ void CompressedCompliance<N>::couple(std::size_t level, std::size_t to_level, st
     const double* own = force.data() + i * width;
     if (!any(own, width)) continue;
     std::fill(scaled.begin(), scaled.end(), 0.0);
-    multiply<N>(root_.data() + block_numbers<N> * i, false, columns, own, scaled.data());
-    if (i < moved)
-      multiply<N>(diagonal_.data() + block_numbers<N> * i, false, columns, scaled.data(), sum.data() + i * width);
+    multiply<N>(root_[i], columns, own, scaled.data());
+    if (i < moved) multiply<N>(diagonal_[i], columns, scaled.data(), sum.data() + i * width);
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
-      const Link& link = links_[at];
-      if (link.other >= moved) continue;
-      multiply<N>(block_.data() + block_numbers<N> * link.block, link.transposed, columns, scaled.data(),
-                  sum.data() + std::size_t{link.other} * width);
+      const auto& [other, block] = links_[at];
+      if (other < moved) multiply<N>(block, columns, scaled.data(), sum.data() + std::size_t{other} * width);
     }
   }
 
   std::fill_n(y, moved * width, 0.0);
-  for (std::size_t i = 0; i < moved; ++i) {
-    multiply<N>(root_.data() + block_numbers<N> * i, false, columns, sum.data() + i * width, y + i * width);
-  }
+  for (std::size_t i = 0; i < moved; ++i) multiply<N>(root_[i], columns, sum.data() + i * width, y + i * width);
 }
 
 template <unsigned N>
@@ -216,20 +206,21 @@ Eigen::MatrixXd CompressedCompliance<N>::between(std::size_t level, const std::v
 
   for (std::size_t i = 0; i < count; ++i) {
     if (place[i] == count) continue;
-    const SquareMatrix<N> root = matrix<N>(root_, i);
+    const SquareMatrix<N> root = root_[i].template cast<double>();
     FeltCoefficient<N, Weight>& own = felt[place[i]];
-    own.feel(matrix<N>(diagonal_, i) * root, own);
+    const SquareMatrix<N> diagonal = diagonal_[i].template cast<double>();
+    own.feel(diagonal * root, own);
     for (std::size_t at = link_begin_[i]; at < link_begin_[i + 1]; ++at) {
-      const Link& link = links_[at];
-      if (link.other >= count || place[link.other] == count) continue;
-      const SquareMatrix<N> block = matrix<N>(block_, link.block);
-      felt[place[link.other]].feel((link.transposed ? block.transpose() : block) * root, own);
+      const auto& [other, block] = links_[at];
+      if (other >= count || place[other] == count) continue;
+      const SquareMatrix<N> by = block.template cast<double>();
+      felt[place[other]].feel(by * root, own);
     }
   }
 
   RowBlocks result = RowBlocks::Zero(block_begin<N>(nodes.size()), block_begin<N>(nodes.size()));
   for (std::size_t i = 0; i < count; ++i) {
-    if (place[i] != count) felt[place[i]].move(matrix<N>(root_, i), result);
+    if (place[i] != count) felt[place[i]].move(root_[i].template cast<double>(), result);
   }
   return result;
 }

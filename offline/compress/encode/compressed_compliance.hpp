@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "formats/view.hpp"
+#include "offline/compress/wavelet/square_matrix.hpp"
 #include "offline/compress/wavelet/surface_wavelet.hpp"
 
 namespace greenloop::offline {
@@ -47,22 +47,18 @@ class CompressedCompliance {
  private:
   struct Link {
     std::uint32_t other;
-    std::uint32_t block;
-    bool transposed;
+    SquareMatrixF<N> block;  // what a force on this coefficient does to the other
   };
-  using Ends = std::pair<std::uint32_t, std::uint32_t>;  // row, column
 
   template <class Weight>
   [[nodiscard]] Eigen::MatrixXd between(std::size_t level, const std::vector<std::size_t>& nodes) const;
   void couple(std::size_t level, std::size_t to_level, std::size_t columns, const double* f, double* y) const;
-  [[nodiscard]] std::vector<Ends> load_couplings(const ModelView& view);
-  void link(const std::vector<Ends>& ends);
+  void link(const ModelView& view);
 
   SurfaceWavelet wavelet_;
-  std::vector<float> root_, diagonal_;   // [coefficient] N N numbers
-  std::vector<float> block_;             // [coupling] N N numbers
-  std::vector<std::size_t> link_begin_;  // [coefficient + 1]
-  std::vector<Link> links_;              // by coefficient
+  std::vector<SquareMatrixF<N>> root_, diagonal_;  // [coefficient]
+  std::vector<std::size_t> link_begin_;            // [coefficient + 1]
+  std::vector<Link> links_;                        // by coefficient, two per coupling
 };
 
 }  // namespace greenloop::offline

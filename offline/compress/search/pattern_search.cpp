@@ -53,9 +53,8 @@ class ThresholdSearch {
   ThresholdSearch(const TrialBench& bench, const ExactContacts& contacts, double floor)
       : bench_(bench), contacts_(contacts), floor_(floor) {}
 
-  // all sites; those that were worst join the searched ones
-  double check(const ModelFile& model) {
-    const auto errors = errors_of(model, contacts_, all_sites(contacts_));
+  // by the errors of all sites; those that were worst join the searched ones
+  double check(const std::vector<AnswerError>& errors) {
     std::vector<std::pair<double, std::size_t>> worst;
     auto next = errors.begin();
     for (std::size_t s = 0; s < contacts_.sites().size(); ++s) {
@@ -119,16 +118,14 @@ std::vector<AnswerError> answer_errors(const TrialBench& bench, const ExactConta
 
 std::optional<FoundEncoding> search_threshold(const TrialBench& bench, const ExactContacts& contacts, double threshold,
                                               double floor) {
-  FoundEncoding found{encoding_at(threshold), encoded_at(bench, threshold)};
-  const auto& [rms, column, force, field, peak, rough] = bench.accuracy;
-  if (!std::isfinite(field) && !std::isfinite(peak) && !std::isfinite(rough)) return found;
   ThresholdSearch search(bench, contacts, floor);
   for (int round = 0;; ++round) {
-    const double excess = search.check(found.model);
+    FoundEncoding found{.encoding = encoding_at(threshold), .model = encoded_at(bench, threshold), .errors = {}};
+    found.errors = errors_of(found.model, contacts, all_sites(contacts));
+    const double excess = search.check(found.errors);
     if (excess <= 1) return found;
     threshold = round < checks ? search.descend(threshold, excess) : 0;
     if (threshold == 0) return {};
-    found = {encoding_at(threshold), encoded_at(bench, threshold)};
   }
 }
 

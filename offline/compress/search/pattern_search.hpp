@@ -25,10 +25,11 @@ inline constexpr std::uint32_t most_accurate_contacts = 64;
 [[nodiscard]] std::vector<AnswerError> answer_errors(const TrialBench& bench, const ExactContacts& contacts,
                                                      const Encoding& encoding);
 
-/// An encoding and the model that it makes.
+/// An encoding, the model that it makes and the errors of its answers: those of answer_errors.
 struct FoundEncoding {
   Encoding encoding;
   ModelFile model;
+  std::vector<AnswerError> errors;
 };
 
 /// The encoding of a threshold near the largest from `floor` to `threshold` with which the answers at the finest level

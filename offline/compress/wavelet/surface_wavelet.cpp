@@ -15,6 +15,10 @@ void add(double weight, const double* from, std::size_t width, double* to) {
   for (std::size_t k = 0; k < width; ++k) to[k] += weight * from[k];
 }
 
+bool any(const double* x, std::size_t width) {
+  return std::any_of(x, x + width, [](double number) { return number != 0; });
+}
+
 // every vector of `to` += sign * weight * that of `from`
 void add(double sign, const Eigen::Matrix3d& weight, const double* from, std::size_t width, double* to) {
   for (std::size_t k = 0; k < width; k += 3) {
@@ -284,6 +288,7 @@ void SurfaceWavelet::merge(std::size_t level, std::size_t width, double* x) cons
 void SurfaceWavelet::split_forces(std::size_t level, std::size_t width, double* f) const {
   for (const auto& odd : odds(level)) {
     const double* const own = f + width * odd.row;
+    if (!any(own, width)) continue;
     if (has_blocks()) {
       for (const auto& [row, weight] : block_prediction(odd)) add(1, weight.transpose(), own, width, f + width * row);
     } else {
@@ -293,7 +298,8 @@ void SurfaceWavelet::split_forces(std::size_t level, std::size_t width, double* 
   for (const auto& odd : odds(level)) {
     for (int side = 0; side < 2; ++side) {
       if (odd.lift[side] == 0) continue;
-      add(-static_cast<double>(odd.lift[side]), f + width * odd.parent[side], width, f + width * odd.row);
+      const double* const parent = f + width * odd.parent[side];
+      if (any(parent, width)) add(-static_cast<double>(odd.lift[side]), parent, width, f + width * odd.row);
     }
   }
 }
