@@ -81,6 +81,15 @@ void add_pairs(const std::int8_t* values, const std::int16_t* numbers, std::uint
   }
 }
 
+// the same of one vertex, whose first value is the first of these
+std::int32_t sum_pairs(const std::int8_t* values, const std::int16_t* numbers, std::uint32_t pairs) {
+  std::int32_t sum = 0;
+  for (const std::int16_t* const end = numbers + std::size_t{2} * pairs; numbers < end;
+       numbers += 2, values += pair_bytes)
+    sum += values[0] * numbers[0] + values[1] * numbers[1];
+  return sum;
+}
+
 // one colour of a block's vertices
 void sum_colour(const ImpulseResponseView& view, const LitState& lit, std::uint32_t block, std::uint32_t colour,
                 float (&values)[block_vertices]) {
@@ -190,9 +199,7 @@ Vec3 colour_at(const ImpulseResponseView& view, const LitState& lit, std::uint32
     std::int32_t sums[parts] = {};
     visit_parts(view, lit, block, c,
                 [&](std::uint32_t part, const std::int8_t* at, const std::int16_t* numbers, std::uint32_t pairs) {
-                  at += place;
-                  for (std::uint32_t p = 0; p < pairs; ++p, at += pair_bytes)
-                    sums[part] += at[0] * numbers[std::size_t{2} * p] + at[1] * numbers[std::size_t{2} * p + 1];
+                  sums[part] = sum_pairs(at + place, numbers, pairs);
                 });
     value[c] = value_of(view, lit, block, sums[0], sums[1], sums[2]);
   }

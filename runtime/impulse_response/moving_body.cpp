@@ -29,7 +29,7 @@ struct ColourUnits {
 
   [[nodiscard]] std::uint64_t of(std::uint32_t modes) const { return itself + mode * modes; }
 };
-constexpr ColourUnits lit_units = {1200, 500}, lit_block_units = {700, 300}, lit_vertex_units = {500, 280};
+constexpr ColourUnits lit_units = {1750, 870}, lit_block_units = {700, 292}, lit_vertex_units = {170, 495};
 
 std::uint64_t sums_work(const ImpulseResponseView& view, std::uint64_t sums, std::uint32_t fields, Fineness fineness,
                         const SumUnits& units) {
