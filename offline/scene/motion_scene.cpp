@@ -96,7 +96,7 @@ void read_appearance(const Table& scene, MotionScene& result) {
 }
 
 std::string triple(const Eigen::Vector3d& of) {
-  return "[" + shortest(of.x()) + ", " + shortest(of.y()) + ", " + shortest(of.z()) + "]";
+  return std::string("[") + shortest(of.x()) + ", " + shortest(of.y()) + ", " + shortest(of.z()) + "]";
 }
 
 std::string appearance_text(const AppearanceScene& appearance) {
