@@ -104,7 +104,8 @@ ImpulseScript::Cycle ImpulseStressScript::next(const ImpulseResponse& body) {
   if (lit_ && cycle.vertices + cycle.chosen_count > 0) {
     cycle.lit = true;
     for (float* const colour : {cycle.light.red, cycle.light.green, cycle.light.blue}) {
-      for (std::uint32_t i = 0; i < Light::coefficients; ++i) colour[i] = static_cast<float>(below(1U << 20U)) * 0x1p-19F - 1;
+      for (std::uint32_t i = 0; i < Light::coefficients; ++i)
+        colour[i] = static_cast<float>(below(1U << 20U)) * 0x1p-19F - 1;
     }
     if (kind_ == ImpulseScriptKind::garbage && below(4) == 0)
       cycle.light.red[0] = std::numeric_limits<float>::quiet_NaN();
