@@ -4,6 +4,7 @@
 #include <new>
 
 #include "runtime/algebra/processor.hpp"
+#include "runtime/impulse_response/appearance.hpp"
 #include "runtime/impulse_response/mode_sums.hpp"
 #include "runtime/impulse_response/moving_body.hpp"
 #include "runtime/memory/fit.hpp"
@@ -59,30 +60,53 @@ struct Wanted {
   std::uint32_t fields = 0;
   std::uint32_t vertices = 0;
   bool chosen = false;
+  bool lit = false;
 
   [[nodiscard]] std::uint64_t work(const ImpulseResponseView& view, Fineness fineness) const {
     if (fields == 0) return 0;
     return chosen ? chosen_work(view, vertices, fields, fineness) : field_work(view, vertices, fields, fineness);
   }
+  [[nodiscard]] std::uint64_t work_of_colours(std::uint32_t transfer_modes) const {
+    if (!lit) return 0;
+    return chosen ? chosen_colour_work(vertices, transfer_modes) : colour_work(vertices, transfer_modes);
+  }
 };
+
+// how finely an answer is summed; without a pair of modes it cannot be given
+struct Answer {
+  Fineness fineness;
+  std::uint32_t transfer_modes = 0;
+
+  [[nodiscard]] std::uint64_t work(const ImpulseResponseView& view, const Wanted& wanted) const {
+    return wanted.work(view, fineness) + wanted.work_of_colours(transfer_modes);
+  }
+};
+
+Status check_colours(const MovingBody& body, const ImpulseResponse::Response& response) {
+  if (response.colour.empty()) return Status::ok;
+  if (response.light == nullptr || body.view.appearance.modes == 0) return Status::held_response_size;
+  return is_light(*response.light) ? Status::ok : Status::held_not_finite;
+}
 
 Status check_response(const MovingBody& body, const ImpulseResponse::Response& response, Wanted& wanted) {
   const std::size_t modes = body.view.modes, most = body.view.info->vertices;
   const auto fits = [](std::size_t size, std::size_t expected) { return size == 0 || size == expected; };
   const std::size_t moved = response.displacement.size(), rates = response.displacement_rate.size();
-  const std::size_t vertices = moved > 0 ? moved : rates;
+  const std::size_t colours = response.colour.size();
+  const std::size_t vertices = moved > 0 ? moved : rates > 0 ? rates : colours;
   if (!fits(response.coordinate.size(), modes) || !fits(response.velocity.size(), modes)) {
     return Status::held_response_size;
   }
-  if (!fits(rates, vertices) || vertices > most || !fits(response.chosen.size(), vertices)) {
+  if (!fits(rates, vertices) || !fits(colours, vertices) || vertices > most ||
+      !fits(response.chosen.size(), vertices)) {
     return Status::held_response_size;
   }
   for (const std::uint32_t vertex : response.chosen) {
     if (vertex >= most) return Status::held_out_of_range;
   }
   wanted = {(moved > 0 ? 1U : 0U) + (rates > 0 ? 1U : 0U), static_cast<std::uint32_t>(vertices),
-            !response.chosen.empty()};
-  return Status::ok;
+            !response.chosen.empty(), colours > 0};
+  return check_colours(body, response);
 }
 
 // all modes with all planes, or with one, or as many as fit; no pair: not even one does
@@ -95,6 +119,22 @@ Fineness choose_fineness(const MovingBody& body, const Wanted& wanted, std::uint
   if (least > work) return {};
   const std::uint64_t another = wanted.work(view, {2, 1}) - least;
   return {static_cast<std::uint32_t>(1 + (work - least) / another), 1};
+}
+
+// displacements as finely as colours by their mean alone leave room for, then colours by as many modes as fit
+Answer choose_answer(const MovingBody& body, const Wanted& wanted, std::uint64_t work) {
+  const std::uint64_t mean = wanted.work_of_colours(0);
+  if (mean > work) return {};
+  Answer answer = {choose_fineness(body, wanted, work - mean), 0};
+  if (!wanted.lit || answer.fineness.pairs == 0) return answer;
+  const std::uint64_t left = work - mean - wanted.work(body.view, answer.fineness);
+  const std::uint64_t fit = left / (wanted.work_of_colours(1) - mean), all = body.view.appearance.modes;
+  answer.transfer_modes = static_cast<std::uint32_t>(fit < all ? fit : all);
+  return answer;
+}
+
+float transfer_error(const ImpulseResponseView& view, std::uint32_t modes) {
+  return modes == 0 ? 1 : view.appearance.amplitudes[modes - 1].truncation_error;
 }
 
 float truncation_error(const ImpulseResponseView& view, std::uint32_t modes) {
@@ -146,6 +186,17 @@ void sum_field(const MovingBody& body, const float* c, Fineness fineness, std::s
   }
 }
 
+void sum_colours_of(const MovingBody& body, std::uint32_t modes, const ImpulseResponse::Response& response) {
+  if (response.colour.empty()) return;
+  const LitState lit = lit_state(*response.light, body.player.transfer(), modes, body.lit);
+  if (response.chosen.empty()) {
+    sum_colours(body.view, lit, static_cast<std::uint32_t>(response.colour.size()), body.avx2, response.colour.data());
+    return;
+  }
+  for (std::size_t i = 0; i < response.chosen.size(); ++i)
+    response.colour[i] = colour_at(body.view, lit, response.chosen[i]);
+}
+
 Status check_impulse(const MovingBody& body, std::uint32_t impulse) {
   if (impulse == ImpulseResponse::no_impulse) return Status::ok;
   if (impulse >= body.view.info->impulses) return Status::held_out_of_range;
@@ -166,7 +217,9 @@ ImpulseResponse::Requirement ImpulseResponse::required(const Model& model, const
   const Fineness all = {view.modes / 2, view.info->planes};
   requirement.least_frame_work = requirement.least_work + field_work(view, view.info->vertices, 1, {1, 1});
   requirement.frame_work = requirement.least_work + field_work(view, view.info->vertices, 1, all);
-  requirement.worst_work = requirement.least_work + field_work(view, view.info->vertices, 2, all);
+  if (view.appearance.modes > 0) requirement.colour_work = colour_work(view.info->vertices, view.appearance.modes);
+  requirement.worst_work =
+      requirement.least_work + field_work(view, view.info->vertices, 2, all) + requirement.colour_work;
   return requirement;
 }
 
@@ -212,7 +265,8 @@ ImpulseResponse::StepReport ImpulseResponse::step(std::uint32_t impulse, Budget 
   if (report.status == Status::ok) report.status = check_response(body, response, wanted);
   const std::uint64_t most = budget.work < body.worst_work ? budget.work : body.worst_work;
   const std::uint64_t left = most > body.least_work ? most - body.least_work : 0;
-  const Fineness fineness = choose_fineness(body, wanted, left);
+  const Answer answer = choose_answer(body, wanted, left);
+  const Fineness fineness = answer.fineness;
   if (report.status == Status::ok && (budget.work < body.least_work || fineness.pairs == 0)) {
     report.status = Status::held_over_budget;
   }
@@ -229,10 +283,12 @@ ImpulseResponse::StepReport ImpulseResponse::step(std::uint32_t impulse, Budget 
   copy_amplitudes(body.view, body.player.velocity(), response.velocity);
   sum_field(body, body.player.position(), fineness, response.chosen, response.displacement);
   sum_field(body, body.player.velocity(), fineness, response.chosen, response.displacement_rate);
+  sum_colours_of(body, answer.transfer_modes, response);
 
-  report.status =
-      fineness.pairs < body.view.modes / 2 || fineness.planes < body.view.info->planes ? Status::coarser : Status::ok;
-  report.work = state_work(body.view, impulse != no_impulse ? 1 : 0, passed.count) + wanted.work(body.view, fineness);
+  const bool coarser = fineness.pairs < body.view.modes / 2 || fineness.planes < body.view.info->planes ||
+                       (wanted.lit && answer.transfer_modes < body.view.appearance.modes);
+  report.status = coarser ? Status::coarser : Status::ok;
+  report.work = state_work(body.view, impulse != no_impulse ? 1 : 0, passed.count) + answer.work(body.view, wanted);
   report.orbit = body.player.place().orbit;
   report.row = body.player.place().row;
   report.impulse = body.player.orbit().impulse;
@@ -240,6 +296,10 @@ ImpulseResponse::StepReport ImpulseResponse::step(std::uint32_t impulse, Budget 
     report.modes = 2 * fineness.pairs;
     report.planes = fineness.planes;
     report.truncation_error = truncation_error(body.view, report.modes);
+  }
+  if (wanted.lit) {
+    report.transfer_modes = answer.transfer_modes;
+    report.transfer_error = transfer_error(body.view, answer.transfer_modes);
   }
   report.blend = body.player.blend();
   report.at_rest = body.player.at_rest();

@@ -12,6 +12,7 @@ namespace {
 
 static_assert(sizeof(ImpulseResponse) == sizeof(void*) && std::is_trivially_copyable_v<ImpulseResponse>);
 static_assert(ImpulseResponse::no_impulse == GREENLOOP_NO_IMPULSE);
+static_assert(Light::coefficients == GREENLOOP_LIGHT_COEFFICIENTS && sizeof(Light) == sizeof(greenloop_light));
 
 ImpulseResponse moving_in(const greenloop_impulse_response* body) {
   return std::bit_cast<ImpulseResponse>(reinterpret_cast<const MovingBody*>(body));
@@ -37,6 +38,18 @@ const layout::ImpulseInfo* info_of(const greenloop_model* model) {
 
 using namespace greenloop;
 
+void greenloop_light_harmonics(const float direction[3], float* harmonics) {
+  float value[Light::coefficients];
+  light_harmonics({direction[0], direction[1], direction[2]}, value);
+  for (std::size_t i = 0; i < Light::coefficients; ++i) harmonics[i] = value[i];
+}
+
+greenloop_light greenloop_light_rotated(const greenloop_light* light, const float rotation[9]) {
+  float matrix[9];
+  for (std::size_t i = 0; i < 9; ++i) matrix[i] = rotation[i];
+  return std::bit_cast<greenloop_light>(rotated(std::bit_cast<Light>(*light), matrix));
+}
+
 uint32_t greenloop_impulse_response_modes(const greenloop_model* model) {
   return model_in(model).view().impulse_response.modes;
 }
@@ -54,7 +67,7 @@ uint32_t greenloop_impulse_response_impulses(const greenloop_model* model) {
 greenloop_impulse_response_requirement greenloop_impulse_response_required(const greenloop_model* model,
                                                                            greenloop_impulse_response_limits limits) {
   const ImpulseResponse::Requirement need = ImpulseResponse::required(model_in(model), moving_limits_of(limits));
-  return {need.bytes, need.least_work, need.least_frame_work, need.frame_work, need.worst_work};
+  return {need.bytes, need.least_work, need.least_frame_work, need.frame_work, need.colour_work, need.worst_work};
 }
 
 greenloop_impulse_response_created greenloop_impulse_response_create(const greenloop_model* model,
@@ -77,7 +90,9 @@ greenloop_impulse_response_report greenloop_impulse_response_step(greenloop_impu
                                               floats(buffers.velocity, buffers.modes),
                                               vectors(buffers.displacement, buffers.vertices),
                                               vectors(buffers.displacement_rate, buffers.vertices),
-                                              {buffers.chosen, buffers.chosen == nullptr ? 0 : buffers.vertices}};
+                                              {buffers.chosen, buffers.chosen == nullptr ? 0 : buffers.vertices},
+                                              vectors(buffers.colour, buffers.vertices),
+                                              reinterpret_cast<const Light*>(buffers.light)};
   const ImpulseResponse::StepReport report = moving_in(body).step(impulse, {work}, response);
   return {static_cast<greenloop_status>(report.status),
           report.work,
@@ -89,5 +104,7 @@ greenloop_impulse_response_report greenloop_impulse_response_step(greenloop_impu
           report.truncation_error,
           report.distance,
           report.blend,
-          report.at_rest ? 1 : 0};
+          report.at_rest ? 1 : 0,
+          report.transfer_modes,
+          report.transfer_error};
 }

@@ -16,6 +16,13 @@
 //   Amplitudes(q)   ModeRecord [modes of the level]
 //   Coordinates(q)  i16 [rows][modes of the level]
 //
+// and behind the last level, in files that have all of them, if Info.transfer_modes > 0:
+//
+//   TransferQuanta      f32 [blocks][2]
+//   Transfers           i8 [blocks][3 colours][8 (2 + transfer modes)][16 vertices][2]
+//   TransferAmplitudes  ModeRecord [transfer modes]
+//   TransferCoordinates i16 [rows][transfer modes]
+//
 // A *row* holds the coordinates of one state. An orbit's rows follow one another; the first is the state before its
 // start, so that the velocity of every other row is a backward difference. Orbit 0 is the scene at rest.
 //
@@ -24,6 +31,11 @@
 // where value = 256 hi + lo with the modes' two planes of 8 bits, or hi where the file has one, and c_m is the
 // coordinate in units of its mode's amplitude: of a row's i16 x it is x / 32767, and c times the amplitude the
 // coordinate in the orthonormal basis, in m.
+//
+// Radiance transfer: 16 coefficients i of a vertex and a colour, times those of light their sum is the exit radiance.
+//   T_i = quantum(block, 0) mean_i + quantum(block, 1) * sum over transfer modes m of value_im a_m
+// where mean_i = 256 hi + lo with two planes of 8 bits, which come before the modes, and a_m, as c_m, of a row's i16.
+// Pairs of values go by i, then by planes and modes.
 
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +49,15 @@ inline constexpr std::uint32_t block_values = 3 * block_vertices;
 inline constexpr std::uint32_t most_impulses = 64;
 inline constexpr std::uint32_t most_modes = 256;
 inline constexpr std::uint32_t most_planes = 2;
+inline constexpr std::uint32_t most_transfer_modes = 30;  ///< so that sums of all fit 32 bits
+inline constexpr std::uint32_t light_coefficients = 16;   ///< of a colour
+inline constexpr std::uint32_t transfer_mode_pairs = light_coefficients / 2;
+inline constexpr std::uint32_t colours = 3;
+
+/// Bytes of Transfers of a block of vertices and a colour.
+constexpr std::uint64_t transfer_bytes(std::uint32_t transfer_modes) {
+  return std::uint64_t{transfer_mode_pairs} * (2 + transfer_modes) * 2 * block_vertices;
+}
 
 /// The largest value of a mode by the planes of the file, and of a coordinate.
 constexpr std::int32_t most_value(std::uint32_t planes) { return planes == 1 ? 127 : 256 * 127 + 127; }
@@ -51,19 +72,23 @@ struct ImpulseInfo {
   std::uint32_t triangles;
   std::uint32_t impulses;  ///< D, 1..most_impulses
   std::uint32_t orbits;
-  std::uint32_t rows;        ///< of all orbits
-  std::uint32_t planes;      ///< of Modes, 1 or 2
-  double time_step;          ///< s, between two rows of an orbit
-  float rate;                ///< Hz, of the loop the scene asked for
-  float blend_rate;          ///< 1/s, lambda: what an orbit differs from the state it began in dies out so fast
-  float velocity_balance;    ///< s, rho: a difference of velocities counts so much in the distance of two states
-  float quantisation_error;  ///< of displacements of all rows with all modes, beside that of the modes left out
-  float box_min[3];          ///< m, of all states
-  float box_max[3];          ///< m
-  float displacement;        ///< m, root mean square over rows and vertices: what relative errors are relative to
-  std::uint32_t reserved_word;
-  std::uint64_t source_rows;  ///< states that the model stands for
-  std::uint8_t reserved[152];
+  std::uint32_t rows;            ///< of all orbits
+  std::uint32_t planes;          ///< of Modes, 1 or 2
+  double time_step;              ///< s, between two rows of an orbit
+  float rate;                    ///< Hz, of the loop the scene asked for
+  float blend_rate;              ///< 1/s, lambda: what an orbit differs from the state it began in dies out so fast
+  float velocity_balance;        ///< s, rho: a difference of velocities counts so much in the distance of two states
+  float quantisation_error;      ///< of displacements of all rows with all modes, beside that of the modes left out
+  float box_min[3];              ///< m, of all states
+  float box_max[3];              ///< m
+  float displacement;            ///< m, root mean square over rows and vertices: what relative errors are relative to
+  std::uint32_t transfer_modes;  ///< since 4.8; 0: no appearance
+  std::uint64_t source_rows;     ///< states that the model stands for
+  // since 4.8, of radiance transfer, 0 without; errors are relative to what it differs from its mean, root mean square
+  std::uint32_t transfer_states;      ///< that light was computed for
+  float transfer_error;               ///< of other states, as far as measured, by all modes
+  float transfer_quantisation_error;  ///< beside that
+  std::uint8_t reserved[140];
 };
 static_assert(sizeof(ImpulseInfo) == 256 && offsetof(ImpulseInfo, problem) == offsetof(InfoStart, problem));
 

@@ -22,4 +22,12 @@ bool visit_impulse_response_level(const ImpulseInfo& info, std::uint32_t q, Visi
   return visit(SectionKind::amplitudes, q, 0) && visit(SectionKind::coordinates, q, 0);
 }
 
+/// The same for the sections behind the last level of a model that is complete. Work: 4 calls.
+template <class Visit>
+bool visit_appearance(const ImpulseInfo& info, Visit visit) {
+  return info.transfer_modes == 0 ||
+         (visit(SectionKind::transfer_quanta, 0, 0) && visit(SectionKind::transfers, 0, 0) &&
+          visit(SectionKind::transfer_amplitudes, 0, 0) && visit(SectionKind::transfer_coordinates, 0, 0));
+}
+
 }  // namespace greenloop::layout

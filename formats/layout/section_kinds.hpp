@@ -44,17 +44,21 @@
   ROW(base_columns, 17, "BaseColumns", 0, std::byte, bytes) \
   ROW(mirrored_couplings, 18, "MirroredCouplings", 1, std::byte, bytes)
 
-#define GREENLOOP_IMPULSE_RESPONSE_SECTIONS(ROW)               \
-  ROW(shape, 21, "Shape", 0, float[3], words)                  \
-  ROW(triangles, 22, "Triangles", 0, std::uint32_t[3], words)  \
-  ROW(quanta, 23, "Quanta", 0, float, words)                   \
-  ROW(impulses, 24, "Impulses", 0, ImpulseRecord, bytes)       \
-  ROW(successions, 25, "Successions", 0, std::uint8_t, bytes)  \
-  ROW(orbits, 26, "Orbits", 0, OrbitRecord, words)             \
-  ROW(references, 27, "References", 0, ReferenceRecord, words) \
-  ROW(modes, 28, "Modes", 2, std::int8_t, bytes)               \
-  ROW(amplitudes, 29, "Amplitudes", 1, ModeRecord, words)      \
-  ROW(coordinates, 30, "Coordinates", 1, std::int16_t, bytes)
+#define GREENLOOP_IMPULSE_RESPONSE_SECTIONS(ROW)                           \
+  ROW(shape, 21, "Shape", 0, float[3], words)                              \
+  ROW(triangles, 22, "Triangles", 0, std::uint32_t[3], words)              \
+  ROW(quanta, 23, "Quanta", 0, float, words)                               \
+  ROW(impulses, 24, "Impulses", 0, ImpulseRecord, bytes)                   \
+  ROW(successions, 25, "Successions", 0, std::uint8_t, bytes)              \
+  ROW(orbits, 26, "Orbits", 0, OrbitRecord, words)                         \
+  ROW(references, 27, "References", 0, ReferenceRecord, words)             \
+  ROW(modes, 28, "Modes", 2, std::int8_t, bytes)                           \
+  ROW(amplitudes, 29, "Amplitudes", 1, ModeRecord, words)                  \
+  ROW(coordinates, 30, "Coordinates", 1, std::int16_t, bytes)              \
+  ROW(transfer_quanta, 31, "TransferQuanta", 0, float[2], words)           \
+  ROW(transfers, 32, "Transfers", 0, std::int8_t, bytes)                   \
+  ROW(transfer_amplitudes, 33, "TransferAmplitudes", 0, ModeRecord, words) \
+  ROW(transfer_coordinates, 34, "TransferCoordinates", 0, std::int16_t, bytes)
 
 #define GREENLOOP_SECTION_KINDS(ROW)   \
   GREENLOOP_COMMON_SECTIONS(ROW)       \
@@ -110,11 +114,12 @@ constexpr bool is_ready_kind(SectionKind kind) {
 
 /// Whether the kind is one of impulse response models. Work: constant.
 constexpr bool is_impulse_response_kind(SectionKind kind) {
-  return kind >= SectionKind::shape && kind <= SectionKind::coordinates;
+  return kind >= SectionKind::shape && kind <= SectionKind::transfer_coordinates;
 }
 
 /// The minor version that brought the kind; those before 4.1 are not told apart.
 constexpr std::uint16_t first_minor(SectionKind kind) {
+  if (kind >= SectionKind::transfer_quanta && kind <= SectionKind::transfer_coordinates) return 8;
   if (is_impulse_response_kind(kind)) return first_minor(Problem::impulse_response);
   if (kind == SectionKind::loads || kind == SectionKind::load_columns) return 6;
   return is_ready_kind(kind) ? 4 : kind == SectionKind::vertex_map ? 2 : 0;

@@ -126,6 +126,35 @@ void add_strip(const SyntheticMotion& options, ImpulseResponseData& model) {
   }
 }
 
+// mostly the even light's coefficient, and modes that follow those of displacement
+AppearanceData appearance_of(const SyntheticMotion& options, const Motion& motion,
+                             const std::vector<double>& amplitude) {
+  AppearanceData appearance;
+  appearance.states = motion.rows();
+  appearance.error = 0.2F;
+  const std::uint32_t blocks = (options.vertices + layout::block_vertices - 1) / layout::block_vertices;
+  for (std::uint32_t block = 0; block < blocks; ++block) {
+    appearance.quanta.insert(appearance.quanta.end(), {0.2F / 127 / 256, 0.02F / 127});
+    for (std::uint32_t i = 0; i < layout::colours * layout::transfer_bytes(options.transfer_modes); ++i) {
+      const auto of_colour = static_cast<std::uint32_t>(layout::transfer_bytes(options.transfer_modes));
+      const std::uint32_t mode = i % of_colour / (layout::light_coefficients * layout::block_vertices);
+      const double along = block + i % 32 / 2 / 16.0;
+      const double value = wave(mode, i % 7, along / blocks) * (mode == 0 && i % 16 != 0 ? 0.2 : 1.0);
+      appearance.transfers.push_back(static_cast<std::int8_t>(std::lround(127 * value)));
+    }
+  }
+  for (std::uint32_t m = 0; m < options.transfer_modes; ++m) {
+    appearance.amplitudes.push_back({1.0F / static_cast<float>(m + 1), 0.5F / static_cast<float>(m + 1)});
+  }
+  for (std::uint32_t row = 0; row < motion.rows(); ++row) {
+    for (std::uint32_t m = 0; m < options.transfer_modes; ++m) {
+      const double at = motion.at(row, m % options.modes) / amplitude[m % options.modes];
+      appearance.coordinates.push_back(static_cast<std::int16_t>(std::lround(at * layout::most_coordinate)));
+    }
+  }
+  return appearance;
+}
+
 }  // namespace
 
 ImpulseResponseData synthetic_motion(const SyntheticMotion& options) {
@@ -164,6 +193,7 @@ ImpulseResponseData synthetic_motion(const SyntheticMotion& options) {
       amplitude[m] = std::max(amplitude[m], std::abs(motion.at(row, m)));
     }
   }
+  if (options.transfer_modes > 0) model.appearance = appearance_of(options, motion, amplitude);
   const std::int32_t most = layout::most_value(options.planes);
   constexpr double scale = 0.01;  // m
   const double quantum = scale / most;

@@ -16,6 +16,15 @@ struct ModeGroupView {
   const std::int16_t* coordinates = nullptr;           ///< [rows][modes]
 };
 
+/// Radiance transfer of all vertices and rows, in place.
+struct AppearanceView {
+  std::uint32_t modes = 0;                         ///< 0: the file has none
+  const float* quanta = nullptr;                   ///< [blocks][2]
+  const std::int8_t* transfers = nullptr;          ///< [blocks][3][8 (2 + modes)][16][2]
+  const layout::ModeRecord* amplitudes = nullptr;  ///< [modes]
+  const std::int16_t* coordinates = nullptr;       ///< [rows][modes]
+};
+
 /// An impulse response model, in place.
 struct ImpulseResponseView {
   const layout::ImpulseInfo* info = nullptr;
@@ -29,6 +38,7 @@ struct ImpulseResponseView {
   std::span<const layout::OrbitRecord> orbits;
   const layout::ReferenceRecord* references = nullptr;  ///< [rows][impulses]
   ModeGroupView group[layout::max_levels];
+  AppearanceView appearance;
 
   /// Blocks of 16 vertices.
   [[nodiscard]] std::uint32_t blocks() const noexcept {

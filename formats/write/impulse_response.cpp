@@ -55,6 +55,10 @@ class SectionList {
         return true;
       });
     }
+    layout::visit_appearance(info_, [&](SectionKind kind, std::uint32_t a, std::uint32_t b) {
+      add(kind, a, b, section_bytes(kind, a, b));
+      return true;
+    });
   }
 
   [[nodiscard]] std::vector<SectionBytes> take() && { return std::move(sections_); }
@@ -79,8 +83,23 @@ class SectionList {
     require_size("shape", model_.shape.size(), std::size_t{3} * info.vertices);
     require_size("triangles", model_.triangles.size(), std::size_t{3} * info.triangles);
     require_size("successions", model_.successions.size(), std::size_t{info.impulses + 1} * info.impulses);
+    complete_appearance(info);
     require_size("references", model_.references.size(), std::size_t{info.rows} * info.impulses);
     return info;
+  }
+
+  void complete_appearance(layout::ImpulseInfo& info) const {
+    const AppearanceData& appearance = model_.appearance;
+    const std::size_t blocks = (info.vertices + layout::block_vertices - 1) / layout::block_vertices;
+    info.transfer_modes = count(appearance.amplitudes.size());
+    info.transfer_states = appearance.states;
+    info.transfer_error = appearance.error;
+    info.transfer_quantisation_error = appearance.quantisation_error;
+    const std::size_t any = info.transfer_modes > 0 ? 1 : 0;
+    require_size("appearance.quanta", appearance.quanta.size(), any * 2 * blocks);
+    require_size("appearance.transfers", appearance.transfers.size(),
+                 any * layout::colours * blocks * layout::transfer_bytes(info.transfer_modes));
+    require_size("appearance.coordinates", appearance.coordinates.size(), std::size_t{info.rows} * info.transfer_modes);
   }
 
   void check_group(std::uint32_t q) const {
@@ -142,6 +161,14 @@ class SectionList {
         return bytes_of(model_.groups[a].amplitudes);
       case SectionKind::coordinates:
         return bytes_of(model_.groups[a].coordinates);
+      case SectionKind::transfer_quanta:
+        return bytes_of(model_.appearance.quanta);
+      case SectionKind::transfers:
+        return bytes_of(model_.appearance.transfers);
+      case SectionKind::transfer_amplitudes:
+        return bytes_of(model_.appearance.amplitudes);
+      case SectionKind::transfer_coordinates:
+        return bytes_of(model_.appearance.coordinates);
       default:
         return {};  // no other kind is in the order
     }

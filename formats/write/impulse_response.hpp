@@ -18,6 +18,17 @@ struct ModeGroupData {
   std::vector<std::int16_t> coordinates;       ///< [rows][modes], -32767..32767
 };
 
+/// Radiance transfer of an impulse response model before encoding, in the order of layout/impulse_response.hpp.
+struct AppearanceData {
+  std::uint32_t states = 0;                    ///< that light was computed for
+  float error = 0;                             ///< of other states, relative to the variation
+  float quantisation_error = 0;                ///< likewise, of all rows
+  std::vector<float> quanta;                   ///< [blocks][2]
+  std::vector<std::int8_t> transfers;          ///< [blocks][3][8 (2 + modes)][16][2]
+  std::vector<layout::ModeRecord> amplitudes;  ///< [modes]; none: the model has no appearance
+  std::vector<std::int16_t> coordinates;       ///< [rows][modes], -32767..32767
+};
+
 /// A whole impulse response model before encoding. Offline only.
 struct ImpulseResponseData {
   layout::ImpulseInfo info{};  ///< counts are filled in
@@ -30,6 +41,7 @@ struct ImpulseResponseData {
   std::vector<layout::OrbitRecord> orbits;
   std::vector<layout::ReferenceRecord> references;  ///< [rows][impulses]
   std::vector<ModeGroupData> groups;                ///< coarse to fine: the levels of the file
+  AppearanceData appearance;
 };
 
 /// The file of such a model: deterministic, complete, checksummed, verified. ImpulseInfo::planes says whether values

@@ -70,6 +70,18 @@ Json rank_curve(const ImpulseResponseView& view) {
   return errors;
 }
 
+/// Of its radiance transfer, relative to the variation; null if it has none.
+Json appearance_of(const ImpulseResponseView& view) {
+  if (view.appearance.modes == 0) return nullptr;
+  Json errors = Json::array();
+  for (std::uint32_t m = 0; m < view.appearance.modes; ++m)
+    errors.push_back(view.appearance.amplitudes[m].truncation_error);
+  return {{"states", view.info->transfer_states},
+          {"error", view.info->transfer_error},
+          {"quantisation_error", view.info->transfer_quantisation_error},
+          {"rank_curve", errors}};
+}
+
 std::uint64_t resting_orbits(const ImpulseResponseView& view) {
   return static_cast<std::uint64_t>(std::count_if(view.orbits.begin(), view.orbits.end(),
                                                   [](const auto& orbit) { return orbit.next_orbit == layout::none; }));
@@ -90,7 +102,7 @@ Json motion_inspection(const ModelFile& model, const Json& provenance) {
           {"problem", problem_name(model.view.problem)},
           {"rank", view.modes},
           {"complete_rank", info.modes},
-          {"rank_appearance", 0},
+          {"rank_appearance", view.appearance.modes},
           {"levels", view.levels},
           {"states", info.rows},
           {"source_states", info.source_rows},
@@ -114,6 +126,7 @@ Json motion_inspection(const ModelFile& model, const Json& provenance) {
           {"replay_error", recorded(provenance, "replay_error")},
           {"mode_levels", levels_of(view)},
           {"rank_curve", rank_curve(view)},
+          {"appearance", appearance_of(view)},
           {"box", {{"min", info.box_min}, {"max", info.box_max}}},
           {"provenance", provenance}};
 }
@@ -140,6 +153,11 @@ void print_motion_table(const std::filesystem::path& file, const Json& found, st
                           ? fmt::format("{} median, {} in 95 of 100, of {} held-out orbits", percent(replay["median"]),
                                         percent(replay["p95"]), replay["orbits"].dump())
                           : "not measured: no orbit was held out");
+  if (const Json& light = found["appearance"]; light.is_object()) {
+    row("appearance", fmt::format("{} modes of {} states, {} of the variation in others, quantisation {}",
+                                  found["rank_appearance"].dump(), light["states"].dump(), percent(light["error"]),
+                                  percent(light["quantisation_error"])));
+  }
   row("loop", fmt::format("{} Hz; differences die out at {} 1/s", found["rate"].dump(), found["blend_rate"].dump()));
   fmt::print(out, "\n  {:<32}{:>8}{:>18}{:>18}\n", "impulse", "orbits", "median distance", "worst distance");
   for (const Json& impulse : found["impulses"]) {

@@ -9,6 +9,7 @@
 #include "formats/output/output_file.hpp"
 #include "formats/output/output_paths.hpp"
 #include "formats/write/nested_json.hpp"
+#include "offline/pipeline/motion_appearance.hpp"
 #include "offline/reduce/impulse_model.hpp"
 #include "offline/reduce/replay.hpp"
 #include "runtime/greenloop.h"
@@ -102,6 +103,7 @@ json build_motion_model(const std::filesystem::path& scene_file, const MotionSce
               {"scene_text", canonical_text(scene)},
               {"reduction", reduction_record(model)},
               {"replay_error", replay_record(model.replay_errors)}};
+  if (scene.appearance) record["appearance"] = add_appearance(*scene.appearance, model.data, progress);
   record["tool"] =
       fmt::format("greenloop {}.{}.{}", GREENLOOP_VERSION_MAJOR, GREENLOOP_VERSION_MINOR, GREENLOOP_VERSION_PATCH);
   model.data.provenance = json_text(record, -1);

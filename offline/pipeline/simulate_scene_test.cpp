@@ -50,6 +50,9 @@ velocity = "0.2 m/s"
 direction = [0, 1, 0]
 [trajectories]
 file = "animal.h5"
+[appearance]
+rays = 36
+states = 8
 )";
 
 TEST_CASE(
@@ -95,6 +98,9 @@ TEST_CASE(
   CHECK(model["truncation_error"] < 0.03);
   CHECK(model["replay_error"]["orbits"] == 1);
   CHECK(model["replay_error"]["median"] < 0.5);
+  REQUIRE(model["appearance"]["sampling"].size() == 1);
+  CHECK(model["appearance"]["sampling"][0]["error_of_transfer"] < 0.05);
+  CHECK(model["appearance"]["singular_values"].size() == 8);
   const SimulateRequest other{
       folder.write("other.toml", std::string(scene_text).replace(scene_text.find("25 kPa"), 6, "26 kPa")), {}, false};
   CHECK_THROWS_WITH(simulate_scene(other, progress), doctest::Contains("trajectories of another scene"));

@@ -263,6 +263,22 @@ Picture deformed_picture(const VisibleSurface& surface, const std::vector<Vector
   return {average_samples(camera.width, camera.height, sample), camera};
 }
 
+Picture coloured_picture(const VisibleSurface& surface, const std::vector<Vector3d>& displacement,
+                         const std::vector<Vector3f>& colour, const ViewFrame& frame, int longest) {
+  std::vector<Vector3d> positions = surface.positions;
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] += displacement[i];
+  const Camera camera = fit_camera(frame, positions, longest, margin);
+  const Projection body = project(camera, positions, surface.triangles);
+  const auto sample = [&](int x, int y) -> Sample {
+    if (body.buffer.triangle(x, y) == DepthBuffer::nothing) return {};
+    const SurfacePoint point = surface_point(body, surface.triangles, x, y);
+    Colour seen = Colour::Zero();
+    for (int k = 0; k < 3; ++k) seen += point.weight[k] * colour[static_cast<std::size_t>(point.vertices[k])];
+    return {seen, 1};
+  };
+  return {average_samples(camera.width, camera.height, sample), camera};
+}
+
 Picture wire_picture(const VisibleSurface& surface, const std::vector<char>& touchable,
                      const std::vector<Vector3d>& framed_points, const ViewFrame& frame, int longest) {
   const Camera camera = fit_camera(frame, framed_points, longest, margin);

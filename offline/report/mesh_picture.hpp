@@ -25,6 +25,11 @@ struct Picture {
 [[nodiscard]] Picture deformed_picture(const VisibleSurface& surface, const std::vector<Eigen::Vector3d>& magnified,
                                        const std::vector<float>& value, const ViewFrame& frame, int longest);
 
+/// The body displaced (m; one per vertex) in colours of its vertices (sRGB, 0..1), smooth between them and not shaded,
+/// transparent around. `longest` side in pixels. Work: the picture's area.
+[[nodiscard]] Picture coloured_picture(const VisibleSurface& surface, const std::vector<Eigen::Vector3d>& displacement,
+                                       const std::vector<Eigen::Vector3f>& colour, const ViewFrame& frame, int longest);
+
 /// The surface with its edges, tinted where `touchable` (per vertex) and dotted where fixed, transparent around; framed
 /// so that all of `framed_points` fits, so that several levels share one scale.
 [[nodiscard]] Picture wire_picture(const VisibleSurface& surface, const std::vector<char>& touchable,

@@ -12,6 +12,7 @@
 #include "offline/report/axis.hpp"
 #include "offline/report/body_figures.hpp"
 #include "offline/report/csv_table.hpp"
+#include "offline/report/evening_light.hpp"
 #include "offline/report/mesh_picture.hpp"
 #include "offline/report/model_facts.hpp"
 #include "offline/report/model_figures.hpp"
@@ -43,45 +44,71 @@ VisibleSurface surface_of(const ImpulseResponseView& view) {
 
 /// What an impulse does from rest, when most is displaced.
 struct Swing {
-  std::string impulse;
-  double time = 0;  ///< s, behind the impulse
+  std::uint32_t impulse = 0;
+  int steps = 0;  ///< from the impulse on
   std::vector<Vector3d> displacement;
+};
+
+/// A body at rest, in memory of its own.
+struct RestingBody {
+  explicit RestingBody(const Model& model) : need(ImpulseResponse::required(model, {})), memory(need.bytes) {
+    const auto created = ImpulseResponse::create(model, {}, {memory.data(), memory.size()});
+    if (!created) throw std::runtime_error("no body of motions for this model");
+    body = created.body;
+  }
+
+  ImpulseResponse::Requirement need;
+  AlignedBytes memory;
+  ImpulseResponse body;
 };
 
 Swing swing_of(const Model& model, std::uint32_t impulse) {
   constexpr double shown_seconds = 2;
   const ImpulseResponseView& view = model.view().impulse_response;
   const auto rate = static_cast<double>(view.info->rate);
-  const ImpulseResponse::Requirement need = ImpulseResponse::required(model, {});
-  AlignedBytes memory(need.bytes);
-  auto created = ImpulseResponse::create(model, {}, {memory.data(), memory.size()});
-  if (!created) throw std::runtime_error("no body of motions for this model");
+  RestingBody resting(model);
   std::vector<Vec3> moved(view.info->vertices), most_moved(moved.size());
-  Swing swing{.impulse = view.impulses[impulse].name, .displacement = {}};
+  Swing swing{.impulse = impulse, .displacement = {}};
   double most = -1;
   for (int i = 0; i < std::max(1, static_cast<int>(shown_seconds * rate)); ++i) {
     const std::uint32_t now = i == 0 ? impulse : ImpulseResponse::no_impulse;
-    if (!answered(created.body.step(now, {need.worst_work}, {{}, {}, moved, {}, {}}).status)) return swing;
+    if (!answered(resting.body.step(now, {resting.need.worst_work}, {{}, {}, moved, {}, {}}).status)) return swing;
     double sum = 0;
     for (const Vec3& u : moved) sum += static_cast<double>(u.x * u.x + u.y * u.y + u.z * u.z);
     if (sum <= most) continue;
     most = sum;
     most_moved = moved;
-    swing.time = (i + 1) / rate;
+    swing.steps = i + 1;
   }
   for (const Vec3& u : most_moved) swing.displacement.emplace_back(u.x, u.y, u.z);
   return swing;
 }
 
-SvgCanvas swing_panel(const VisibleSurface& surface, const Swing& swing, const ViewFrame& frame, double largest) {
-  constexpr double height = 330, key = 1.6 * panel_text;
-  std::vector<float> value;
-  for (const Vector3d& u : swing.displacement) {
-    value.push_back(largest > 0 ? static_cast<float>(u.norm() / largest) : 0.0F);
+/// The radiance of all vertices when a swing is at its largest.
+std::vector<Vec3> radiance_of(const Model& model, const Swing& swing, const Light& light) {
+  RestingBody resting(model);
+  std::vector<Vec3> colour(model.view().impulse_response.info->vertices);
+  for (int i = 0; i < swing.steps; ++i) {
+    const std::uint32_t now = i == 0 ? swing.impulse : ImpulseResponse::no_impulse;
+    static_cast<void>(resting.body.step(now, {resting.need.worst_work}, {.colour = colour, .light = &light}));
   }
-  const std::string text = fmt::format("{}, {}\u202fs later", swing.impulse, readable(swing.time, 3));
-  SvgCanvas canvas(panel_width, height + 1.5 * key, "After " + swing.impulse, text, panel_text);
-  const Picture picture = deformed_picture(surface, swing.displacement, value, frame, 800);
+  return colour;
+}
+
+/// What pictures of swings have in common.
+struct ShownSwings {
+  VisibleSurface surface;
+  std::vector<Swing> swings;  ///< of each impulse that may follow rest, four at most
+  ViewFrame frame;
+  double largest = 0;  ///< m
+};
+
+SvgCanvas picture_panel(const ImpulseResponseView& view, const Swing& swing, const Picture& picture) {
+  constexpr double height = 330, key = 1.6 * panel_text;
+  const std::string impulse = view.impulses[swing.impulse].name;
+  const double seconds = swing.steps / static_cast<double>(view.info->rate);
+  const std::string text = fmt::format("{}, {}\u202fs later", impulse, readable(seconds, 3));
+  SvgCanvas canvas(panel_width, height + 1.5 * key, "After " + impulse, text, panel_text);
   const double shrink = std::min((panel_width - 40) / picture.image.width, (height - 20) / picture.image.height);
   const double width = shrink * picture.image.width, tall = shrink * picture.image.height;
   canvas.image({(panel_width - width) / 2, (height - tall) / 2, width, tall}, png_data_uri(picture.image));
@@ -89,31 +116,58 @@ SvgCanvas swing_panel(const VisibleSurface& surface, const Swing& swing, const V
   return canvas;
 }
 
-/// A picture for each impulse that may follow rest, four at most.
-Figure frames_figure(const Model& model) {
+ShownSwings shown_swings(const Model& model) {
   constexpr std::size_t most_frames = 4;
   const ImpulseResponseView& view = model.view().impulse_response;
-  const VisibleSurface surface = surface_of(view);
-  std::vector<Swing> swings;
-  double largest = 0;
-  for (std::uint32_t i = 0; i < view.info->impulses && swings.size() < most_frames; ++i) {
+  ShownSwings shown{surface_of(view), {}, {}, 0};
+  for (std::uint32_t i = 0; i < view.info->impulses && shown.swings.size() < most_frames; ++i) {
     Swing swing = swing_of(model, i);
     if (swing.displacement.empty()) continue;
-    for (const Vector3d& u : swing.displacement) largest = std::max(largest, u.norm());
-    swings.push_back(std::move(swing));
+    for (const Vector3d& u : swing.displacement) shown.largest = std::max(shown.largest, u.norm());
+    shown.swings.push_back(std::move(swing));
   }
-  const SiPrefix prefix = si_prefix(largest);
+  if (shown.swings.empty()) return shown;
+  // a little from the side: what moves towards the viewer is not seen to move
+  const ViewFrame facing = choose_view(shown.surface, shown.swings.front().displacement);
+  shown.frame = view_frame(facing.towards + 0.7 * facing.right + 0.5 * facing.up, facing.up);
+  return shown;
+}
+
+Figure frames_figure(const ImpulseResponseView& view, const ShownSwings& shown) {
+  const SiPrefix prefix = si_prefix(shown.largest);
   Figure figure{"frames",
                 "What the impulses do",
                 fmt::format("Each from rest, when most is displaced, at true scale and by all {} modes; the outline is "
                             "the scene at rest. Coloured by displacement, the largest {}\u202f{}m.",
-                            view.modes, readable(largest / prefix.factor, 3), prefix.symbol),
+                            view.modes, readable(shown.largest / prefix.factor, 3), prefix.symbol),
                 {}};
-  if (swings.empty()) return figure;
-  // a little from the side: what moves towards the viewer is not seen to move
-  const ViewFrame facing = choose_view(surface, swings.front().displacement);
-  const ViewFrame frame = view_frame(facing.towards + 0.7 * facing.right + 0.5 * facing.up, facing.up);
-  for (const Swing& swing : swings) figure.panels.push_back(swing_panel(surface, swing, frame, largest));
+  for (const Swing& swing : shown.swings) {
+    std::vector<float> value;
+    for (const Vector3d& u : swing.displacement)
+      value.push_back(shown.largest > 0 ? static_cast<float>(u.norm() / shown.largest) : 0.0F);
+    const Picture picture = deformed_picture(shown.surface, swing.displacement, value, shown.frame, 800);
+    figure.panels.push_back(picture_panel(view, swing, picture));
+  }
+  return figure;
+}
+
+/// The same in light, of a model with an appearance.
+Figure light_figure(const Model& model, const ShownSwings& shown) {
+  const ImpulseResponseView& view = model.view().impulse_response;
+  Figure figure{
+      "light",
+      "In the evening sun",
+      fmt::format("The colours that a step answers, by all {} modes of the light on {} states: a low sun from "
+                  "the upper left and the sky, with shadows and the colours that parts give one another.",
+                  view.appearance.modes, readable_count(view.info->transfer_states)),
+      {}};
+  if (view.appearance.modes == 0) return figure;
+  const Light light = evening_light(shown.frame);
+  for (const Swing& swing : shown.swings) {
+    const auto colours = displayed(radiance_of(model, swing, light));
+    const Picture picture = coloured_picture(shown.surface, swing.displacement, colours, shown.frame, 800);
+    figure.panels.push_back(picture_panel(view, swing, picture));
+  }
   return figure;
 }
 
@@ -209,7 +263,10 @@ std::vector<FactGroup> motion_facts(const ImpulseResponseView& view) {
            {{"modes (rank)", fmt::format("{} of {}, {} bits", view.modes, info.modes, 8 * info.planes)},
             {"states", readable_count(info.rows)},
             {"orbits", fmt::format("{}, {} of them come to rest", readable_count(info.orbits), rests)},
-            {"impulses", readable_count(info.impulses)}}},
+            {"impulses", readable_count(info.impulses)},
+            {"modes of light", view.appearance.modes == 0
+                                   ? "none"
+                                   : fmt::format("{} of {} states", view.appearance.modes, info.transfer_states)}}},
           {"Loop",
            {{"rate", readable(static_cast<double>(info.rate)) + "\u202fHz"},
             {"differences die out at", readable(static_cast<double>(info.blend_rate)) + "\u202f1/s"}}}};
@@ -279,6 +336,10 @@ Verdict motion_verdict(const ModelFile& file, const Model& model, const Json& pr
       {"modes", nothing, fmt::format("{}", view.modes)},
       {"truncation error, RMS over all states", nothing, percent(view.group[view.levels - 1].counts->truncation_error)},
       {"quantisation error, RMS", nothing, percent(view.info->quantisation_error)}};
+  if (view.appearance.modes > 0) {
+    verdict.rows.push_back({"light on states that it was not computed for, of what varies, RMS", nothing,
+                            percent(view.info->transfer_error)});
+  }
   const Json replay = provenance.is_object() ? provenance.value("replay_error", Json()) : Json();
   const bool replayed = replay.is_object() && replay.value("median", Json()).is_number();
   verdict.rows.push_back({"replay error against the simulator, median of held-out orbits", nothing,
@@ -336,10 +397,11 @@ Report make_motion_report(const ModelFile& file, const ReportInputs& inputs) {
                             readable_bytes(bytes), readable(frames / bytes, 3)));
   page.verdict(motion_verdict(file, model, provenance, trace));
   page.heading("The motions");
-  const Figure pictures = frames_figure(model);
-  if (!pictures.panels.empty()) {
+  const ShownSwings shown = shown_swings(model);
+  for (Figure pictures : {frames_figure(view, shown), light_figure(model, shown)}) {
+    if (pictures.panels.empty()) continue;
     page.figure(pictures);
-    report.figures.push_back(pictures);
+    report.figures.push_back(std::move(pictures));
   }
   if (trace) {
     page.heading("The run");

@@ -53,6 +53,19 @@ TEST_CASE("a model of motions has a page: verdict, pictures, error against modes
         report.html);
 }
 
+TEST_CASE("a model with an appearance is shown in light, one picture for each impulse") {
+  const ModelFile lit = encoded_file(synthetic_motion({.vertices = 120, .modes = 8, .groups = 2, .transfer_modes = 3}));
+  const ReportInputs inputs{.model = "strip.gloop", .trace = {}, .snapshot = {}, .build = {}};
+  const Report report = make_motion_report(lit, inputs);
+  REQUIRE(draws(report, "light"));
+  CHECK(report.figures[1].panels.size() == 3);
+  for (const char* part : {"In the evening sun", "by all 3 modes of the light", "light on states that it was not"}) {
+    CAPTURE(part);
+    CHECK(has(report, part));
+  }
+  CHECK_FALSE(draws(make_motion_report(motions(), inputs), "light"));
+}
+
 TEST_CASE("a run of impulses is drawn and judged") {
   const TemporaryFolder folder("motion_report");
   const auto with = [&](const std::string& text) {

@@ -1,12 +1,34 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "offline/scene/region.hpp"
 
 namespace greenloop::offline {
+
+/// Part of a surface with a reflectance of its own.
+struct PaintedPart {
+  BoxRegion box;  ///< of the scene's mean shape
+  Eigen::Vector3d reflectance;
+};
+
+/// How a scene looks in light from far around.
+struct AppearanceScene {
+  Eigen::Vector3d reflectance = Eigen::Vector3d::Constant(0.7);  ///< red, green, blue, 0..1
+  std::vector<PaintedPart> parts;                                ///< later ones over earlier ones
+  double error = 0.1;           ///< of states that light is not computed for, relative to the variation, 0..1
+  std::uint32_t rank = 12;      ///< modes at most
+  std::uint32_t states = 64;    ///< that light is computed for, at most
+  std::uint32_t rays = 256;     ///< from each vertex
+  std::uint32_t bounces = 256;  ///< of light, at most
+};
 
 /// What scene.toml asks for where it names trajectories: an impulse response model of them (docs/trajectories.md).
 struct MotionScene {
@@ -18,6 +40,7 @@ struct MotionScene {
   std::optional<double> blend_rate;    ///< 1/s; none: chosen by the lengths of orbits
   std::size_t memory = 512U << 20;     ///< bytes that reduction may take, 64 MB at least
   std::optional<double> rate;          ///< Hz, of the loop; none: a step for each frame
+  std::optional<AppearanceScene> appearance;
 };
 
 /// Reads and checks such a scene; none if it is a scene of another kind, without [trajectories]. No file that it names

@@ -40,7 +40,24 @@ TEST_CASE("motion scenes: defaults, every key, and the same scene from its canon
   CHECK(full->blend_rate == 12);
   CHECK(full->memory == std::size_t{64} << 20U);
   CHECK(full->rate == 1000);
-  for (const auto& scene : {plain, full}) {
+  CHECK(!full->appearance);
+  const auto lit = parse_motion_scene(
+      "[trajectories]\nfile = \"x.h5\"\n[appearance]\nreflectance = [0.8, 0.4, 1]\nerror = 0.2\nrank = 7\n"
+      "states = 30\nrays = 64\nbounces = 0\n[[appearance.parts]]\nbox = [[0, 0, 0], [1, 0.1, 1]]\n"
+      "reflectance = [0, 0.5, 0.1]\n",
+      "scene.toml");
+  REQUIRE(lit);
+  REQUIRE(lit->appearance);
+  CHECK(lit->appearance->reflectance == Eigen::Vector3d(0.8, 0.4, 1));
+  CHECK(lit->appearance->error == 0.2);
+  CHECK(lit->appearance->rank == 7);
+  CHECK(lit->appearance->states == 30);
+  CHECK(lit->appearance->rays == 64);
+  CHECK(lit->appearance->bounces == 0);
+  REQUIRE(lit->appearance->parts.size() == 1);
+  CHECK(lit->appearance->parts[0].box.high == Eigen::Vector3d(1, 0.1, 1));
+  CHECK(lit->appearance->parts[0].reflectance == Eigen::Vector3d(0, 0.5, 0.1));
+  for (const auto& scene : {plain, full, lit}) {
     const std::string text = canonical_text(*scene);
     CHECK(canonical_text(*parse_motion_scene(text, "scene.toml")) == text);
   }
@@ -54,6 +71,13 @@ TEST_CASE("motion scenes: what is wrong is named") {
   check_refused(parse_motion_scene, head + "[accuracy]\nrms = 0.1\n", "accuracy.rms: unknown key");
   check_refused(parse_motion_scene, head + "[reduction]\nmemory = 3\n", "reduction.memory: 3 is out of range");
   check_refused(parse_motion_scene, head + "[reduction]\nblend_rate = 0\n", "reduction.blend_rate: 0 is out of range");
+  check_refused(parse_motion_scene, head + "[appearance]\nreflectance = [1, 2, 0]\n",
+                "appearance.reflectance: expected red, green and blue");
+  check_refused(parse_motion_scene, head + "[appearance]\nrank = 31\n", "appearance.rank: 31 is out of range");
+  check_refused(parse_motion_scene, head + "[appearance]\nlight = 1\n", "appearance.light: unknown key");
+  check_refused(parse_motion_scene, head + "[appearance]\nparts = 3\n", "appearance.parts: expected tables");
+  check_refused(parse_motion_scene, head + "[[appearance.parts]]\nbox = [[0, 0, 0], [1, 1, 1]]\n",
+                "appearance.parts[0].reflectance: missing");
   check_refused(parse_motion_scene, head + "[budget]\nrate = 60\n", "budget.rate: 60 has no unit");
 }
 

@@ -374,7 +374,7 @@ Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   const Table table(
       toml, "",
       {"surface", "volume", "remesh", "material", "solve", "fixed", "touched", "read", "loads", "constraints",
-       "accuracy", "compression", "budget", "store", "simulate", "impulses", "trajectories", "reduction"},
+       "accuracy", "compression", "budget", "store", "simulate", "impulses", "trajectories", "reduction", "appearance"},
       problems);
   Scene scene;
   read_mesh(table, file, scene.mesh);

@@ -157,7 +157,7 @@ void read_simulation(const Table& table, const std::filesystem::path& file, Scen
               {"time_step", "strain", "level", "mass_damping", "stiffness_damping", "newmark_gamma", "rest", "sampling",
                "orbits", "held_out", "shortest", "longest", "to_rest", "longest_to_rest", "seed"});
   if (!simulate) {
-    for (const std::string_view key : {"impulses", "trajectories"}) {
+    for (const std::string_view key : {"impulses", "trajectories", "appearance"}) {
       if (table.has(key)) table.refuse(key, "belong to a [simulate] section, which is missing");
     }
     return;

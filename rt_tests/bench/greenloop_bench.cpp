@@ -25,6 +25,7 @@ namespace {
 
 using greenloop::bench::BackSubstitution;
 using greenloop::bench::CapacitanceFigures;
+using greenloop::bench::ColourFigures;
 using greenloop::bench::ContactFigures;
 using greenloop::bench::CreationFigures;
 using greenloop::bench::FieldFigures;
@@ -120,6 +121,12 @@ json as_json(const SynthesisFigures& figures) {
           {"us", figures.us},          {"frames_per_s", figures.frames_per_s},
           {"bytes", figures.bytes},    {"bandwidth_ratio", figures.bandwidth_ratio},
           {"work", figures.work}};
+}
+
+json as_json(const ColourFigures& figures) {
+  return {{"rank", figures.rank},   {"us", figures.us},
+          {"bytes", figures.bytes}, {"frames_per_s", figures.frames_per_s},
+          {"work", figures.work},   {"bandwidth_ratio", figures.bandwidth_ratio}};
 }
 
 json as_json(const RooflinePoint& point) {
@@ -231,10 +238,12 @@ void print_table(const std::vector<FieldFigures>& all, const BackSubstitution& b
 int run_motion(const Arguments& arguments, const greenloop::Model& model) {
   const auto figures = greenloop::bench::measure_motion(model, arguments.rounds);
   if (arguments.json) {
+    const json colours = figures.colours ? as_json(*figures.colours) : json(nullptr);
     greenloop::print_result(greenloop::json_text(json{{"model", arguments.model.filename().string()},
                                                       {"state_us", figures.step_us},
                                                       {"state_work", figures.step_work},
-                                                      {"synthesis", list_of(figures.synthesis)}}) +
+                                                      {"synthesis", list_of(figures.synthesis)},
+                                                      {"colours", colours}}) +
                             "\n");
     return 0;
   }
@@ -245,6 +254,11 @@ int run_motion(const Arguments& arguments, const greenloop::Model& model) {
   for (const SynthesisFigures& f : figures.synthesis) {
     fmt::print("{:>6} {:>7} {:>9} {:>9.2f}% {:>9.1f} {:>11.0f} {:>16.2f} {:>10}\n", f.rank, f.planes, f.vertices,
                100 * f.error, f.us, f.frames_per_s, f.bandwidth_ratio, f.work);
+  }
+  if (const auto& c = figures.colours) {
+    fmt::print(
+        "\nColours of all vertices by {} modes of light: {:.1f} us, {:.0f} frames/s, {:.2f} x bytes/stream, {} units\n",
+        c->rank, c->us, c->frames_per_s, c->bandwidth_ratio, c->work);
   }
   return 0;
 }

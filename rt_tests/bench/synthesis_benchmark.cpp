@@ -46,6 +46,10 @@ class Pushed {
   std::uint32_t step_ = 0, last_ = 0;
 };
 
+double over_reading(double us, double bytes) {
+  return us / (bytes / ReadStream(static_cast<std::size_t>(bytes)).measure());
+}
+
 SynthesisFigures measure_frames(Pushed& pushed, std::uint64_t work, std::span<Vec3> displacement, std::size_t rounds) {
   SynthesisFigures figures;
   std::vector<double> us;
@@ -60,8 +64,29 @@ SynthesisFigures measure_frames(Pushed& pushed, std::uint64_t work, std::span<Ve
   figures.us = median(us);
   figures.frames_per_s = 1e6 / figures.us;
   figures.bytes = static_cast<double>(displacement.size()) * (3.0 * report.modes * report.planes + sizeof(Vec3));
-  figures.bandwidth_ratio =
-      figures.us / (figures.bytes / ReadStream(static_cast<std::size_t>(figures.bytes)).measure());
+  figures.bandwidth_ratio = over_reading(figures.us, figures.bytes);
+  figures.work = report.work;
+  return figures;
+}
+
+ColourFigures measure_colours(const ImpulseResponseView& view, Pushed& pushed, std::size_t rounds) {
+  std::vector<Vec3> colour(view.info->vertices);
+  Light light;
+  for (std::uint32_t i = 0; i < Light::coefficients; ++i) light.red[i] = light.green[i] = light.blue[i] = 1;
+  ColourFigures figures;
+  std::vector<double> us;
+  ImpulseResponse::StepReport report;
+  for (std::size_t i = 0; i < rounds; ++i) {
+    us.push_back(
+        time_of(1, [&] { report = pushed.step(pushed.need().worst_work, {.colour = colour, .light = &light}); }));
+  }
+  figures.rank = report.transfer_modes;
+  figures.us = median(us);
+  figures.frames_per_s = 1e6 / figures.us;
+  figures.bytes = static_cast<double>(view.blocks()) * layout::colours *
+                      static_cast<double>(layout::transfer_bytes(report.transfer_modes)) +
+                  static_cast<double>(colour.size() * sizeof(Vec3));
+  figures.bandwidth_ratio = over_reading(figures.us, figures.bytes);
   figures.work = report.work;
   return figures;
 }
@@ -88,6 +113,7 @@ MotionFigures measure_motion(const Model& model, std::size_t rounds) {
     if (!seen.emplace(report.modes, report.planes).second) continue;
     figures.synthesis.push_back(measure_frames(pushed, work, displacement, rounds));
   }
+  if (view.appearance.modes > 0) figures.colours = measure_colours(view, pushed, rounds);
   return figures;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "runtime/impulse_response.hpp"
@@ -21,11 +22,22 @@ struct SynthesisFigures {
   std::uint64_t work = 0;      ///< units of the step
 };
 
+/// Colours of all vertices by all modes of light, without displacements; likewise.
+struct ColourFigures {
+  std::uint32_t rank = 0;
+  double us = 0;
+  double frames_per_s = 0;
+  double bytes = 0;
+  double bandwidth_ratio = 0;
+  std::uint64_t work = 0;
+};
+
 /// What motions cost.
 struct MotionFigures {
   double step_us = 0;  ///< of a step without displacements, one impulse in 64 steps
   std::uint64_t step_work = 0;
   std::vector<SynthesisFigures> synthesis;  ///< by all modes, then as the budget shrinks
+  std::optional<ColourFigures> colours;     ///< none: the model has no appearance
 };
 
 /// Measures an impulse response model. rounds: steps a figure. Throws std::runtime_error if no body can be made.

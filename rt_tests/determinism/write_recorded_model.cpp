@@ -124,6 +124,11 @@ ImpulseResponseData arbitrary_motion(const SyntheticMotion& options) {
   for (layout::OrbitRecord& orbit : data.orbits) {
     if (orbit.next_orbit != layout::none) orbit.next_distance = 0x1p-8F * uniform(random);
   }
+  for (std::int8_t& value : data.appearance.transfers) value = static_cast<std::int8_t>(random() >> 40);
+  for (std::size_t i = 0; i < data.appearance.coordinates.size(); ++i) {
+    data.appearance.coordinates[i] = data.groups[0].coordinates[i % data.groups[0].coordinates.size()];
+  }
+  for (float& quantum : data.appearance.quanta) quantum = 0x1p-8F * (1 + uniform(random));
   for (float& quantum : data.quanta) quantum = 0x1p-22F * (1 + uniform(random));
   return data;
 }
@@ -138,11 +143,13 @@ int main(int argc, char** argv) {
                                                    {"butterfly", Wavelet::butterfly},
                                                    {"equilibrated", Wavelet::equilibrated}};
   const std::map<std::string, greenloop::SyntheticMotion> motions = {
-      {"motion", {.vertices = 90, .modes = 8, .groups = 3, .planes = 2, .orbits = 12, .alternating = true}},
+      {"motion",
+       {.vertices = 90, .modes = 8, .groups = 3, .planes = 2, .orbits = 12, .alternating = true, .transfer_modes = 4}},
       {"large-motion", {.vertices = 642, .modes = 12, .groups = 3, .orbits = 12}},
       {"shown-motion", {.vertices = 24690, .modes = 12, .groups = 3, .orbits = 12}},
       {"shown-motion-16-bits", {.vertices = 24690, .modes = 12, .groups = 3, .planes = 2, .orbits = 12}},
-      {"shown-motion-30-modes", {.vertices = 24690, .modes = 30, .groups = 3, .orbits = 12}}};
+      {"shown-motion-30-modes", {.vertices = 24690, .modes = 30, .groups = 3, .orbits = 12}},
+      {"lit-motion", {.vertices = 24690, .modes = 12, .groups = 3, .orbits = 12, .transfer_modes = 7}}};
   const std::string kind = argc == 3 ? argv[2] : "";
   const auto wavelet = wavelets.find(kind);
   const auto motion = motions.find(kind);

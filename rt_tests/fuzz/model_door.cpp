@@ -23,6 +23,7 @@ class ModelDoor final : public Door {
               encode(crowded_model(8, 4)),
               encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6})),
               encode(synthetic_motion({.vertices = 40, .planes = 2, .orbits = 4, .rows = 5, .alternating = true})),
+              encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6, .transfer_modes = 2})),
               encode(measured)};
   }
 

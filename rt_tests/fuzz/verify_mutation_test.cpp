@@ -138,11 +138,12 @@ TEST_CASE("verify survives random changes of impulse response models, and what i
   // an elastostatic one too, since nothing has to increase in the others
   check_survival(Mutator(
       {encode(synthetic_model({.levels = 2})), encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6})),
-       encode(synthetic_motion({.vertices = 40, .planes = 2, .orbits = 4, .rows = 5, .alternating = true}))}));
+       encode(synthetic_motion({.vertices = 40, .planes = 2, .orbits = 4, .rows = 5, .alternating = true})),
+       encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6, .transfer_modes = 2}))}));
 }
 
 TEST_CASE("walk_view sees orbits and references of impulse responses that verify must prevent") {
-  ModelMutant mutant(encode(synthetic_motion({})));
+  ModelMutant mutant(encode(synthetic_motion({.transfer_modes = 3})));
   REQUIRE(mutant.verdict().ok());
   const ModelView view = mutant.view();
   const auto seen = [&](auto& number, auto wrong) {
@@ -158,6 +159,8 @@ TEST_CASE("walk_view sees orbits and references of impulse responses that verify
   CHECK(seen(mutant.records<std::uint32_t>(layout::SectionKind::triangles)[7], 100));
   CHECK(seen(mutant.records<float>(layout::SectionKind::shape)[7], std::numeric_limits<float>::infinity()));
   CHECK(seen(mutant.records<std::int16_t>(layout::SectionKind::coordinates)[7], -32768));
+  CHECK(seen(mutant.records<std::int16_t>(layout::SectionKind::transfer_coordinates)[7], -32768));
+  CHECK(seen(mutant.records<float>(layout::SectionKind::transfer_quanta)[7], std::numeric_limits<float>::infinity()));
 }
 
 TEST_CASE("walk_view sees scalar blocks and scales that verify must prevent") {

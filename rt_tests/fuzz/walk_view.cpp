@@ -68,7 +68,19 @@ class Walk {
                [&](const auto& reference) {
                  return reference.orbit == layout::none || reference.orbit < info.orbits;
                }) &&
-           impulse_groups(view);
+           impulse_groups(view) && appearance(view);
+  }
+
+  bool appearance(const ImpulseResponseView& view) const {
+    const AppearanceView& of = view.appearance;
+    if (of.modes == 0) return true;
+    const auto any = [](const auto&) { return true; };
+    const auto rows = std::uint64_t{view.info->rows} * of.modes, blocks = std::uint64_t{view.blocks()};
+    const std::uint64_t bytes = blocks * layout::colours * layout::transfer_bytes(of.modes);
+    return of.modes <= layout::most_transfer_modes && array(of.quanta, 2 * blocks) && array(of.transfers, bytes) &&
+           array(of.amplitudes, of.modes) && array(of.coordinates, rows) &&
+           all(of.quanta, 2 * blocks, [](float x) { return std::isfinite(x); }) && all(of.transfers, bytes, any) &&
+           all(of.coordinates, rows, [](auto x) { return x >= -layout::most_coordinate; });
   }
 
   bool impulse_groups(const ImpulseResponseView& view) const {

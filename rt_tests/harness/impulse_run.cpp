@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "runtime/algebra/fnv1a.hpp"
 
@@ -27,6 +28,7 @@ std::uint64_t digest_of(const ImpulseBuffers& buffers) {
   add(buffers.velocity, digest);
   add(buffers.displacement, digest);
   add(buffers.displacement_rate, digest);
+  add(buffers.colour, digest);
   return digest.value();
 }
 
@@ -34,10 +36,10 @@ void add_report(const ImpulseResponse::StepReport& report, Fnv1a& digest) {
   for (const std::uint64_t word :
        {static_cast<std::uint64_t>(report.status), report.work, std::uint64_t{report.orbit}, std::uint64_t{report.row},
         std::uint64_t{report.impulse}, std::uint64_t{report.modes}, std::uint64_t{report.planes},
-        std::uint64_t{report.at_rest ? 1U : 0U}}) {
+        std::uint64_t{report.transfer_modes}, std::uint64_t{report.at_rest ? 1U : 0U}}) {
     digest.add_word(word);
   }
-  for (const float x : {report.truncation_error, report.distance, report.blend}) {
+  for (const float x : {report.truncation_error, report.transfer_error, report.distance, report.blend}) {
     digest.add_word(std::bit_cast<std::uint32_t>(x));
   }
 }
@@ -53,12 +55,14 @@ bool is_finite(std::span<const Vec3> vectors) {
 struct Faults {
   bool unknown = false;  // an impulse or a vertex that there is not
   bool size = false;     // of a buffer
+  bool light = false;    // that is none
 };
 
 Faults faults_of(const Cycle& cycle, const ImpulseResponseView& view) {
   const std::uint32_t vertices = view.info->vertices;
   Faults faults = {cycle.impulse != ImpulseResponse::no_impulse && cycle.impulse >= view.info->impulses,
-                   cycle.vertices > vertices || cycle.missing > 0};
+                   cycle.vertices > vertices || cycle.missing > 0,
+                   cycle.lit && cycle.chosen_count + cycle.vertices > 0 && !std::isfinite(cycle.light.red[0])};
   for (std::uint32_t i = 0; i < cycle.chosen_count; ++i) faults.unknown |= cycle.chosen[i] >= vertices;
   return faults;
 }
@@ -80,10 +84,13 @@ bool may_be(Status status, const Cycle& cycle, bool legal, const ImpulseResponse
       return !legal;
     case Status::held_response_size:
       return faults.size;
+    case Status::held_not_finite:
+      return faults.light;
     case Status::held_over_budget:
       return is_short(cycle, view, need);
     default:
-      return answered(status) && !faults.unknown && !faults.size && legal && cycle.budget.work >= need.least_work;
+      return answered(status) && !faults.unknown && !faults.size && !faults.light && legal &&
+             cycle.budget.work >= need.least_work;
   }
 }
 
@@ -95,13 +102,15 @@ Response response_of(const Cycle& cycle, const ImpulseBuffers& buffers) {
           buffers.velocity,
           buffers.displacement.first(count),
           cycle.rates ? buffers.displacement_rate.first(count) : std::span<Vec3>(),
-          {cycle.chosen, cycle.chosen_count}};
+          {cycle.chosen, cycle.chosen_count},
+          cycle.lit ? buffers.colour.first(count) : std::span<Vec3>(),
+          &cycle.light};
 }
 
 bool may_be_refused(const Cycle& cycle, bool legal, const ImpulseResponseView& view,
                     const ImpulseResponse::Requirement& need) {
   const Faults faults = faults_of(cycle, view);
-  return faults.unknown || faults.size || !legal || is_short(cycle, view, need);
+  return faults.unknown || faults.size || faults.light || !legal || is_short(cycle, view, need);
 }
 
 const char* what_is_wrong(const Cycle& cycle, const ImpulseResponse::StepReport& report, bool legal,
@@ -113,6 +122,7 @@ const char* what_is_wrong(const Cycle& cycle, const ImpulseResponse::StepReport&
   }
   if (!answered(report.status)) return nullptr;
   if (!std::isfinite(state_energy(view, response.coordinate, response.velocity))) return "a state is not finite";
+  if (!is_finite(response.colour)) return "a colour is not finite";
   const bool finite = is_finite(response.displacement) && is_finite(response.displacement_rate);
   return finite ? nullptr : "a displacement is not finite";
 }
@@ -131,12 +141,21 @@ double state_energy(const ImpulseResponseView& view, std::span<const float> coor
 ImpulseScript::ImpulseScript(const Model& model, const ImpulseResponse::Requirement& need, std::uint64_t seed) noexcept
     : impulses_(model.view().impulse_response.info->impulses),
       vertices_(model.view().impulse_response.info->vertices),
+      lit_(model.view().impulse_response.appearance.modes > 0),
       need_(need),
       state_(seed * 2 + 1) {}
 
 std::uint32_t ImpulseScript::below(std::uint32_t bound) noexcept {
   state_ = state_ * 6364136223846793005U + 1442695040888963407U;
   return static_cast<std::uint32_t>((state_ >> 33) * bound >> 31);
+}
+
+void ImpulseScript::shine(Light& light) noexcept {
+  for (float* const colour : {light.red, light.green, light.blue}) {
+    for (std::uint32_t i = 0; i < Light::coefficients; ++i)
+      colour[i] = (static_cast<float>(below(4001)) - 2000) * 0x1p-10F;
+  }
+  if (below(40) == 0) light.red[0] = std::numeric_limits<float>::infinity();
 }
 
 ImpulseScript::Cycle ImpulseScript::next() noexcept {
@@ -153,6 +172,8 @@ ImpulseScript::Cycle ImpulseScript::next() noexcept {
       cycle.chosen[i] = below(vertices_ + (below(20) == 0 ? 1 : 0));
   }
   cycle.rates = below(4) == 0;
+  cycle.lit = lit_ && below(2) == 0;
+  if (cycle.lit) shine(cycle.light);
   const std::uint32_t much = below(8);
   cycle.budget.work = much == 0   ? need_.least_work - below(2)
                       : much == 1 ? need_.least_work + below(static_cast<std::uint32_t>(need_.worst_work))

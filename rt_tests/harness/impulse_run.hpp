@@ -22,7 +22,9 @@ class ImpulseScript {
     std::uint32_t chosen[most_chosen] = {};
     std::uint32_t chosen_count = 0;  ///< > 0: these instead
     bool rates = false;              ///< velocities of vertices too
-    std::uint32_t missing = 0;       ///< modes that the buffer of coordinates has no room for: to be refused
+    bool lit = false;                ///< their colours too, in this light
+    Light light;
+    std::uint32_t missing = 0;  ///< modes that the buffer of coordinates has no room for: to be refused
   };
 
   ImpulseScript(const Model& model, const ImpulseResponse::Requirement& need, std::uint64_t seed) noexcept;
@@ -31,8 +33,10 @@ class ImpulseScript {
 
  private:
   [[nodiscard]] std::uint32_t below(std::uint32_t bound) noexcept;
+  void shine(Light& light) noexcept;
 
   std::uint32_t impulses_, vertices_;
+  bool lit_;  // the model has an appearance
   ImpulseResponse::Requirement need_;
   std::uint64_t state_;
 };
@@ -43,6 +47,7 @@ struct ImpulseBuffers {
   std::span<float> velocity;          ///< [modes]
   std::span<Vec3> displacement;       ///< [vertices + 1]
   std::span<Vec3> displacement_rate;  ///< [vertices + 1]
+  std::span<Vec3> colour;             ///< [vertices + 1]
 };
 
 /// What a cycle asks a body for, in these buffers.
@@ -81,7 +86,7 @@ struct ImpulseRun {
                                             std::uint64_t cycles, std::uint64_t seed, bool flip) noexcept;
 
 /// The digest of so many cycles on write_recorded_model's motions.
-inline constexpr std::uint64_t impulse_digest = 0x14ed7b4b7ed27120;
+inline constexpr std::uint64_t impulse_digest = 0x248853317e31545e;
 inline constexpr std::uint32_t impulse_cycles = 2000;
 
 }  // namespace greenloop

@@ -219,23 +219,25 @@ TEST_CASE("a step of tools keeps below what docs/touching.md promises, whatever 
 }
 
 TEST_CASE("a step of impulses keeps below what docs/impulses.md promises") {
-  const ModelFile file = encoded_file(synthetic_motion({.modes = 16, .groups = 3, .planes = 2, .alternating = true}));
+  const ModelFile file =
+      encoded_file(synthetic_motion({.modes = 16, .groups = 3, .planes = 2, .alternating = true, .transfer_modes = 8}));
   const Model model = Model::open(file.bytes.span()).model;
   const ImpulseResponse::Requirement need = ImpulseResponse::required(model, {});
   AlignedBytes memory(need.bytes);
   auto created = ImpulseResponse::create(model, {}, {memory.data(), memory.size()});
   REQUIRE(created);
   std::vector<float> coordinate(16), velocity(16);
-  std::vector<Vec3> displacement(101), rate(101);
+  std::vector<Vec3> displacement(101), colour(101);
   ImpulseScript script(model, need, 3);
   std::size_t deepest = 0;
   for (int i = 0; i < 2000; ++i) {
     const ImpulseScript::Cycle cycle = script.next();
     const std::span<Vec3> moved = std::span(displacement).first(cycle.vertices);
-    deepest =
-        std::max(deepest, depth_of([&] {
-                   static_cast<void>(created.body.step(cycle.impulse, cycle.budget, {coordinate, velocity, moved, {}}));
-                 }));
+    const std::span<Vec3> lit = std::span(colour).first(cycle.lit ? cycle.vertices : 0);
+    deepest = std::max(deepest, depth_of([&] {
+                         static_cast<void>(created.body.step(cycle.impulse, cycle.budget,
+                                                             {coordinate, velocity, moved, {}, {}, lit, &cycle.light}));
+                       }));
   }
   MESSAGE("deepest stack of a step of impulses: ", deepest, " bytes");
   CHECK(deepest > 100);

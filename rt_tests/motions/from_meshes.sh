@@ -73,6 +73,29 @@ grep -q '"verdict": "HELD"' run.json
 for figure in frames rank size run; do test -s "figures/$figure.svg"; done
 grep -q 'The run held its budget in every cycle' flag.html
 
+# the same with colours in light; through the transport form nothing is lost, and a cut file has none
+cat scene.toml - >lit.toml <<'TOML'
+
+[appearance]
+reflectance = [0.9, 0.5, 0.2]
+rays = 64
+states = 12
+
+[[appearance.parts]]
+box = [[0, 0, 0], [0.3, 1, 1]]
+reflectance = [0.1, 0.2, 0.9]
+TOML
+"$greenloop" build lit.toml -o lit.gloop
+"$greenloop" inspect lit.gloop --json | grep -q '"rank_appearance": [1-9]'
+"$greenloop" inspect lit.gloop | grep -q 'appearance  '
+"$greenloop" convert lit.gloop -o lit.gloopz
+"$greenloop" convert lit.gloopz -o again.gloop
+cmp lit.gloop again.gloop
+"$loop" lit.gloop --script impulses --rate 1000 --seconds 1 --transport memq --json | grep -q '"verdict": "HELD"'
+"$greenloop" report lit.gloop --figures lit_figures
+test -s lit_figures/light.svg
+grep -q 'In the evening sun' lit.html
+
 # a series whose meshes are not there
 rm gust_0050.obj
 if "$greenloop" convert series.toml -o other.h5 2>error.txt; then exit 1; fi

@@ -97,19 +97,26 @@ class Touching {
 class Moving {
  public:
   Moving()
-      : file_(encoded_file(synthetic_motion({.planes = 2, .alternating = true}))),
+      : file_(encoded_file(synthetic_motion({.planes = 2, .alternating = true, .transfer_modes = 4}))),
         model_(Model::open(file_.bytes.span()).model),
         need_(ImpulseResponse::required(model_, {})),
         memory_(need_.bytes),
         body_(ImpulseResponse::create(model_, {}, {memory_.data(), memory_.size()}).body),
         script_(model_, need_, 3),
         coordinate_(6),
-        displacement_(101) {}
+        displacement_(101),
+        colour_(101) {}
 
   ImpulseResponse::StepReport cycle() {
     const ImpulseScript::Cycle cycle = script_.next();
     return body_.step(cycle.impulse, cycle.budget,
-                      {coordinate_, {}, std::span(displacement_).first(cycle.vertices), {}});
+                      {coordinate_,
+                       {},
+                       std::span(displacement_).first(cycle.vertices),
+                       {},
+                       {},
+                       std::span(colour_).first(cycle.lit ? cycle.vertices : 0),
+                       &cycle.light});
   }
 
  private:
@@ -120,7 +127,7 @@ class Moving {
   ImpulseResponse body_;
   ImpulseScript script_;
   std::vector<float> coordinate_;
-  std::vector<Vec3> displacement_;
+  std::vector<Vec3> displacement_, colour_;
 };
 
 TEST_CASE("the allocation guard trips on malloc, new and free") {

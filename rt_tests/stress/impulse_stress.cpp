@@ -37,6 +37,7 @@ class Body {
     velocity_.resize(view.modes);
     displacement_.resize(view.info->vertices + 1);
     displacement_rate_.resize(view.info->vertices + 1);
+    colour_.resize(view.info->vertices + 1);
     renew(limits);
   }
 
@@ -49,10 +50,11 @@ class Body {
     std::fill(velocity_.begin(), velocity_.end(), 0.0F);
     std::fill(displacement_.begin(), displacement_.end(), Vec3{});
     std::fill(displacement_rate_.begin(), displacement_rate_.end(), Vec3{});
+    std::fill(colour_.begin(), colour_.end(), Vec3{});
   }
 
   [[nodiscard]] Response response(const Cycle& cycle) {
-    return response_of(cycle, {coordinate_, velocity_, displacement_, displacement_rate_});
+    return response_of(cycle, {coordinate_, velocity_, displacement_, displacement_rate_, colour_});
   }
   [[nodiscard]] const std::vector<float>& coordinate() const { return coordinate_; }
   [[nodiscard]] const std::vector<float>& velocity() const { return velocity_; }
@@ -64,7 +66,7 @@ class Body {
   const Model* model_;
   AlignedBytes memory_;
   std::vector<float> coordinate_, velocity_;
-  std::vector<Vec3> displacement_, displacement_rate_;
+  std::vector<Vec3> displacement_, displacement_rate_, colour_;
 };
 
 std::uint64_t digest_of(const Response& response) {
@@ -73,6 +75,7 @@ std::uint64_t digest_of(const Response& response) {
   digest.add(std::as_bytes(response.velocity));
   digest.add(std::as_bytes(response.displacement));
   digest.add(std::as_bytes(response.displacement_rate));
+  digest.add(std::as_bytes(response.colour));
   return digest.value();
 }
 
@@ -84,8 +87,10 @@ void add(const StepReport& report, FastDigest& digest) {
                                  report.impulse,
                                  report.modes,
                                  report.planes,
+                                 report.transfer_modes,
                                  report.at_rest ? 1U : 0U,
                                  std::bit_cast<std::uint32_t>(report.truncation_error),
+                                 std::bit_cast<std::uint32_t>(report.transfer_error),
                                  std::bit_cast<std::uint32_t>(report.distance),
                                  std::bit_cast<std::uint32_t>(report.blend)};
   digest.add(std::span<const std::uint64_t>(facts));
@@ -255,6 +260,7 @@ ReportedStep reported(const Cycle& cycle, const StepReport& report) {
   if (!answered(report.status)) return {"", report.work};
   std::string way = cycle.chosen_count > 0 ? "chosen vertices" : cycle.vertices > 0 ? "first vertices" : "state";
   if (cycle.chosen_count + cycle.vertices > 0 && cycle.rates) way += ", velocities";
+  if (cycle.chosen_count + cycle.vertices > 0 && cycle.lit) way += ", colours";
   return {way, report.work};
 }
 
@@ -305,6 +311,8 @@ std::vector<ReportedStep> run_impulses_plainly(const Model& model, const Impulse
   }
   heaviest.vertices = model.view().impulse_response.info->vertices;
   heaviest.rates = true;
+  heaviest.lit = model.view().impulse_response.appearance.modes > 0;
+  heaviest.light.red[0] = heaviest.light.green[1] = heaviest.light.blue[2] = 1;
   heaviest.budget.work = body.need.worst_work;
   step(heaviest);
   return steps;

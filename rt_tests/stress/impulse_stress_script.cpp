@@ -16,6 +16,7 @@ ImpulseStressScript::ImpulseStressScript(const Model& model, const ImpulseRespon
                                          ImpulseScriptKind kind, std::uint64_t seed)
     : mixed_(model, need, seed),
       kind_(kind),
+      lit_(model.view().impulse_response.appearance.modes > 0),
       impulses_(model.view().impulse_response.info->impulses),
       vertices_(model.view().impulse_response.info->vertices),
       modes_(model.view().impulse_response.modes),
@@ -99,6 +100,15 @@ ImpulseScript::Cycle ImpulseStressScript::next(const ImpulseResponse& body) {
   if (kind_ == ImpulseScriptKind::storm && below(8) == 0) {
     cycle.chosen_count = ImpulseScript::most_chosen;
     for (std::uint32_t& vertex : cycle.chosen) vertex = below(vertices_);
+  }
+  if (lit_ && cycle.vertices + cycle.chosen_count > 0) {
+    cycle.lit = true;
+    for (float* const colour : {cycle.light.red, cycle.light.green, cycle.light.blue}) {
+      for (std::uint32_t i = 0; i < Light::coefficients; ++i)
+        colour[i] = static_cast<float>(below(1U << 20U)) * 0x1p-19F - 1;
+    }
+    if (kind_ == ImpulseScriptKind::garbage && below(4) == 0)
+      cycle.light.red[0] = std::numeric_limits<float>::quiet_NaN();
   }
   return cycle;
 }

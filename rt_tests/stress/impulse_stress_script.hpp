@@ -49,6 +49,7 @@ class ImpulseStressScript {
 
   ImpulseScript mixed_;
   ImpulseScriptKind kind_;
+  bool lit_;  // the model has an appearance
   std::uint32_t impulses_, vertices_, modes_;
   double time_step_, rate_;
   ImpulseResponse::Requirement need_;

@@ -25,7 +25,9 @@ TEST_CASE("no impulses make a body spend more than declared, answer garbage, all
       {.vertices = 333, .modes = 12, .groups = 3, .planes = 2},
       {.vertices = 16, .modes = 2, .groups = 1, .impulses = 1, .orbits = 1},
       {.modes = 30, .groups = 3, .rows = 3, .time_step = 1.0F / 1000, .blend_rate = 0.5F},
-      {.planes = 2, .impulses = 7, .orbits = 40, .alternating = true}};
+      {.planes = 2, .impulses = 7, .orbits = 40, .alternating = true},
+      {.vertices = 333, .modes = 12, .groups = 3, .alternating = true, .transfer_modes = 7},
+      {.vertices = 17, .modes = 2, .groups = 1, .transfer_modes = 30}};
   std::uint64_t seed = 0;
   for (const SyntheticMotion& motion : motions) {
     CAPTURE(++seed);

@@ -13,6 +13,7 @@ struct MovingBody {
   ImpulseResponseView view;
   OrbitPlayer player;
   std::int16_t* whole = nullptr;  ///< [modes] coordinates as sums take them
+  std::int16_t* lit = nullptr;    ///< [lit_numbers(transfer modes)] light as sums take it; none without appearance
   bool avx2 = false;              ///< whether the processor has it
   std::uint64_t least_work = 0;   ///< units of a step without displacements, at most
   std::uint64_t worst_work = 0;   ///< units of any step, at most
@@ -38,5 +39,10 @@ struct Fineness {
 /// The same of as many chosen vertices. Constant.
 [[nodiscard]] std::uint64_t chosen_work(const ImpulseResponseView& view, std::uint32_t vertices, std::uint32_t fields,
                                         Fineness fineness) noexcept;
+
+/// Of colours of the first `vertices` vertices by so many transfer modes. Constant.
+[[nodiscard]] std::uint64_t colour_work(std::uint32_t vertices, std::uint32_t transfer_modes) noexcept;
+/// The same of as many chosen vertices. Constant.
+[[nodiscard]] std::uint64_t chosen_colour_work(std::uint32_t vertices, std::uint32_t transfer_modes) noexcept;
 
 }  // namespace greenloop

@@ -25,6 +25,8 @@ void OrbitPlayer::carve(Arena& arena, const ImpulseResponseView& view) noexcept 
   velocity_ = arena.take_zeroed<float>(view.modes);
   position_offset_ = arena.take_zeroed<float>(view.modes);
   velocity_offset_ = arena.take_zeroed<float>(view.modes);
+  transfer_ = arena.take_zeroed<float>(view.appearance.modes);
+  transfer_offset_ = arena.take_zeroed<float>(view.appearance.modes);
 }
 
 void OrbitPlayer::begin(std::uint64_t ticks, float decay, float seconds) noexcept {
@@ -35,22 +37,34 @@ void OrbitPlayer::begin(std::uint64_t ticks, float decay, float seconds) noexcep
   evaluate();
 }
 
-// visit(mode, its coordinates in the rows before, at and behind the place), of the orbit alone
+// visit(mode, its coordinates in the rows before, at and behind the place), of the orbit alone; coordinates: of all
+// rows
 template <class Visit>
-void OrbitPlayer::visit_modes(Visit visit) const noexcept {
+void OrbitPlayer::visit_rows(const std::int16_t* coordinates, std::uint32_t modes, Visit visit) const noexcept {
   const std::uint32_t row = place_.row;
   const std::uint32_t behind = row + 1 < orbit().first_row + orbit().rows ? row + 1 : row;
-  std::uint32_t mode = 0;
-  for (std::uint32_t q = 0; q < view_->levels; ++q) {
-    const std::size_t modes = view_->group[q].counts->modes;
-    const std::int16_t* const coordinates = view_->group[q].coordinates;
-    const std::int16_t* const before = coordinates + modes * (row - 1);
-    const std::int16_t* const at = coordinates + modes * row;
-    const std::int16_t* const after = coordinates + modes * behind;
-    for (std::size_t m = 0; m < modes; ++m, ++mode) {
-      visit(mode, static_cast<float>(before[m]), static_cast<float>(at[m]), static_cast<float>(after[m]));
-    }
+  const std::int16_t* const before = coordinates + std::size_t{modes} * (row - 1);
+  const std::int16_t* const at = coordinates + std::size_t{modes} * row;
+  const std::int16_t* const after = coordinates + std::size_t{modes} * behind;
+  for (std::uint32_t m = 0; m < modes; ++m) {
+    visit(m, static_cast<float>(before[m]), static_cast<float>(at[m]), static_cast<float>(after[m]));
   }
+}
+
+template <class Visit>
+void OrbitPlayer::visit_modes(Visit visit) const noexcept {
+  std::uint32_t first = 0;
+  for (std::uint32_t q = 0; q < view_->levels; ++q) {
+    const std::uint32_t modes = view_->group[q].counts->modes;
+    visit_rows(view_->group[q].coordinates, modes,
+               [&](std::uint32_t m, float before, float at, float after) { visit(first + m, before, at, after); });
+    first += modes;
+  }
+}
+
+template <class Visit>
+void OrbitPlayer::visit_transfers(Visit visit) const noexcept {
+  visit_rows(view_->appearance.coordinates, view_->appearance.modes, visit);
 }
 
 void OrbitPlayer::evaluate() noexcept {
@@ -63,6 +77,9 @@ void OrbitPlayer::evaluate() noexcept {
     position_[m] = (at + phase * step) * unit + position_offset_[m];
     velocity_[m] = velocity + phase * (step * speed_after - velocity) + velocity_offset_[m];
   });
+  visit_transfers([&](std::uint32_t m, float, float at, float after) {
+    transfer_[m] = (at + phase * (after - at)) * unit + transfer_offset_[m];
+  });
 }
 
 // Differences become those from the state `to`, at the same phase, of the place as it is.
@@ -72,11 +89,13 @@ void OrbitPlayer::go_over(const OrbitPlace& to) noexcept {
     position_offset_[m] += at * unit;
     velocity_offset_[m] += (at - before) * speed;
   });
+  visit_transfers([&](std::uint32_t m, float, float at, float) { transfer_offset_[m] += at * unit; });
   place_ = to;
   visit_modes([&](std::uint32_t m, float before, float at, float) {
     position_offset_[m] -= at * unit;
     velocity_offset_[m] -= (at - before) * speed;
   });
+  visit_transfers([&](std::uint32_t m, float, float at, float) { transfer_offset_[m] -= at * unit; });
 }
 
 void OrbitPlayer::enter(std::uint32_t orbit) noexcept {
@@ -85,6 +104,7 @@ void OrbitPlayer::enter(std::uint32_t orbit) noexcept {
     position_offset_[m] = position_[m] - at * unit;
     velocity_offset_[m] = velocity_[m] - (at - before) * (unit * per_second_);
   });
+  visit_transfers([&](std::uint32_t m, float, float at, float) { transfer_offset_[m] = transfer_[m] - at * unit; });
 }
 
 Continuations OrbitPlayer::pass() noexcept {
@@ -92,6 +112,8 @@ Continuations OrbitPlayer::pass() noexcept {
     position_offset_[m] = decayed(position_offset_[m], decay_);
     velocity_offset_[m] = decayed(velocity_offset_[m], decay_);
   }
+  for (std::uint32_t m = 0; m < view_->appearance.modes; ++m)
+    transfer_offset_[m] = decayed(transfer_offset_[m], decay_);
   Continuations made;
   const std::uint64_t ticks = place_.phase + ticks_;
   place_.phase = static_cast<std::uint32_t>(ticks);

@@ -24,8 +24,8 @@ struct Continuations {
 /// Continuations that a step of so many ticks (OrbitPlayer::begin) may need. Start-up; work: linear in the orbits.
 [[nodiscard]] std::uint32_t most_continuations(const ImpulseResponseView& view, std::uint64_t ticks) noexcept;
 
-/// Plays orbits and blends them (James & Fatahalian 2003, section 5.2). Coordinates are in units of their modes'
-/// amplitudes, velocities in those a second.
+/// Plays orbits and blends them, with their radiance transfer (James & Fatahalian 2003, section 5.2). Coordinates are
+/// in units of their modes' amplitudes, velocities in those a second.
 class OrbitPlayer {
  public:
   /// Most states that a step may pass.
@@ -58,13 +58,18 @@ class OrbitPlayer {
   [[nodiscard]] float blend() const noexcept;
   [[nodiscard]] const float* position() const noexcept { return position_; }  ///< [modes]
   [[nodiscard]] const float* velocity() const noexcept { return velocity_; }  ///< [modes]
+  [[nodiscard]] const float* transfer() const noexcept { return transfer_; }  ///< [transfer modes] q_a
 
  private:
   [[nodiscard]] bool rests_at(std::uint32_t row) const noexcept {
     return orbit().next_orbit == layout::none && row == orbit().first_row + orbit().rows - 1;
   }
   template <class Visit>
+  void visit_rows(const std::int16_t* coordinates, std::uint32_t modes, Visit visit) const noexcept;
+  template <class Visit>
   void visit_modes(Visit visit) const noexcept;
+  template <class Visit>
+  void visit_transfers(Visit visit) const noexcept;
   void go_over(const OrbitPlace& to) noexcept;
   void evaluate() noexcept;
 
@@ -77,6 +82,8 @@ class OrbitPlayer {
   float* velocity_ = nullptr;         // [modes]
   float* position_offset_ = nullptr;  // [modes] what is left of differences
   float* velocity_offset_ = nullptr;  // [modes]
+  float* transfer_ = nullptr;         // [transfer modes] now
+  float* transfer_offset_ = nullptr;  // [transfer modes] what is left of differences
 };
 
 }  // namespace greenloop

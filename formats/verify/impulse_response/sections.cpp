@@ -24,7 +24,8 @@ bool verify_sizes(SectionCheck& check, const ImpulseInfo& info) {
                {"impulses", info.impulses, 1, layout::most_impulses},
                {"orbits", info.orbits, 1, most_records},
                {"rows", info.rows, 2, most_records},
-               {"planes", info.planes, 1, layout::most_planes}};
+               {"planes", info.planes, 1, layout::most_planes},
+               {"transfer_modes", info.transfer_modes, 0, layout::most_transfer_modes}};
   for (const auto& size : sizes) {
     if (!check.require_at_least(size.name, 0, size.value, size.least) ||
         !check.require_at_most(size.name, 0, size.value, size.most)) {
@@ -42,6 +43,29 @@ bool verify_box(SectionCheck& check, const ImpulseInfo& info) {
     }
   }
   return true;
+}
+
+// of what is stored of a mode: its amplitude and error
+bool verify_mode(SectionCheck& check, const layout::ModeRecord& mode, std::uint32_t i) {
+  return check.require_at_least("amplitude", i, mode.amplitude, 0) &&
+         check.require_at_least("truncation_error", i, mode.truncation_error, 0);
+}
+
+// of i16: from -32767
+bool verify_coordinate_rows(SectionCheck& check, const std::int16_t* values, std::uint64_t count) {
+  for (std::uint64_t i = 0; i < count; ++i) {
+    if (!check.require_at_least("coordinate", i, values[i], -layout::most_coordinate)) return false;
+  }
+  return true;
+}
+
+// what Info says of radiance transfer, of which there may be none
+bool verify_appearance(SectionCheck& check, const ImpulseInfo& info) {
+  const bool any = info.transfer_modes > 0;
+  return check.require(any == (info.transfer_states > 0), VerifyRule::inconsistent, "transfer_states", 0,
+                       info.transfer_states, info.transfer_modes) &&
+         check.require_at_least("transfer_error", 0, info.transfer_error, 0) &&
+         check.require_at_least("transfer_quantisation_error", 0, info.transfer_quantisation_error, 0);
 }
 
 bool verify_orbit(SectionCheck& check, const ImpulseResponseView& view, const OrbitRecord* records, std::uint32_t i) {
@@ -123,9 +147,8 @@ bool verify_info(const Section& section, VerifyContext& context) {
          check.require_above("blend_rate", 0, info.blend_rate, 0) &&
          check.require_above("velocity_balance", 0, info.velocity_balance, 0) &&
          check.require_at_least("quantisation_error", 0, info.quantisation_error, 0) && verify_box(check, info) &&
-         check.require_at_least("displacement", 0, info.displacement, 0) &&
-         check.require(!context.reserved_is_zero ||
-                           (info.reserved_word == 0 && all_zero(std::as_bytes(std::span(info.reserved)))),
+         check.require_at_least("displacement", 0, info.displacement, 0) && verify_appearance(check, info) &&
+         check.require(!context.reserved_is_zero || all_zero(std::as_bytes(std::span(info.reserved))),
                        VerifyRule::reserved_not_zero, "reserved", 0, 1, 0);
 }
 
@@ -266,10 +289,7 @@ bool verify_amplitudes(const Section& section, VerifyContext& context) {
   if (!check.require_count(group.counts->modes)) return false;
   group.amplitudes = section.as<layout::ModeRecord>();
   for (std::uint32_t i = 0; i < group.counts->modes; ++i) {
-    if (!check.require_at_least("amplitude", i, group.amplitudes[i].amplitude, 0) ||
-        !check.require_at_least("truncation_error", i, group.amplitudes[i].truncation_error, 0)) {
-      return false;
-    }
+    if (!verify_mode(check, group.amplitudes[i], i)) return false;
   }
   return true;
 }
@@ -280,10 +300,46 @@ bool verify_coordinates(const Section& section, VerifyContext& context) {
   const std::uint64_t count = std::uint64_t{context.view.info->rows} * group.counts->modes;
   if (!check.require_count(count)) return false;
   group.coordinates = section.as<std::int16_t>();
-  for (std::uint64_t i = 0; i < count; ++i) {
-    if (!check.require_at_least("coordinate", i, group.coordinates[i], -layout::most_coordinate)) return false;
+  return verify_coordinate_rows(check, group.coordinates, count);
+}
+
+bool verify_transfer_quanta(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  const std::uint32_t blocks = context.view.blocks();
+  if (!check.require_count(blocks)) return false;
+  context.view.appearance.quanta = section.as<float>();
+  for (std::uint64_t i = 0; i < std::uint64_t{2} * blocks; ++i) {
+    if (!check.require_at_least("quantum", i, context.view.appearance.quanta[i], 0)) return false;
   }
   return true;
+}
+
+bool verify_transfers(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  const std::uint64_t bytes = layout::transfer_bytes(context.view.info->transfer_modes);
+  context.view.appearance.transfers = section.as<std::int8_t>();
+  return check.require_count(bytes * layout::colours * context.view.blocks());  // every value is right
+}
+
+bool verify_transfer_amplitudes(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  const std::uint32_t modes = context.view.info->transfer_modes;
+  if (!check.require_count(modes)) return false;
+  context.view.appearance.amplitudes = section.as<layout::ModeRecord>();
+  for (std::uint32_t i = 0; i < modes; ++i) {
+    if (!verify_mode(check, context.view.appearance.amplitudes[i], i)) return false;
+  }
+  return true;
+}
+
+bool verify_transfer_coordinates(const Section& section, VerifyContext& context) {
+  SectionCheck check(section, context.result);
+  AppearanceView& appearance = context.view.appearance;
+  const std::uint64_t count = std::uint64_t{context.view.info->rows} * context.view.info->transfer_modes;
+  if (!check.require_count(count)) return false;
+  appearance.coordinates = section.as<std::int16_t>();
+  appearance.modes = context.view.info->transfer_modes;
+  return verify_coordinate_rows(check, appearance.coordinates, count);
 }
 
 }  // namespace greenloop::impulse_response

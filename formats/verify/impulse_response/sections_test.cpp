@@ -24,7 +24,7 @@ using layout::SectionKind;
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
 ModelMutant valid() {
-  static const ModelFile file = encoded_file(synthetic_motion({.planes = 2, .alternating = true}));
+  static const ModelFile file = encoded_file(synthetic_motion({.planes = 2, .alternating = true, .transfer_modes = 3}));
   return ModelMutant(file.bytes.span());
 }
 
@@ -45,12 +45,24 @@ TEST_CASE("verify accepts an impulse response model, and a prefix of it") {
   REQUIRE(mutant.verdict().ok());
   CHECK(mutant.view().impulse_response.levels == 2);
   CHECK(mutant.view().impulse_response.modes == 6);
+  CHECK(mutant.view().impulse_response.appearance.modes == 3);
   const std::uint32_t second = mutant.place(SectionKind::level, 1);
   mutant.rebuild([&](std::vector<SectionCopy>& sections) { sections.resize(second); });
   mutant.header().levels = 1;
   REQUIRE(mutant.verdict().ok());
   CHECK(mutant.view().impulse_response.levels == 1);
   CHECK(mutant.view().impulse_response.modes == 2);
+  CHECK(mutant.view().impulse_response.appearance.modes == 0);
+}
+
+TEST_CASE("verify accepts an impulse response model of the version that knew no appearance, but none with one") {
+  ModelMutant mutant(encode(synthetic_motion({})));
+  CHECK(mutant.header().minor == 7);
+  CHECK(mutant.verdict().ok());
+  ModelMutant lit = valid();
+  CHECK(lit.header().minor == 8);
+  lit.header().minor = 7;
+  CHECK(lit.verdict().rule == VerifyRule::bad_enum);
 }
 
 TEST_CASE("a model of a minor version before is no impulse response model") {
@@ -74,7 +86,12 @@ TEST_CASE("Info must not say") {
   check(VerifyRule::out_of_range, "velocity_balance", [](auto& info) { info.velocity_balance = 0; });
   check(VerifyRule::out_of_range, "box_max", [](auto& info) { info.box_max[1] = -1; });
   check(VerifyRule::inconsistent, "modes", [](auto& info) { info.modes = 8; });
-  check(VerifyRule::reserved_not_zero, "reserved", [](auto& info) { info.reserved[151] = 1; });
+  check(VerifyRule::out_of_range, "transfer_modes", [](auto& info) { info.transfer_modes = 31; });
+  check(VerifyRule::inconsistent, "transfer_states", [](auto& info) { info.transfer_states = 0; });
+  check(VerifyRule::not_finite, "transfer_error", [](auto& info) { info.transfer_error = nan; });
+  check(VerifyRule::out_of_range, "transfer_quantisation_error",
+        [](auto& info) { info.transfer_quantisation_error = -1; });
+  check(VerifyRule::reserved_not_zero, "reserved", [](auto& info) { info.reserved[139] = 1; });
 }
 
 TEST_CASE("levels, shape, triangles and quanta must not say") {
@@ -148,10 +165,22 @@ TEST_CASE("modes, amplitudes and coordinates must not say") {
                              [](std::int16_t& value) { value = -32768; });
 }
 
+TEST_CASE("radiance transfer must not say") {
+  check_record<float>(SectionKind::transfer_quanta, 13, VerifyRule::out_of_range, "quantum", [](float& x) { x = -1; });
+  check_record<ModeRecord>(SectionKind::transfer_amplitudes, 2, VerifyRule::not_finite, "amplitude",
+                           [](ModeRecord& mode) { mode.amplitude = nan; });
+  check_record<ModeRecord>(SectionKind::transfer_amplitudes, 2, VerifyRule::out_of_range, "truncation_error",
+                           [](ModeRecord& mode) { mode.truncation_error = -1; });
+  check_record<std::int16_t>(SectionKind::transfer_coordinates, 5, VerifyRule::out_of_range, "coordinate",
+                             [](std::int16_t& value) { value = -32768; });
+}
+
 TEST_CASE("a section of another size, or one too few, is refused by name") {
-  for (const SectionKind kind : {SectionKind::shape, SectionKind::triangles, SectionKind::quanta, SectionKind::impulses,
-                                 SectionKind::successions, SectionKind::orbits, SectionKind::references,
-                                 SectionKind::modes, SectionKind::amplitudes, SectionKind::coordinates}) {
+  for (const SectionKind kind :
+       {SectionKind::shape, SectionKind::triangles, SectionKind::quanta, SectionKind::impulses,
+        SectionKind::successions, SectionKind::orbits, SectionKind::references, SectionKind::modes,
+        SectionKind::amplitudes, SectionKind::coordinates, SectionKind::transfer_quanta, SectionKind::transfers,
+        SectionKind::transfer_amplitudes, SectionKind::transfer_coordinates}) {
     ModelMutant shorter = valid(), without = valid();
     shorter.rebuild([&](std::vector<SectionCopy>& sections) {
       for (SectionCopy& section : sections) {

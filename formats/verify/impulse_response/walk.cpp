@@ -44,7 +44,9 @@ bool verify_sections(const Section& info, SectionTable& table, ModelView& view, 
     if (!layout::visit_impulse_response_level(*context.view.info, q, next)) return false;
     context.view.levels = q + 1;
   }
-  return verify_mode_counts(info, context);
+  if (!verify_mode_counts(info, context)) return false;
+  // a file that was cut has no appearance
+  return context.levels < context.view.info->levels || layout::visit_appearance(*context.view.info, next);
 }
 
 }  // namespace greenloop::impulse_response

@@ -116,7 +116,7 @@ int compare_touching(bool flip) {
 }
 
 float state[2][8];
-greenloop::Vec3 moved[2][91];
+greenloop::Vec3 moved[3][91];
 
 // the same of impulses on the recorded motions
 int compare_impulses(bool flip) {
@@ -124,8 +124,8 @@ int compare_impulses(bool flip) {
   if (!opened) {
     return 1;
   }
-  const auto run = greenloop::run_impulse_script(opened.model, {}, arena, {state[0], state[1], moved[0], moved[1]},
-                                                 greenloop::impulse_cycles, 1, flip);
+  const auto run = greenloop::run_impulse_script(
+      opened.model, {}, arena, {state[0], state[1], moved[0], moved[1], moved[2]}, greenloop::impulse_cycles, 1, flip);
   std::printf("%s, impulses: %" PRIu64 " followed, arena %zu bytes\ndigest %016" PRIx64 ", expected %016" PRIx64 "\n",
               this_build, run.entered, run.memory_bytes, run.digest, greenloop::impulse_digest);
   if (run.error != nullptr) {

@@ -314,7 +314,8 @@ int run_impulses(bool flip, bool slow) {
   const std::span<float> moved = all.subspan(2 * modes, 3 * vertices);
   const ImpulseRun run = run_impulse_script(opened.model, {}, arena,
                                             {all.first(modes), all.subspan(modes, modes), as_vec3(moved),
-                                             as_vec3(all.subspan(2 * modes + 3 * vertices, 3 * vertices))},
+                                             as_vec3(all.subspan(2 * modes + 3 * vertices, 3 * vertices)),
+                                             as_vec3(all.subspan(2 * modes + 6 * vertices, 3 * vertices))},
                                             impulse_cycles, 1, flip);
   print("digest of impulses ");
   print_hexadecimal(run.digest);
