@@ -1,5 +1,6 @@
 #include "offline/scene/motion_scene.hpp"
 
+#include "offline/scene/sheet_parser.hpp"
 #include "offline/scene/toml_source.hpp"
 #include "offline/scene/toml_table.hpp"
 
@@ -48,13 +49,14 @@ std::optional<MotionScene> parse_motion_scene(std::string_view text, const std::
   // what `greenloop simulate` reads may stand in the same file
   const Table table(toml, "",
                     {"trajectories", "accuracy", "reduction", "budget", "surface", "remesh", "material", "fixed",
-                     "simulate", "impulses"},
+                     "simulate", "impulses", "sheet", "rigid"},
                     problems);
   MotionScene scene;
   read_trajectories(table, file, scene);
   read_accuracy(table, scene);
   read_reduction(table, scene);
   read_budget(table, scene);
+  scene.sheet = read_sheet(table);
   problems.throw_if_any();
   return scene;
 }
