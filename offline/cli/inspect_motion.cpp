@@ -124,6 +124,7 @@ Json motion_inspection(const ModelFile& model, const Json& provenance) {
           {"worst_error", view.group[view.levels - 1].counts->worst_error},
           {"quantisation_error", info.quantisation_error},
           {"replay_error", recorded(provenance, "replay_error")},
+          {"penetrations", recorded(provenance, "penetrations")},
           {"mode_levels", levels_of(view)},
           {"rank_curve", rank_curve(view)},
           {"appearance", appearance_of(view)},
@@ -157,6 +158,13 @@ void print_motion_table(const std::filesystem::path& file, const Json& found, st
     row("appearance", fmt::format("{} modes of {} states, {} of the variation in others, quantisation {}",
                                   found["rank_appearance"].dump(), light["states"].dump(), percent(light["error"]),
                                   percent(light["quantisation_error"])));
+  }
+  if (const Json& counts = found["penetrations"]; counts.is_object()) {
+    const auto text = [](const Json& count) {
+      return fmt::format("{} of {} frames", count["crossing_frames"].dump(), count["frames"].dump());
+    };
+    row("crosses itself",
+        fmt::format("{} simulated, {} replayed", text(counts["simulated"]), text(counts["replayed"])));
   }
   row("loop", fmt::format("{} Hz; differences die out at {} 1/s", found["rate"].dump(), found["blend_rate"].dump()));
   fmt::print(out, "\n  {:<32}{:>8}{:>18}{:>18}\n", "impulse", "orbits", "median distance", "worst distance");

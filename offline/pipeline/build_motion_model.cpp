@@ -30,6 +30,20 @@ json replay_record(const std::vector<double>& errors) {
           {"worst", errors.back()}};
 }
 
+json penetration_record(const PenetrationCount& count) {
+  return {{"frames", count.frames},
+          {"crossing_frames", count.crossing_frames},
+          {"crossings", count.crossings},
+          {"inside_frames", count.inside_frames},
+          {"deepest", count.deepest}};
+}
+
+json penetrations_record(const std::optional<ReplayPenetrations>& penetrations) {
+  if (!penetrations) return nullptr;
+  return {{"simulated", penetration_record(penetrations->simulated)},
+          {"replayed", penetration_record(penetrations->replayed)}};
+}
+
 json dead_ends_record(const std::vector<DeadEnd>& dead_ends) {
   json record = json::array();
   for (const DeadEnd& end : dead_ends) record.push_back({{"orbit", end.source_orbit}, {"distance", end.distance}});
@@ -61,6 +75,7 @@ ImpulseModelGoal goal_of(const MotionScene& scene) {
   goal.dead_end = scene.dead_end;
   goal.blend_rate = scene.blend_rate;
   goal.rate = scene.rate.value_or(0);
+  if (scene.sheet) goal.rigid = scene.sheet->rigid;
   return goal;
 }
 
@@ -102,7 +117,8 @@ json build_motion_model(const std::filesystem::path& scene_file, const MotionSce
               {"trajectories", provenance_of(trajectories.scene(), scene.trajectories.string())},
               {"scene_text", canonical_text(scene)},
               {"reduction", reduction_record(model)},
-              {"replay_error", replay_record(model.replay_errors)}};
+              {"replay_error", replay_record(model.replay_errors)},
+              {"penetrations", penetrations_record(model.penetrations)}};
   if (scene.appearance) record["appearance"] = add_appearance(*scene.appearance, model.data, progress);
   record["tool"] =
       fmt::format("greenloop {}.{}.{}", GREENLOOP_VERSION_MAJOR, GREENLOOP_VERSION_MINOR, GREENLOOP_VERSION_PATCH);

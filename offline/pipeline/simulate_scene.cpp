@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "formats/mesh/coarse_mesh.hpp"
+#include "formats/mesh/surface_io.hpp"
 #include "formats/trajectory/trajectory_file.hpp"
 #include "offline/pipeline/body_geometry.hpp"
 #include "offline/simulate/sampling.hpp"
@@ -19,10 +21,10 @@
 namespace greenloop::offline {
 namespace {
 
-std::vector<std::uint8_t> fixed_vertices(const Scene& scene, const TetrahedralMesh& mesh) {
+std::vector<std::uint8_t> fixed_vertices(const Scene& scene, const std::vector<Eigen::Vector3d>& vertices) {
   Eigen::AlignedBox3d box;
-  for (const auto& vertex : mesh.vertices) box.extend(vertex);
-  const auto fixed = evaluate(scene.fixed, mesh.vertices, box);
+  for (const auto& vertex : vertices) box.extend(vertex);
+  const auto fixed = evaluate(scene.fixed, vertices, box);
   return {fixed.begin(), fixed.end()};
 }
 
@@ -36,27 +38,58 @@ std::vector<Impulse> palette_of(const Simulation& simulation) {
   std::vector<Impulse> palette;
   for (const auto& impulse : simulation.impulses) {
     const Eigen::Vector3d v = impulse.velocity();
-    palette.push_back({impulse.name, {v.x(), v.y(), v.z(), 0}, {}});
+    const std::array<double, 4> motion{v.x(), v.y(), v.z(), impulse.turning};
+    palette.push_back(simulation.sheet ? Impulse{impulse.name, motion, motion} : Impulse{impulse.name, motion, {}});
   }
   return palette;
 }
 
-SamplingPlan plan_of(const Simulation& s) {
-  return {s.coverage ? Sampling::coverage : Sampling::random,
-          s.orbits,
-          s.held_out,
-          s.shortest,
-          s.longest,
-          s.to_rest,
-          s.longest_to_rest,
-          s.seed};
+/// A simulator, and what a record and a file say of it.
+struct Simulated {
+  std::unique_ptr<Simulator> simulator;
+  nlohmann::json record;      // beside what was played
+  nlohmann::json provenance;  // beside the scene
+};
+
+Simulated make_solid(const Scene& scene, ProgressBar& progress) {
+  auto body = make_elastic_solid(scene, progress);
+  progress.begin("dynamics");
+  const auto tetrahedra = body.mesh.tetrahedra.size(), vertices = body.mesh.vertices.size();
+  auto solid = std::make_unique<ElasticSolid>(std::move(body));
+  const double frequency = solid->lowest_frequency() / (2 * std::numbers::pi);
+  progress.end(fmt::format("slowest vibration {:.3g} Hz", frequency));
+  // a mesh's tetrahedra may differ from machine to machine, so that their count belongs to what a file is of
+  return {std::move(solid),
+          {{"tetrahedra", tetrahedra}, {"simulated_vertices", vertices}, {"lowest_frequency_hz", frequency}},
+          {{"tetrahedra", tetrahedra}}};
 }
 
-/// A mesh's tetrahedra may differ from machine to machine, so that their count belongs to what a file is of.
-std::string provenance_of(const Scene& scene, const ElasticSolidScene& body) {
-  return nlohmann::json{
-      {"program", "greenloop simulate"}, {"scene", canonical_text(scene)}, {"tetrahedra", body.mesh.tetrahedra.size()}}
-      .dump();
+Simulated make_sheets(const Scene& scene, ProgressBar& progress) {
+  progress.begin("settling");
+  auto sheets = std::make_unique<ThinSheets>(make_sheet_scene(scene));
+  progress.end(fmt::format("{} vertices", sheets->vertices()));
+  return {std::move(sheets), nlohmann::json::object(), nlohmann::json::object()};
+}
+
+SamplingPlan plan_of(const Simulation& s) {
+  SamplingPlan plan{s.coverage ? Sampling::coverage : Sampling::random,
+                    s.orbits,
+                    s.held_out,
+                    s.shortest,
+                    s.longest,
+                    s.to_rest,
+                    s.longest_to_rest,
+                    s.seed,
+                    {},
+                    s.replay_goal};
+  for (const auto& impulse : s.impulses) plan.longest_of.push_back(impulse.longest);
+  return plan;
+}
+
+std::string provenance_of(const Scene& scene, nlohmann::json provenance) {
+  provenance["program"] = "greenloop simulate";
+  provenance["scene"] = canonical_text(scene);
+  return provenance.dump();
 }
 
 bool is_same(const TrajectoryScene& a, const TrajectoryScene& b) {
@@ -83,21 +116,19 @@ TrajectoryWriter open_or_create(const SimulateRequest& request, const Trajectory
   return file;
 }
 
-nlohmann::json record_of(const TrajectoryScene& file, const ElasticSolidScene& body, const ElasticSolid& solid) {
+nlohmann::json record_of(const TrajectoryScene& file, nlohmann::json record) {
   std::uint64_t frames = 0, at_rest = 0, held_out = 0;
   for (const auto& orbit : file.orbits) {
     frames += orbit.frames;
     at_rest += orbit.at_rest ? 1 : 0;
     held_out += orbit.held_out ? 1 : 0;
   }
-  return {{"tetrahedra", body.mesh.tetrahedra.size()},
-          {"simulated_vertices", body.mesh.vertices.size()},
-          {"vertices", body.shown.size()},
-          {"lowest_frequency_hz", solid.lowest_frequency() / (2 * std::numbers::pi)},
-          {"orbits", file.orbits.size()},
-          {"held_out", held_out},
-          {"at_rest", at_rest},
-          {"frames", frames}};
+  record.update({{"vertices", file.vertices()},
+                 {"orbits", file.orbits.size()},
+                 {"held_out", held_out},
+                 {"at_rest", at_rest},
+                 {"frames", frames}});
+  return record;
 }
 
 }  // namespace
@@ -110,7 +141,7 @@ ElasticSolidScene make_elastic_solid(const Scene& scene, ProgressBar& progress) 
   progress.end(fmt::format("{} tetrahedra, {} vertices, by {}", filled.mesh.tetrahedra.size(),
                            filled.mesh.vertices.size(), filled.mesher));
   ElasticSolidScene solid;
-  solid.fixed = fixed_vertices(scene, filled.mesh);
+  solid.fixed = fixed_vertices(scene, filled.mesh.vertices);
   solid.mesh = std::move(filled.mesh);
   solid.material = scene.material;
   solid.density = scene.density.value();
@@ -126,6 +157,35 @@ ElasticSolidScene make_elastic_solid(const Scene& scene, ProgressBar& progress) 
   return solid;
 }
 
+SheetScene make_sheet_scene(const Scene& scene) {
+  const Simulation& simulation = scene.simulation.value();
+  const Sheet& sheet = simulation.sheet.value();
+  SheetScene result;
+  result.mesh = read_surface(scene.mesh.path);
+  Eigen::AlignedBox3d box;
+  for (const auto& vertex : result.mesh.vertices) box.extend(vertex);
+  const double scale = scene.mesh.scale(box);
+  for (auto& vertex : result.mesh.vertices) vertex *= scale;
+  result.fixed = fixed_vertices(scene, result.mesh.vertices);
+  result.rigid = sheet.rigid;
+  result.density = sheet.density;
+  result.stretch = sheet.stretch;
+  result.bend = sheet.bend;
+  result.thickness = sheet.thickness;
+  result.friction = sheet.friction;
+  result.damping = sheet.damping;
+  result.air = sheet.air;
+  result.time_step = simulation.time_step;
+  result.substeps = sheet.substeps;
+  result.finer = sheet.finer;
+  result.rest = simulation.rest;
+  result.settling = sheet.settling;
+  for (const auto& impulse : simulation.impulses) {
+    result.impulses.push_back({impulse.velocity(), impulse.turning});
+  }
+  return result;
+}
+
 nlohmann::json simulate_scene(SimulateRequest request, ProgressBar& progress) {
   const Scene scene = read_scene(request.scene);
   if (!scene.simulation) {
@@ -137,20 +197,20 @@ nlohmann::json simulate_scene(SimulateRequest request, ProgressBar& progress) {
         request.scene.string() +
         ": does not say where trajectories go; write [trajectories] file = \"NAME.h5\", or use -o");
   }
-  const auto body = make_elastic_solid(scene, progress);
-  progress.begin("dynamics");
-  ElasticSolid solid(body);
-  progress.end(fmt::format("slowest vibration {:.3g} Hz", solid.lowest_frequency() / (2 * std::numbers::pi)));
+  auto [simulator, about, provenance] =
+      scene.simulation->sheet ? make_sheets(scene, progress) : make_solid(scene, progress);
 
   const auto plan = plan_of(*scene.simulation);
   auto states = request.trajectories;
   states += ".states";
-  const auto described =
-      describe(solid, palette_of(*scene.simulation), successions(*scene.simulation), provenance_of(scene, body));
-  auto file = open_or_create(request, described, room_for(plan, solid.time_step()), states);
+  const auto described = describe(*simulator, palette_of(*scene.simulation), successions(*scene.simulation),
+                                  provenance_of(scene, std::move(provenance)));
+  auto file = open_or_create(request, described, room_for(plan, simulator->time_step()), states);
   progress.begin("orbits");
-  sample(solid, plan, file, states, [&](double fraction, std::string_view what) { progress.update(fraction, what); });
-  auto record = record_of(file.scene(), body, solid);
+  const auto replay_error = sample(*simulator, plan, file, states,
+                                   [&](double fraction, std::string_view what) { progress.update(fraction, what); });
+  auto record = record_of(file.scene(), std::move(about));
+  if (replay_error) record["replay_estimate"] = *replay_error;
   record["file"] = request.trajectories.string();
   progress.end(fmt::format("{} orbits, {} frames", record["orbits"].dump(), record["frames"].dump()));
   file.close();

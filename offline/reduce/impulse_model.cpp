@@ -146,6 +146,9 @@ ImpulseModel build_impulse_model(const TrajectoryFile& file, const ImpulseModelG
   data.orbits = portrait.orbits;
   data.references = nearest_references(portrait, scene.successions, scene.impulses.size());
   model.replay_errors = replay_errors(file, reduced, portrait, data.info.blend_rate);
+  if (goal.rigid) {
+    model.penetrations = replay_penetrations(file, reduced, portrait, data.info.blend_rate, *goal.rigid);
+  }
   return model;
 }
 

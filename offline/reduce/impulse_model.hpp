@@ -8,6 +8,7 @@
 #include "formats/write/impulse_response.hpp"
 #include "offline/reduce/phase_portrait.hpp"
 #include "offline/reduce/reduced_frames.hpp"
+#include "offline/reduce/replay.hpp"
 
 namespace greenloop::offline {
 
@@ -18,6 +19,7 @@ struct ImpulseModelGoal {
   double dead_end = 0.5;             ///< an orbit goes on within this distance, of the largest |q_u|, or is taken out
   std::optional<double> blend_rate;  ///< lambda, 1/s; none: default_blend_rate
   double rate = 0;                   ///< Hz, of the loop; 0: a step for each frame
+  std::optional<std::vector<RigidShape>> rigid = {};  ///< penetrations are counted, with these; none: they are not
 };
 
 /// A model before encoding, and what it cost.
@@ -26,7 +28,8 @@ struct ImpulseModel {
   std::vector<double> singular_values;  ///< m, of all modes that were found
   double unread = 0;                    ///< m, as of ReducedFrames
   std::vector<DeadEnd> dead_ends;
-  std::vector<double> replay_errors;  ///< rising; none if no orbit is held out
+  std::vector<double> replay_errors;               ///< rising; none if no orbit is held out
+  std::optional<ReplayPenetrations> penetrations;  ///< of the same orbits, if the goal asks for it
 };
 
 /// 1/s: of nine orbits in ten, all but 5 % of a difference has died out when they end; and no more than a fifth of it

@@ -62,8 +62,17 @@ std::size_t nearest_orbit(const PhasePortrait& portrait, std::uint32_t impulse, 
   return nearest;
 }
 
-double replay_error(const TrajectoryFile& file, const TrajectoryOrbit& orbit, const ReducedFrames& reduced,
-                    const PhasePortrait& portrait, double blend_rate) {
+/// A frame of a held-out orbit, in coordinates.
+struct ReplayedFrame {
+  std::uint64_t frame = 0;  ///< of the trajectories
+  VectorXd simulated, replayed;
+  double left_out = 0;  ///< m^2, of what was simulated
+};
+
+/// Plays the first half second of a held-out orbit beside its simulation; the start is left out.
+template <class Visit>
+void replay_orbit(const TrajectoryFile& file, const TrajectoryOrbit& orbit, const ReducedFrames& reduced,
+                  const PhasePortrait& portrait, double blend_rate, const Visit& visit) {
   const double step = file.scene().time_step;
   const auto frames = std::min(orbit.frames, static_cast<std::uint64_t>(std::lround(replay_seconds / step)) + 1);
   const ProjectedFrames truth = project_frames(file, {{orbit.first_frame, frames}}, reduced);
@@ -75,14 +84,20 @@ double replay_error(const TrajectoryFile& file, const TrajectoryOrbit& orbit, co
   const std::size_t nearest = nearest_orbit(portrait, orbit.impulse, start, (start - before) / step);
   const Index first = Index{portrait.orbits[nearest].first_row} + 1;
   Replay replay(portrait, nearest, start - portrait.position.col(first), std::exp(-blend_rate * step));
-  double difference = 0, size = 0;
-  for (Index k = 1; k < static_cast<Index>(frames); ++k) {
+  for (std::uint64_t k = 1; k < frames; ++k) {
     replay.pass();
-    const VectorXd position = truth.coordinates.col(k);
-    const double left_out = truth.left_out[static_cast<std::size_t>(k)];
-    difference += (position - replay.position()).squaredNorm() + left_out;
-    size += (position - reduced.rest).squaredNorm() + left_out;
+    visit(ReplayedFrame{orbit.first_frame + k, truth.coordinates.col(static_cast<Index>(k)), replay.position(),
+                        truth.left_out[k]});
   }
+}
+
+double replay_error(const TrajectoryFile& file, const TrajectoryOrbit& orbit, const ReducedFrames& reduced,
+                    const PhasePortrait& portrait, double blend_rate) {
+  double difference = 0, size = 0;
+  replay_orbit(file, orbit, reduced, portrait, blend_rate, [&](const ReplayedFrame& at) {
+    difference += (at.simulated - at.replayed).squaredNorm() + at.left_out;
+    size += (at.simulated - reduced.rest).squaredNorm() + at.left_out;
+  });
   return size > 0 ? std::sqrt(difference / size) : 0;
 }
 
@@ -96,6 +111,27 @@ std::vector<double> replay_errors(const TrajectoryFile& file, const ReducedFrame
   }
   std::sort(errors.begin(), errors.end());
   return errors;
+}
+
+ReplayPenetrations replay_penetrations(const TrajectoryFile& file, const ReducedFrames& reduced,
+                                       const PhasePortrait& portrait, double blend_rate,
+                                       const std::vector<RigidShape>& rigid) {
+  constexpr double between = 0.05;  // s
+  const auto every = std::max(1L, std::lround(between / file.scene().time_step));
+  PenetrationCounter simulated(file.scene().triangles, rigid), replayed(file.scene().triangles, rigid);
+  std::vector<float> frame(file.scene().rest.size());
+  const Eigen::Map<const Eigen::VectorXf> shape(reduced.shape.data(), static_cast<Index>(reduced.shape.size()));
+  for (const TrajectoryOrbit& orbit : file.scene().orbits) {
+    if (!orbit.held_out) continue;
+    replay_orbit(file, orbit, reduced, portrait, blend_rate, [&](const ReplayedFrame& at) {
+      if ((at.frame - orbit.first_frame) % static_cast<std::uint64_t>(every) != 0) return;
+      file.read_frames(at.frame, 1, frame);
+      simulated.add(frame);
+      Eigen::Map<Eigen::VectorXf>(frame.data(), shape.size()) = shape + reduced.modes * at.replayed.cast<float>();
+      replayed.add(frame);
+    });
+  }
+  return {simulated.count(), replayed.count()};
 }
 
 double quantile(const std::vector<double>& rising, double part) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "formats/trajectory/trajectory_file.hpp"
+#include "offline/reduce/penetration.hpp"
 #include "offline/reduce/phase_portrait.hpp"
 #include "offline/reduce/reduced_frames.hpp"
 
@@ -18,6 +19,17 @@ inline constexpr double replay_seconds = 0.5;
 /// the held-out frames once.
 [[nodiscard]] std::vector<double> replay_errors(const TrajectoryFile& file, const ReducedFrames& reduced,
                                                 const PhasePortrait& portrait, double blend_rate);
+
+/// What is counted in held-out orbits as they were simulated, and as they are replayed.
+struct ReplayPenetrations {
+  PenetrationCount simulated, replayed;
+};
+
+/// Looks at a frame of each 50 ms of the first half second of each held-out orbit, as replay_errors plays it. Reads the
+/// held-out frames twice.
+[[nodiscard]] ReplayPenetrations replay_penetrations(const TrajectoryFile& file, const ReducedFrames& reduced,
+                                                     const PhasePortrait& portrait, double blend_rate,
+                                                     const std::vector<RigidShape>& rigid);
 
 /// The least of rising values that a part of them does not exceed. Needs one at least.
 [[nodiscard]] double quantile(const std::vector<double>& rising, double part);

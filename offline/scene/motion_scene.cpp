@@ -1,6 +1,7 @@
 #include "offline/scene/motion_scene.hpp"
 
 #include "formats/layout.hpp"
+#include "offline/scene/sheet_parser.hpp"
 #include "offline/scene/toml_source.hpp"
 #include "offline/scene/toml_table.hpp"
 
@@ -120,7 +121,7 @@ std::optional<MotionScene> parse_motion_scene(std::string_view text, const std::
   // what `greenloop simulate` reads may stand in the same file
   const Table table(toml, "",
                     {"trajectories", "accuracy", "reduction", "budget", "appearance", "surface", "remesh", "material",
-                     "fixed", "simulate", "impulses"},
+                     "fixed", "simulate", "impulses", "sheet", "rigid"},
                     problems);
   MotionScene scene;
   read_trajectories(table, file, scene);
@@ -128,6 +129,7 @@ std::optional<MotionScene> parse_motion_scene(std::string_view text, const std::
   read_reduction(table, scene);
   read_budget(table, scene);
   read_appearance(table, scene);
+  scene.sheet = read_sheet(table);
   problems.throw_if_any();
   return scene;
 }

@@ -11,6 +11,8 @@
 
 #include "offline/scene/region.hpp"
 
+#include "offline/scene/sheet.hpp"
+
 namespace greenloop::offline {
 
 /// Part of a surface with a reflectance of its own.
@@ -41,6 +43,7 @@ struct MotionScene {
   std::size_t memory = 512U << 20;     ///< bytes that reduction may take, 64 MB at least
   std::optional<double> rate;          ///< Hz, of the loop; none: a step for each frame
   std::optional<AppearanceScene> appearance;
+  std::optional<Sheet> sheet;  ///< if what was simulated is one
 };
 
 /// Reads and checks such a scene; none if it is a scene of another kind, without [trajectories]. No file that it names
@@ -50,7 +53,7 @@ struct MotionScene {
 /// The same for a scene in memory; `file` is for messages and for paths relative to it.
 [[nodiscard]] std::optional<MotionScene> parse_motion_scene(std::string_view text, const std::filesystem::path& file);
 
-/// The scene as TOML, every key, always in the same order; parsing it gives the same scene.
+/// The scene as TOML, every key of the model, always in the same order; parsing it gives the same model.
 [[nodiscard]] std::string canonical_text(const MotionScene& scene);
 
 }  // namespace greenloop::offline

@@ -371,15 +371,15 @@ void read_store(const Table& scene, const std::filesystem::path& file, Scene& re
 Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   const auto toml = parse_toml(text, file);
   Problems problems(file.string());
-  const Table table(
-      toml, "",
-      {"surface", "volume", "remesh", "material", "solve", "fixed", "touched", "read", "loads", "constraints",
-       "accuracy", "compression", "budget", "store", "simulate", "impulses", "trajectories", "reduction", "appearance"},
-      problems);
+  const Table table(toml, "",
+                    {"surface",  "volume",   "remesh",      "material", "solve",        "fixed",     "touched",
+                     "read",     "loads",    "constraints", "accuracy", "compression",  "budget",    "store",
+                     "simulate", "impulses", "sheet",       "rigid",    "trajectories", "reduction", "appearance"},
+                    problems);
   Scene scene;
   read_mesh(table, file, scene.mesh);
   read_remesh(table, scene.mesh.tetrahedra, scene.remesh);
-  read_material(table, scene.material, scene.density);
+  if (!table.has("sheet")) read_material(table, scene.material, scene.density);
   read_solve(table, scene.elements);
   if (!table.has("fixed")) {
     problems.add({}, "fixed",

@@ -135,9 +135,12 @@ std::string loads_text(const Scene& scene) {
 }
 
 std::string impulse_text(const SupportImpulse& impulse) {
-  std::string text = "\n[[impulses]]\nname = " + string(impulse.name) +
-                     "\nvelocity = " + quantity(impulse.speed, "m/s") + "\ndirection = " + triple(impulse.direction) +
-                     "\n";
+  std::string text = "\n[[impulses]]\nname = " + string(impulse.name) + "\n";
+  if (impulse.speed > 0) {
+    text += "velocity = " + quantity(impulse.speed, "m/s") + "\ndirection = " + triple(impulse.direction) + "\n";
+  }
+  if (impulse.turning != 0) text += "turning = " + number(impulse.turning) + "\n";
+  if (impulse.longest) text += "longest = " + quantity(*impulse.longest, "s") + "\n";
   if (!impulse.after) return text;
   text += "after = [";
   for (std::size_t i = 0; i < impulse.after->size(); ++i) text += (i > 0 ? ", " : "") + string((*impulse.after)[i]);
@@ -145,28 +148,56 @@ std::string impulse_text(const SupportImpulse& impulse) {
 }
 
 // what is not damped, by zero, is left out
-std::string simulation_text(const std::optional<Simulation>& simulation) {
-  if (!simulation) return "";
-  const Simulation& s = *simulation;
+std::string rigid_text(const RigidBox& box) { return "box = [" + triple(box.low) + ", " + triple(box.high) + "]\n"; }
+
+std::string rigid_text(const RigidCylinder& bar) {
+  return "cylinder = { from = " + triple(bar.from) + ", to = " + triple(bar.to) +
+         ", radius = " + quantity(bar.radius, "m") + " }\n";
+}
+
+std::string sheet_text(const Sheet& s) {
+  const auto damping = [](const std::string& key, double value) {
+    return value > 0 ? key + " = " + quantity(value, "1/s") + "\n" : std::string();
+  };
+  std::string text = "\n[sheet]\ndensity = " + quantity(s.density, "kg/m^2") +
+                     "\nstretch = " + quantity(s.stretch, "N/m") + "\nbend = " + quantity(s.bend, "N m") +
+                     "\nthickness = " + quantity(s.thickness, "m") + "\nfriction = " + number(s.friction) + "\n" +
+                     damping("damping", s.damping) + damping("air", s.air) + "settling = " + quantity(s.settling, "s") +
+                     "\nsubsteps = " + std::to_string(s.substeps) + "\nfiner = " + std::to_string(s.finer) + "\n";
+  for (const RigidShape& shape : s.rigid) {
+    text += "\n[[rigid]]\n" + std::visit([](const auto& of_kind) { return rigid_text(of_kind); }, shape);
+  }
+  return text;
+}
+
+std::string solid_text(const Simulation& s) {
   const auto damping = [](const std::string& key, double value, std::string_view unit) {
     return value > 0 ? key + " = " + quantity(value, unit) + "\n" : std::string();
   };
-  std::string text =
-      "\n[simulate]\ntime_step = " + quantity(s.time_step, "s") +
-      "\nstrain = " + string(s.corotational ? "corotational" : "linear") + "\nlevel = " + std::to_string(s.level) +
-      "\n" + damping("mass_damping", s.mass_damping, "1/s") + damping("stiffness_damping", s.stiffness_damping, "s") +
-      "newmark_gamma = " + number(s.newmark_gamma) + "\nrest = " + quantity(s.rest, "m") +
-      "\nsampling = " + string(s.coverage ? "coverage" : "random") + "\norbits = " + std::to_string(s.orbits) +
-      "\nheld_out = " + std::to_string(s.held_out) + "\nshortest = " + quantity(s.shortest, "s") +
-      "\nlongest = " + quantity(s.longest, "s") + "\nto_rest = " + number(s.to_rest) +
-      "\nlongest_to_rest = " + quantity(s.longest_to_rest, "s") + "\nseed = " + std::to_string(s.seed) + "\n";
+  return "strain = " + string(s.corotational ? "corotational" : "linear") + "\nlevel = " + std::to_string(s.level) +
+         "\n" + damping("mass_damping", s.mass_damping, "1/s") +
+         damping("stiffness_damping", s.stiffness_damping, "s") + "newmark_gamma = " + number(s.newmark_gamma) + "\n";
+}
+
+std::string simulation_text(const std::optional<Simulation>& simulation) {
+  if (!simulation) return "";
+  const Simulation& s = *simulation;
+  std::string text = "\n[simulate]\ntime_step = " + quantity(s.time_step, "s") + "\n" + (s.sheet ? "" : solid_text(s)) +
+                     "rest = " + quantity(s.rest, "m") + "\nsampling = " + string(s.coverage ? "coverage" : "random") +
+                     "\norbits = " + std::to_string(s.orbits) + "\nheld_out = " + std::to_string(s.held_out) +
+                     "\nshortest = " + quantity(s.shortest, "s") + "\nlongest = " + quantity(s.longest, "s") +
+                     "\nto_rest = " + number(s.to_rest) + "\nlongest_to_rest = " + quantity(s.longest_to_rest, "s") +
+                     "\nseed = " + std::to_string(s.seed) + "\n" +
+                     (s.replay_goal > 0 ? "replay_goal = " + number(s.replay_goal) + "\n" : "");
+  if (s.sheet) text += sheet_text(*s.sheet);
   for (const auto& impulse : s.impulses) text += impulse_text(impulse);
   return text + (s.trajectories_name.empty() ? "" : "\n[trajectories]\nfile = " + string(s.trajectories_name) + "\n");
 }
 
 // columns do not follow from the density
 std::string tables_of_body(const Scene& scene, std::optional<double> density) {
-  return remesh_text(scene) + material_text(scene.material, density) + solve_text(scene.elements) +
+  const bool sheets = scene.simulation && scene.simulation->sheet;
+  return remesh_text(scene) + (sheets ? "" : material_text(scene.material, density)) + solve_text(scene.elements) +
          regions_text("fixed", scene.fixed) + regions_text("touched", scene.touched) + regions_text("read", scene.read);
 }
 

@@ -7,13 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "offline/scene/sheet.hpp"
+
 namespace greenloop::offline {
 
-/// A velocity that the support of the body suddenly has in addition (docs/simulating.md).
+/// A velocity that the support of a body suddenly has in addition, or that of sheets from now on
+/// (docs/simulating.md).
 struct SupportImpulse {
   std::string name;                               ///< printable ASCII, 1 to 31 letters, none twice
   double speed = 0;                               ///< m/s
-  Eigen::Vector3d direction;                      ///< of any length but 0
+  Eigen::Vector3d direction{1, 0, 0};             ///< of any length but 0
+  double turning = 0;                             ///< 1/s, about the y axis, from now on; only of sheets
+  std::optional<double> longest;                  ///< s, of its orbits; none: as of all others
   std::optional<std::vector<std::string>> after;  ///< what it may follow: names of impulses, "rest"; none: everything
 
   [[nodiscard]] Eigen::Vector3d velocity() const { return speed * direction.normalized(); }
@@ -36,6 +41,8 @@ struct Simulation {
   double to_rest = 0;          ///< share of the orbits that end at rest
   double longest_to_rest = 0;  ///< s, of these
   std::uint64_t seed = 1;
+  double replay_goal = 0;      ///< stop once held-out orbits replay with such a median error; 0: after all orbits
+  std::optional<Sheet> sheet;  ///< none: an elastic solid
   std::vector<SupportImpulse> impulses;  ///< at least one
   std::string trajectories_name;         ///< of the file to write, as the scene says; empty: it does not say
   std::filesystem::path trajectories;    ///< seen from the working directory

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "offline/scene/sheet_parser.hpp"
+
 namespace greenloop::offline {
 namespace {
 
@@ -36,11 +38,18 @@ std::optional<std::vector<std::string>> read_after(const Table& table) {
   return names;
 }
 
-void read_impulse(const Table& table, std::vector<SupportImpulse>& impulses) {
+void read_impulse(const Table& table, bool sheets, std::vector<SupportImpulse>& impulses) {
   SupportImpulse impulse;
   read_name(table, impulses, impulse.name);
-  table.require("velocity", "velocity = \"0.5 m/s\"");
-  table.require("direction", "direction = [1, 0, 0]");
+  impulse.longest = table.quantity("longest", Dimension::time);
+  set_if(impulse.turning, table.number("turning", {}));
+  const bool pushes = table.has("velocity") || table.has("direction");
+  if (pushes || !sheets) {
+    table.require("velocity", "velocity = \"0.5 m/s\"");
+    table.require("direction", "direction = [1, 0, 0]");
+  }
+  if (table.has("turning") && !sheets) table.refuse("turning", "goes with [sheet] only");
+  if (table.has("turning") && pushes) table.refuse("turning", "does not go with velocity and direction");
   set_if(impulse.speed, table.quantity("velocity", Dimension::speed));
   if (table.has("direction")) impulse.direction = table.direction("direction").value_or(Eigen::Vector3d::UnitX());
   impulse.after = read_after(table);
@@ -60,8 +69,8 @@ void read_impulses(const Table& scene, std::vector<SupportImpulse>& impulses) {
   }
   for (std::size_t i = 0; i < array->size(); ++i) {
     read_impulse(Table(*(*array)[i].as_table(), "impulses[" + std::to_string(i) + "]",
-                       {"name", "velocity", "direction", "after"}, scene.problems()),
-                 impulses);
+                       {"name", "velocity", "direction", "turning", "longest", "after"}, scene.problems()),
+                 scene.has("sheet"), impulses);
   }
 }
 
@@ -133,6 +142,14 @@ void read_sampling(const Table& table, Simulation& simulation) {
   set_if(simulation.held_out, table.integer("held_out", 0, most_orbits));
   set_if(simulation.seed, table.integer("seed", 0, std::numeric_limits<std::int64_t>::max()));
   read_choice(table, "sampling", "coverage", "random", simulation.coverage);
+  set_if(simulation.replay_goal, table.number("replay_goal", {0, 1, true}));
+  if (simulation.replay_goal > 0 && simulation.held_out == 0) table.refuse("replay_goal", "needs held_out orbits");
+}
+
+void refuse_keys_of_solids(const Table& simulate) {
+  for (const std::string_view key : {"strain", "level", "mass_damping", "stiffness_damping", "newmark_gamma"}) {
+    if (simulate.has(key)) simulate.refuse(key, "is of elastic solids, not of sheets");
+  }
 }
 
 }  // namespace
@@ -155,9 +172,9 @@ void read_simulation(const Table& table, const std::filesystem::path& file, Scen
   const auto simulate =
       section(table, "simulate",
               {"time_step", "strain", "level", "mass_damping", "stiffness_damping", "newmark_gamma", "rest", "sampling",
-               "orbits", "held_out", "shortest", "longest", "to_rest", "longest_to_rest", "seed"});
+               "orbits", "held_out", "shortest", "longest", "to_rest", "longest_to_rest", "seed", "replay_goal"});
   if (!simulate) {
-    for (const std::string_view key : {"impulses", "trajectories", "appearance"}) {
+    for (const std::string_view key : {"impulses", "trajectories", "appearance", "sheet", "rigid"}) {
       if (table.has(key)) table.refuse(key, "belong to a [simulate] section, which is missing");
     }
     return;
@@ -169,7 +186,11 @@ void read_simulation(const Table& table, const std::filesystem::path& file, Scen
   read_trajectories(table, file, simulation);
   read_impulses(table, simulation.impulses);
   require_known_successions(table, simulation.impulses);
-  if (!scene.density) {
+  simulation.sheet = read_sheet(table);
+  if (simulation.sheet) {
+    refuse_keys_of_solids(*simulate);
+    table.require("trajectories", "[trajectories] file = \"cloth.h5\"");
+  } else if (!scene.density) {
     simulate->refuse_table("needs the body's mass: write for example [material] density = \"1000 kg/m^3\"");
   }
   if (scene.mesh.tetrahedra) {

@@ -19,7 +19,7 @@ struct Unit {
   double per;
 };
 
-constexpr std::array<Unit, 30> units{{{"m", Dimension::length, 1, 1},
+constexpr std::array<Unit, 36> units{{{"m", Dimension::length, 1, 1},
                                       {"cm", Dimension::length, 1, 1e2},
                                       {"mm", Dimension::length, 1, 1e3},
                                       {"um", Dimension::length, 1, 1e6},
@@ -48,11 +48,17 @@ constexpr std::array<Unit, 30> units{{{"m", Dimension::length, 1, 1},
                                       {"cm/s", Dimension::speed, 1, 1e2},
                                       {"mm/s", Dimension::speed, 1, 1e3},
                                       {"1/s", Dimension::rate, 1, 1},
-                                      {"1/ms", Dimension::rate, 1e3, 1}}};
+                                      {"1/ms", Dimension::rate, 1e3, 1},
+                                      {"kg/m^2", Dimension::sheet_density, 1, 1},
+                                      {"g/m^2", Dimension::sheet_density, 1, 1e3},
+                                      {"N/m", Dimension::tension, 1, 1},
+                                      {"kN/m", Dimension::tension, 1e3, 1},
+                                      {"N m", Dimension::torque, 1, 1},
+                                      {"mN m", Dimension::torque, 1, 1e3}}};
 
 std::string_view name_of(Dimension dimension) {
-  constexpr std::array<std::string_view, 7> names{"length", "pressure", "frequency", "density",
-                                                  "time",   "speed",    "rate"};
+  constexpr std::array<std::string_view, 10> names{"length", "pressure", "frequency",         "density", "time",
+                                                   "speed",  "rate",     "density of sheets", "tension", "torque"};
   return names[static_cast<std::size_t>(dimension)];
 }
 
@@ -89,8 +95,8 @@ std::string_view trimmed(std::string_view text) {
 }  // namespace
 
 std::string_view example_of(Dimension dimension) {
-  constexpr std::array<std::string_view, 7> examples{"30 cm", "20 kPa",  "1 kHz", "1000 kg/m^3",
-                                                     "10 ms", "0.5 m/s", "2 1/s"};
+  constexpr std::array<std::string_view, 10> examples{"30 cm",   "20 kPa", "1 kHz",      "1000 kg/m^3", "10 ms",
+                                                      "0.5 m/s", "2 1/s",  "0.2 kg/m^2", "500 N/m",     "0.1 mN m"};
   return examples[static_cast<std::size_t>(dimension)];
 }
 

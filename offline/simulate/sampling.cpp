@@ -50,6 +50,12 @@ struct Start {
   Coordinates at;
 };
 
+/// Where an orbit started.
+struct Begun {
+  std::size_t orbit = 0;
+  Coordinates at;
+};
+
 std::uint64_t steps_of(double duration, double time_step) {
   return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(duration / time_step)));
 }
@@ -70,10 +76,10 @@ class Sampler {
 
   void run(const Progress& progress) {
     const std::uint64_t all = std::uint64_t{plan_.held_out} + plan_.orbits;
-    for (std::uint64_t next = file_.scene().orbits.size(); next < all; ++next) {
+    for (std::uint64_t next = file_.scene().orbits.size(); next < all && !reached(next); ++next) {
       if (progress) {
         progress(static_cast<double>(next) / static_cast<double>(all),
-                 fmt::format("orbit {} of {}, {} frames", next + 1, all, frames_of(file_.scene())));
+                 fmt::format("orbit {} of {}, {} frames{}", next + 1, all, frames_of(file_.scene()), estimate_text()));
       }
       Random random(plan_.seed, next);
       const bool held_out = next < plan_.held_out;
@@ -83,7 +89,59 @@ class Sampler {
     }
   }
 
+  /// The median replay error of held-out orbits; none: nothing is held out, or nothing else was played.
+  std::optional<double> replay_error() {
+    read_starts();
+    std::vector<double> errors;
+    for (const TrajectoryOrbit& orbit : file_.scene().orbits) {
+      if (!orbit.held_out) continue;
+      if (const auto error = replay_error_of(orbit)) errors.push_back(*error);
+    }
+    if (errors.empty()) return std::nullopt;
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    return *middle;
+  }
+
  private:
+  /// Whether as many orbits replay as well as is asked for; looked at every few orbits.
+  bool reached(std::uint64_t orbits) {
+    constexpr std::uint64_t every = 5;
+    const std::uint64_t played = orbits - std::min<std::uint64_t>(orbits, plan_.held_out);
+    if (!(plan_.replay_goal > 0) || played == 0 || played % every != 0) return false;
+    estimate_ = replay_error();
+    return estimate_ && *estimate_ <= plan_.replay_goal;
+  }
+
+  [[nodiscard]] std::string estimate_text() const {
+    return estimate_ ? fmt::format(", replay error {:.3g} %", 100 * *estimate_) : "";
+  }
+
+  /// Of the coordinates, as a model would replay it: in the orbit of the impulse whose start is nearest, as long as
+  /// that goes on, while the difference of the starts dies out.
+  [[nodiscard]] std::optional<double> replay_error_of(const TrajectoryOrbit& held_out) {
+    const Coordinates start = start_of(held_out);
+    const auto& others = starts_[held_out.impulse];
+    const float rho_squared = balance();
+    const auto nearest = std::min_element(others.begin(), others.end(), [&](const Begun& a, const Begun& b) {
+      return squared_distance(a.at, start, rho_squared) < squared_distance(b.at, start, rho_squared);
+    });
+    if (nearest == others.end()) return std::nullopt;
+    const TrajectoryOrbit& played = file_.scene().orbits[nearest->orbit];
+    const double step = simulator_.time_step();
+    const auto frames = std::min({held_out.frames, played.frames, steps_of(0.5, step) + 1});
+    const double decay = std::exp(-std::min(3 / plan_.shortest, 0.2 / step) * step);
+    Eigen::VectorXf offset = start.q - nearest->at.q;
+    double difference = 0, size = 0;
+    for (std::uint64_t k = 1; k < frames; ++k) {
+      offset *= static_cast<float>(decay);
+      const Eigen::VectorXf truth = projected(held_out.first_frame + k);
+      difference += (truth - projected(played.first_frame + k) - offset).squaredNorm();
+      size += truth.squaredNorm();
+    }
+    return size > 0 ? std::sqrt(difference / size) : 0;
+  }
+
   static std::uint64_t frames_of(const TrajectoryScene& scene) {
     return scene.orbits.empty() ? 0 : scene.orbits.back().first_frame + scene.orbits.back().frames;
   }
@@ -97,14 +155,25 @@ class Sampler {
     return result;
   }
 
+  /// A frame's displacement in coordinates.
+  const Eigen::VectorXf& projected(std::uint64_t frame) {
+    while (projected_.size() <= frame) {
+      file_.read_frames(projected_.size(), 1, positions_);
+      projected_.push_back(projection_.of(positions_));
+    }
+    return projected_[frame];
+  }
+
   /// Of a frame and the one before it; of one that was at rest before if there is none.
   [[nodiscard]] Coordinates coordinates_of(std::uint64_t frame, std::int64_t before) {
-    file_.read_frames(frame, 1, positions_);
-    Coordinates at{projection_.of(positions_), Eigen::VectorXf::Zero(coordinates)};
+    Coordinates at{projected(frame), Eigen::VectorXf::Zero(coordinates)};
     if (before < 0) return at;
-    file_.read_frames(static_cast<std::uint64_t>(before), 1, positions_);
-    at.v = (at.q - projection_.of(positions_)) / static_cast<float>(simulator_.time_step());
+    at.v = (at.q - projected(static_cast<std::uint64_t>(before))) / static_cast<float>(simulator_.time_step());
     return at;
+  }
+
+  [[nodiscard]] Coordinates start_of(const TrajectoryOrbit& orbit) {
+    return orbit.previous_frame < 0 ? rest_.at : coordinates_of(orbit.first_frame, orbit.previous_frame);
   }
 
   /// Adds states and starts of what was played for the model since the last call; rest comes first.
@@ -124,8 +193,7 @@ class Sampler {
     for (; orbits_read_ < file_.scene().orbits.size(); ++orbits_read_) {
       const TrajectoryOrbit& orbit = file_.scene().orbits[orbits_read_];
       if (orbit.held_out) continue;
-      starts_[orbit.impulse].push_back(
-          orbit.previous_frame < 0 ? rest_.at : coordinates_of(orbit.first_frame, orbit.previous_frame));
+      starts_[orbit.impulse].push_back({orbits_read_, start_of(orbit)});
     }
   }
 
@@ -139,11 +207,14 @@ class Sampler {
     return v > 0 ? q / v : 0;
   }
 
+  static float squared_distance(const Coordinates& a, const Coordinates& b, float rho_squared) {
+    return (a.q - b.q).squaredNorm() + rho_squared * (a.v - b.v).squaredNorm();
+  }
+
   [[nodiscard]] float distance_to_starts(const Start& from, std::uint32_t impulse, float rho_squared) const {
     float nearest = std::numeric_limits<float>::infinity();
-    for (const Coordinates& start : starts_[impulse]) {
-      nearest =
-          std::min(nearest, (from.at.q - start.q).squaredNorm() + rho_squared * (from.at.v - start.v).squaredNorm());
+    for (const Begun& start : starts_[impulse]) {
+      nearest = std::min(nearest, squared_distance(from.at, start.at, rho_squared));
     }
     return nearest;
   }
@@ -185,6 +256,11 @@ class Sampler {
     return kept;
   }
 
+  [[nodiscard]] double longest_of(std::uint32_t impulse) const {
+    const auto& limits = plan_.longest_of;
+    return impulse < limits.size() ? limits[impulse].value_or(plan_.longest_to_rest) : plan_.longest_to_rest;
+  }
+
   std::uint64_t add_frame() {
     simulator_.positions(positions_);
     return file_.add_frame(positions_);
@@ -193,7 +269,8 @@ class Sampler {
   void play(const Start& start, std::uint32_t impulse, bool held_out, Random& random) {
     const double to_rest = random.uniform(), duration = random.between(plan_.shortest, plan_.longest);
     const bool until_rest = to_rest < plan_.to_rest;
-    const auto steps = steps_of(until_rest ? plan_.longest_to_rest : duration, simulator_.time_step());
+    const double limit = longest_of(impulse);
+    const auto steps = steps_of(std::min(limit, until_rest ? plan_.longest_to_rest : duration), simulator_.time_step());
     const auto kept = kept_steps(std::min(steps, steps_of(plan_.longest, simulator_.time_step())), random);
     if (start.state) {
       simulator_.restore(states_.read(*start.state));
@@ -223,16 +300,21 @@ class Sampler {
   std::vector<float> positions_;
   Start rest_;
   std::vector<Start> candidates_;
-  std::vector<std::vector<Coordinates>> starts_;  // of each impulse
+  std::vector<std::vector<Begun>> starts_;  // of each impulse
+  std::vector<Eigen::VectorXf> projected_;  // all frames that were asked for, and those before
+  std::optional<double> estimate_;
   std::size_t states_read_ = 0, orbits_read_ = 0;
 };
 
 void require_valid(const SamplingPlan& plan) {
   const bool valid = plan.shortest > 0 && plan.longest >= plan.shortest && plan.to_rest >= 0 && plan.to_rest <= 1 &&
-                     plan.longest_to_rest >= plan.longest;
+                     plan.longest_to_rest >= plan.longest && plan.replay_goal >= 0 &&
+                     (plan.replay_goal == 0 || plan.held_out > 0);
   if (!valid) {
     throw std::invalid_argument(
-        "sampling: durations must be 0 < shortest <= longest <= longest to rest, the share to rest 0 to 1");
+        "sampling: durations must be 0 < shortest <= longest <= longest to rest, the share to rest 0 to 1; a goal of "
+        "replay "
+        "needs orbits that are held out");
   }
 }
 
@@ -258,10 +340,12 @@ TrajectoryScene describe(Simulator& simulator, std::vector<Impulse> impulses, st
   return scene;
 }
 
-void sample(Simulator& simulator, const SamplingPlan& plan, TrajectoryWriter& file, const std::filesystem::path& states,
-            const Progress& progress) {
+std::optional<double> sample(Simulator& simulator, const SamplingPlan& plan, TrajectoryWriter& file,
+                             const std::filesystem::path& states, const Progress& progress) {
   require_valid(plan);
-  Sampler(simulator, plan, file, states).run(progress);
+  Sampler sampler(simulator, plan, file, states);
+  sampler.run(progress);
+  return sampler.replay_error();
 }
 
 }  // namespace greenloop::offline

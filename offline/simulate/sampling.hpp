@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <vector>
 
 #include "formats/trajectory/trajectory_file.hpp"
 #include "offline/progress.hpp"
@@ -24,6 +26,8 @@ struct SamplingPlan {
   double to_rest = 0;          ///< share of the orbits that are, 0..1
   double longest_to_rest = 0;  ///< s, of these
   std::uint64_t seed = 1;
+  std::vector<std::optional<double>> longest_of = {};  ///< s, of the orbits of an impulse; fewer, none: as above
+  double replay_goal = 0;  ///< stop before `orbits` once the median replay error of held-out orbits is below; 0: do not
 };
 
 /// A file with room for the plan's orbits.
@@ -37,8 +41,10 @@ struct SamplingPlan {
 /// from the plan, the simulator and the orbits that are whole, so that a run that was killed goes on with the same
 /// bits. An impulse may follow another as the file's successions say; where none may, the next orbit starts at rest.
 /// The distance of two states is that of their displacements, projected to 24 random coordinates, and of their
-/// velocities, balanced as the paper does (section 2.3.2). Throws what simulator and file do.
-void sample(Simulator& simulator, const SamplingPlan& plan, TrajectoryWriter& file, const std::filesystem::path& states,
-            const Progress& progress = {});
+/// velocities, balanced as the paper does (section 2.3.2). Returns the median relative error, over half a second at
+/// most, of held-out orbits replayed in these coordinates by the orbits for the model; none: nothing is held out.
+/// Throws what simulator and file do.
+std::optional<double> sample(Simulator& simulator, const SamplingPlan& plan, TrajectoryWriter& file,
+                             const std::filesystem::path& states, const Progress& progress = {});
 
 }  // namespace greenloop::offline

@@ -165,11 +165,37 @@ TEST_CASE("coverage leaves smaller gaps than chance") {
   CHECK(coverage < 0.8 * random);
 }
 
+TEST_CASE("a goal of replay ends sampling; coverage reaches it with fewer orbits than chance") {
+  const auto orbits = [](Sampling sampling, double goal) {
+    std::size_t all = 0;
+    for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
+      const TemporaryFolder folder("sampling_goal");
+      Oscillator simulator;
+      SamplingPlan asked{sampling, 200, 20, 0.1, 0.5, 0.2, 4, seed, {}, goal};
+      auto writer = new_file(simulator, asked, folder.path() / "t.h5");
+      const auto error = sample(simulator, asked, writer, folder.path() / "t.states");
+      REQUIRE(error);
+      CHECK((*error <= goal || writer.scene().orbits.size() == 220));
+      all += writer.scene().orbits.size() - 20;
+    }
+    return all;
+  };
+  const auto random = orbits(Sampling::random, 0.15), coverage = orbits(Sampling::coverage, 0.15);
+  MESSAGE("orbits of five runs until 15 %: random " << random << ", coverage " << coverage);
+  CHECK(random < 5 * 200);
+  CHECK(coverage < random);
+  CHECK(orbits(Sampling::coverage, 0.1) >= coverage);
+}
+
 TEST_CASE("refused: plans that contradict themselves, states of something else") {
   const TemporaryFolder folder("sampling_refused");
   auto asked = plan(Sampling::random);
   asked.longest = 0.05;
   CHECK_THROWS_AS(static_cast<void>(room_for(asked, 0.02)), std::invalid_argument);
+  asked = plan(Sampling::random);
+  asked.held_out = 0;
+  asked.replay_goal = 0.1;
+  CHECK_THROWS_WITH(static_cast<void>(room_for(asked, 0.02)), doctest::Contains("needs orbits that are held out"));
   const auto path = folder.path() / "s.states";
   StateFile(path, 2, 0).append(3, std::array{1.0, 2.0});
   CHECK(StateFile(path, 2, 4).read(0) == std::vector{1.0, 2.0});
