@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "offline/scene/region.hpp"
-
 #include "offline/scene/sheet.hpp"
 
 namespace greenloop::offline {
