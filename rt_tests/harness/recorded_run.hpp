@@ -20,10 +20,10 @@ struct RecordedRun {
 };
 
 /// The digests of the script by Elastostatic on write_recorded_model's models: what every target has to find.
-inline constexpr std::uint64_t recorded_digest = 0x69b584edf897395d;  ///< lifted Linear wavelets
-inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0x3a315eaf61eb59d3;
-inline constexpr std::uint64_t recorded_butterfly_digest = 0x49b86fcf9e8c3dd8;
-inline constexpr std::uint64_t recorded_equilibrated_digest = 0x0992fa167e2bb21a;
+inline constexpr std::uint64_t recorded_digest = 0x1b423bfa4783b0de;  ///< lifted Linear wavelets
+inline constexpr std::uint64_t recorded_lifted_butterfly_digest = 0xd1ccbb50488aae1e;
+inline constexpr std::uint64_t recorded_butterfly_digest = 0x91c8595b18eeb9c7;
+inline constexpr std::uint64_t recorded_equilibrated_digest = 0xef5dc84ca20d4aa3;
 
 /// Runs the script on the model file in `bytes`. field: 16-byte aligned, at least 4 floats per node. With `flip` one
 /// bit of one answer is changed, a negative control.

@@ -67,6 +67,7 @@ TEST_CASE("no script makes a body spend more than declared, answer garbage, allo
       CHECK(result.violations.locks == 0);
       CHECK(result.violations.system_calls == 0);
       CHECK(result.violations.minor_faults == 0);
+      MESSAGE("declared work over the most that a step spent: ", declared_over_worst(result));
       CHECK(declared_over_worst(result) <= bar_of(synthetic.wavelet));
       CHECK(result.times.total() == result.cycles);
       CHECK(result.held());
@@ -109,6 +110,7 @@ TEST_CASE("what is declared is near what the dearest sets take, at other prices 
           model.model(),
           {.cycles = 400, .script = ScriptKind::hunt, .contacts = contacts, .prices = dear_coefficients()});
       CHECK(result.held());
+      MESSAGE("declared work over the most that a step spent: ", declared_over_worst(result));
       CHECK(declared_over_worst(result) <= bar_of(wavelet));
     }
   }

@@ -269,8 +269,8 @@ bool continue_batch(FactorJob& job, const FactorTools<N>& tools, std::uint64_t a
   return holds;
 }
 
-// the batch that is at work, or what begins the next, or nodes that leave alone if it holds no more; false if the
-// allowance does not hold what is next, or the factor failed
+// the batch that is at work, or what begins the next; false if the allowance does not hold what is next, or the factor
+// failed
 template <unsigned N>
 bool continue_changes(FactorJob& job, const FactorTools<N>& tools, ColumnSet set, const SetCounts& whole,
                       const Slice& slice, std::uint64_t& work) {
@@ -279,13 +279,12 @@ bool continue_changes(FactorJob& job, const FactorTools<N>& tools, ColumnSet set
     return continue_batch(job, tools, allowance - work, work);
   }
   const std::uint64_t begin = begin_batch_work(tools.counts, whole, job.changes.removed);
-  const std::uint64_t most_for_rows = most_begin_rows_work(tools.counts, whole);
-  const bool enters = begin <= allowance - work;
-  if (!enters && (job.changes.removed == 0 || begin - most_for_rows > allowance - work)) {
+  if (begin > allowance - work) {
     return false;
   }
+  const std::uint64_t most_for_rows = most_begin_rows_work(tools.counts, whole);
   work += begin - most_for_rows - leave_work(tools.counts, whole.columns, job.changes.removed) + begin_from(job, tools);
-  if (job.changes.missing > 0 && enters) {
+  if (job.changes.missing > 0) {
     job.spent = begin;
     const std::uint64_t width = slice.moving ? most_in_a_slice(tools.counts, whole, allowance - work - most_for_rows)
                                              : most_in_a_batch(tools.counts, whole);
