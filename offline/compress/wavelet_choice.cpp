@@ -52,7 +52,7 @@ class SampledBody {
 
  private:
   void read_columns(Eigen::Index size) {
-    constexpr Eigen::Index at_once = 64 * 3;
+    constexpr Eigen::Index at_once = Eigen::Index{64} * 3;
     compliance_.resize(size, size);
     for (Eigen::Index first = 0; first < size; first += at_once) {
       const Eigen::Index count = std::min(at_once, size - first);

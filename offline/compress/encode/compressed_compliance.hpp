@@ -16,7 +16,7 @@ namespace greenloop::offline {
 template <unsigned N>
 class CompressedCompliance {
  public:
-  /// The view may go. Memory: about 80 bytes per coupling, 50 of scalars. Throws std::invalid_argument if the model's
+  /// The view may go. Memory: about 80 bytes per coupling, 16 of scalars. Throws std::invalid_argument if the model's
   /// components are not N.
   explicit CompressedCompliance(const ModelView& view);
 
