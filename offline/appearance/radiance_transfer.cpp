@@ -66,7 +66,25 @@ struct SeenVertices {
   std::vector<RayHit> hits;
 };
 
-/// What light brings, [16][vertices], before it is reflected; `seen` gets what is met instead.
+using Coefficients = Eigen::Vector<float, coefficients>;
+
+Coefficients harmonics_of(const Vector3f& direction) {
+  float value[coefficients];
+  light_harmonics({direction.x(), direction.y(), direction.z()}, value);
+  return Eigen::Map<const Coefficients>(value);
+}
+
+/// The mean of the harmonics over all of a hemisphere, by the cosine law (Ramamoorthi & Hanrahan 2001).
+Coefficients open_sky(const Vector3f& normal) {
+  Coefficients mean = harmonics_of(normal);
+  mean.segment<3>(1) *= 2.0F / 3;
+  mean.segment<5>(4) *= 0.25F;
+  mean.segment<7>(9).setZero();
+  return mean;
+}
+
+/// What light brings, [16][vertices], before it is reflected; `seen` gets what is met instead. The whole sky is known:
+/// what rays make of it corrects what they make of its open part (a control variate).
 MatrixXf light_from_outside(const LitSurface& surface, const TransferGoal& goal, SeenVertices& seen) {
   const RayScene scene(surface);
   const auto frames = vertex_frames(surface);
@@ -76,21 +94,26 @@ MatrixXf light_from_outside(const LitSurface& surface, const TransferGoal& goal,
   const float near = above * box.diagonal().norm();
   const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(goal.rays))));
   MatrixXf direct = MatrixXf::Zero(coefficients, static_cast<Index>(surface.positions.size()));
+  const float share = 1 / static_cast<float>(side * side);  // of a ray
   for (std::size_t v = 0; v < surface.positions.size(); ++v) {
+    Coefficients open = Coefficients::Zero(), all = Coefficients::Zero();
+    float open_share = 0;
     for (std::uint32_t k = 0; k < side * side && !frames[v].normal.isZero(0); ++k) {
       const Vector3f direction = direction_of(frames[v], goal.seed, v, k, side);
       const auto hit = scene.first_hit(surface.positions[v] + near * frames[v].normal, direction, near);
+      const Coefficients harmonics = share * harmonics_of(direction);
+      all += harmonics;
       if (!hit) {
-        float value[coefficients];
-        light_harmonics({direction.x(), direction.y(), direction.z()}, value);
-        direct.col(static_cast<Index>(v)) += Eigen::Map<const Eigen::Vector<float, coefficients>>(value);
+        open += harmonics;
+        open_share += share;
       } else if (hit->in_front) {
         seen.hits.push_back(*hit);
       }
     }
     seen.end.push_back(seen.hits.size());
+    direct.col(static_cast<Index>(v)) = open + open_share * (open_sky(frames[v].normal) - all);
   }
-  return direct / static_cast<float>(side * side);
+  return direct;
 }
 
 using Transfer = Eigen::Vector<float, 3 * coefficients>;

@@ -53,8 +53,8 @@ LitSurface plane(const Array3f& reflectance) {
 
 TEST_CASE("an open plane: its reflectance in even light, and the cosine lobe's harmonics in any other") {
   const Array3f reflectance(0.8F, 0.5F, 0.2F);
-  const auto transfer = radiance_transfer(plane(reflectance), {.rays = 4096});
-  CHECK((in_even_light(transfer).colwise() - reflectance).abs().maxCoeff() < 1e-4F);  // sums of 4,096 floats
+  const auto transfer = radiance_transfer(plane(reflectance), {.rays = 256});
+  CHECK((in_even_light(transfer).colwise() - reflectance).abs().maxCoeff() < 1e-4F);
   // clamped cosine over pi, by degree (Ramamoorthi & Hanrahan 2001)
   constexpr float lobe[] = {1, 2.0F / 3, 0.25F, 0};
   float up[16];
@@ -63,7 +63,7 @@ TEST_CASE("an open plane: its reflectance in even light, and the cosine lobe's h
     const auto degree = static_cast<std::size_t>(std::sqrt(static_cast<double>(i)));
     for (Index c = 0; c < 3; ++c) {
       const float exact = reflectance[c] * lobe[degree] * up[i];
-      CHECK((transfer.row(16 * c + i).array() - exact).abs().maxCoeff() < 4e-3F);
+      CHECK((transfer.row(16 * c + i).array() - exact).abs().maxCoeff() < 1e-4F);
     }
   }
 }

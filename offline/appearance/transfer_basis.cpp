@@ -115,7 +115,8 @@ TransferBasis transfer_basis(const std::vector<const Eigen::VectorXf*>& transfer
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(gram);
   for (Index k = count - 1; k >= 0; --k)
     basis.singular_values.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[k])));
-  if (!(basis.singular_values.front() > 0))
+  constexpr double rounding = 1e-6;  // of single precision, in the mean
+  if (!(basis.singular_values.front() > rounding * static_cast<double>(basis.mean.norm())))
     throw std::runtime_error("appearance: light falls on all states alike; leave [appearance] out");
   Index modes = 1;
   const Index most = std::min(rank, count - 1);
