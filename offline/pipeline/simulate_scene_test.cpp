@@ -178,7 +178,7 @@ TEST_CASE(
     ProgressBar progress(true);
     const auto record = simulate_scene(request, progress);
     CHECK(record["orbits"] == 14);
-    CHECK(record["replay_estimate"] > 0);
+    CHECK(record.contains("replay_estimate"));
     {
       const auto file = TrajectoryFile::open(folder.path() / (name + ".h5"));
       CHECK(file.scene().impulses[0].persistent[is_cloth ? 3 : 0] == doctest::Approx(is_cloth ? 0.8 : -1));
