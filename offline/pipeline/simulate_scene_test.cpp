@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "offline/pipeline/build_motion_model.hpp"
 #include "offline/scene/motion_scene.hpp"
 #include "offline/simulate/examples/animal.hpp"
+#include "offline/simulate/examples/sheets.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -104,6 +106,106 @@ TEST_CASE(
   const SimulateRequest other{
       folder.write("other.toml", std::string(scene_text).replace(scene_text.find("25 kPa"), 6, "26 kPa")), {}, false};
   CHECK_THROWS_WITH(simulate_scene(other, progress), doctest::Contains("trajectories of another scene"));
+}
+
+std::string sheet_scene(const std::string& name, const std::string& sheet_and_impulses) {
+  return "[surface]\nfile = \"" + name + ".off\"\nunit = \"m\"\n[trajectories]\nfile = \"" + name + ".h5\"\n" + R"(
+[accuracy]
+truncation = 0.02
+[simulate]
+time_step = "20 ms"
+rest = "1 cm"
+orbits = 12
+held_out = 2
+shortest = "0.2 s"
+longest = "0.5 s"
+to_rest = 0.2
+)" + sheet_and_impulses;
+}
+
+const std::string cloth_text = sheet_scene("cloth", R"(
+[[fixed]]
+above = 0.99
+axis = "y"
+[sheet]
+density = "0.2 kg/m^2"
+stretch = "500 N/m"
+bend = "1 mN m"
+thickness = "3 mm"
+damping = "1 1/s"
+air = "2 1/s"
+settling = "1 s"
+substeps = 12
+[[rigid]]
+box = [[0, -1.2, -0.04], [1, 0, 0]]
+[[impulses]]
+name = "opening"
+turning = 0.8
+longest = "0.3 s"
+after = ["rest", "stop"]
+[[impulses]]
+name = "stop"
+after = ["opening"]
+)");
+
+const std::string plant_text = sheet_scene("plant", R"(
+[[fixed]]
+below = 0.08
+axis = "y"
+[sheet]
+density = "0.4 kg/m^2"
+stretch = "2 kN/m"
+bend = "10 mN m"
+thickness = "4 mm"
+damping = "3 1/s"
+settling = "1 s"
+substeps = 30
+finer = 1
+[[rigid]]
+cylinder = { from = [0, -0.13, 0], to = [0, -0.012, 0], radius = "8 cm" }
+[[impulses]]
+name = "left"
+velocity = "1 m/s"
+direction = [-1, 0, 0]
+after = ["rest", "stop"]
+[[impulses]]
+name = "stop"
+after = ["left"]
+)");
+
+TEST_CASE(
+    "small sheets, from a scene to a model: impulses last and follow each other as they may, penetrations are "
+    "counted") {
+  for (const bool is_cloth : {true, false}) {
+    const TemporaryFolder folder("simulate_sheets");
+    const std::string name = is_cloth ? "cloth" : "plant";
+    write_surface(folder.path() / (name + ".off"), is_cloth ? examples::cloth(9) : examples::plant(6));
+    const SimulateRequest request{folder.write(name + ".toml", is_cloth ? cloth_text : plant_text), {}, false};
+    ProgressBar progress(true);
+    const auto record = simulate_scene(request, progress);
+    CHECK(record["orbits"] == 14);
+    CHECK(record.contains("replay_estimate"));
+    {
+      const auto file = TrajectoryFile::open(folder.path() / (name + ".h5"));
+      CHECK(file.scene().impulses[0].persistent[is_cloth ? 3 : 0] == doctest::Approx(is_cloth ? 0.8 : -1));
+      CHECK(file.scene().impulses[1].persistent == std::array<double, 4>{});
+      for (const auto& orbit : file.scene().orbits) {
+        CHECK((!is_cloth || orbit.impulse == 1 || orbit.frames <= 16));
+        CHECK((orbit.previous_frame >= 0 || orbit.impulse == 0));
+      }
+    }
+    const auto motion = read_motion_scene(request.scene);
+    REQUIRE(motion);
+    const auto model = build_motion_model(request.scene, *motion, folder.path() / (name + ".gloop"), progress);
+    CHECK(model["truncation_error"] < 0.05);
+    CHECK(model["replay_error"]["orbits"] == 2);
+    CHECK(model["replay_error"]["median"] < 0.8);
+    const auto& counts = model["penetrations"];
+    CHECK(counts["simulated"]["frames"] > 2);
+    CHECK(counts["simulated"]["frames"] == counts["replayed"]["frames"]);
+    CHECK(counts["simulated"]["inside_frames"] == 0);
+    CHECK(counts["simulated"]["crossing_frames"] == 0);
+  }
 }
 
 }  // namespace

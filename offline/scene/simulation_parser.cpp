@@ -44,7 +44,7 @@ void read_impulse(const Table& table, bool sheets, std::vector<SupportImpulse>& 
   impulse.longest = table.quantity("longest", Dimension::time);
   set_if(impulse.turning, table.number("turning", {}));
   const bool pushes = table.has("velocity") || table.has("direction");
-  if (pushes || !sheets) {
+  if (pushes || (!sheets && !table.has("turning"))) {
     table.require("velocity", "velocity = \"0.5 m/s\"");
     table.require("direction", "direction = [1, 0, 0]");
   }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <variant>
 
 #include "offline/scene/testing/scene_texts.hpp"
 
@@ -54,6 +55,48 @@ TEST_CASE("simulation: the canonical text says it, reads back and stays; columns
   CHECK(text.find("mass_damping = \"2 1/s\"") != std::string::npos);
   CHECK(canonical_text(parse_scene(text, "s.toml")) == text);
   CHECK(body_text(scene) == body_text(parse_scene(heavy(""), "s.toml")));
+}
+
+const std::string sheet =
+    "[surface]\nfile = \"cloth.off\"\nunit = \"m\"\n[[fixed]]\nabove = 0.9\naxis = \"y\"\n[sheet]\ndensity = \"200 "
+    "g/m^2\"\n"
+    "stretch = \"0.5 kN/m\"\nbend = \"1 mN m\"\nthickness = \"3 mm\"\n[trajectories]\nfile = \"cloth.h5\"\n";
+const std::string turns = "[[impulses]]\nname = \"turns\"\nturning = -0.5\nlongest = \"2 s\"\n";
+const std::string stops = "[[impulses]]\nname = \"stops\"\nafter = [\"turns\"]\n";
+const std::string door = "[[rigid]]\nbox = [[0, -1, -0.04], [1, 0, 0]]\n";
+const std::string post = "[[rigid]]\ncylinder = { from = [0, 0, 0], to = [0, 0, 1], radius = \"5 mm\" }\n";
+
+TEST_CASE("sheets: no material, rigid shapes, impulses that last; the canonical text reads back") {
+  const std::string goal = "held_out = 3\nreplay_goal = 0.05\n";
+  const auto scene = parse_scene(sheet + simulate + goal + turns + stops + door + post, "s.toml");
+  REQUIRE(scene.simulation);
+  REQUIRE(scene.simulation->sheet);
+  const Sheet& s = *scene.simulation->sheet;
+  CHECK(s.density == 0.2);
+  CHECK(s.stretch == 500);
+  CHECK(s.bend == 1e-3);
+  CHECK(s.rigid.size() == 2);
+  CHECK(std::get<RigidCylinder>(s.rigid[1]).radius == 5e-3);
+  CHECK(scene.simulation->replay_goal == 0.05);
+  CHECK(scene.simulation->impulses[0].turning == -0.5);
+  CHECK(scene.simulation->impulses[0].longest == 2);
+  CHECK(scene.simulation->impulses[1].velocity().isZero());
+  const auto text = canonical_text(scene);
+  CHECK(canonical_text(parse_scene(text, "s.toml")) == text);
+}
+
+TEST_CASE("refused: sheets that lack something, rigid shapes that are none") {
+  const std::string all = sheet + simulate + turns + stops;
+  check_refused(sheet + simulate + "strain = \"linear\"\n" + turns, {"simulate.strain: is of elastic solids"});
+  check_refused(all + "[[rigid]]\nbox = [[0, 0, 0], [1, 0, 1]]\n", {"rigid[0].box: expected two corners"});
+  check_refused(all + "[[rigid]]\n", {"rigid[0]: expected either a box or a cylinder"});
+  check_refused(all + "[[rigid]]\ncylinder = { from = [0, 0, 0], to = [0, 0, 0], radius = \"1 cm\" }\n",
+                {"rigid[0].cylinder: expected two places"});
+  check_refused(heavy(simulate + left + door), {"rigid: belong to a [sheet] section"});
+  check_refused(heavy(simulate + turns), {"impulses[0].turning: goes with [sheet] only"});
+  check_refused(all + "[[impulses]]\nname = \"x\"\nturning = 1\nvelocity = \"1 m/s\"\ndirection = [1, 0, 0]\n",
+                {"impulses[2].turning: does not go with velocity"});
+  check_refused(heavy(simulate + "replay_goal = 0.1\n" + left), {"simulate.replay_goal: needs held_out orbits"});
 }
 
 TEST_CASE("refused: simulations that lack something or contradict themselves") {
