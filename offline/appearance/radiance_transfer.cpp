@@ -53,8 +53,10 @@ float jitter(std::uint64_t seed, std::uint64_t vertex, std::uint64_t sample) {
 /// Ray k of side^2 in the hemisphere, by the cosine law: its projection is uniform in the disc.
 Vector3f direction_of(const Frame& frame, std::uint64_t seed, std::uint64_t vertex, std::uint32_t k,
                       std::uint32_t side) {
-  const float u = (static_cast<float>(k % side) + jitter(seed, vertex, 2 * k)) / static_cast<float>(side);
-  const float v = (static_cast<float>(k / side) + jitter(seed, vertex, 2 * k + 1)) / static_cast<float>(side);
+  const std::uint32_t row = k / side, column = k % side;
+  const std::uint64_t sample = std::uint64_t{2} * k;
+  const float u = (static_cast<float>(column) + jitter(seed, vertex, sample)) / static_cast<float>(side);
+  const float v = (static_cast<float>(row) + jitter(seed, vertex, sample + 1)) / static_cast<float>(side);
   const float radius = std::sqrt(u), angle = 2 * std::numbers::pi_v<float> * v;
   const Vector3f across = frame.normal.cross(frame.tangent);
   return radius * (std::cos(angle) * frame.tangent + std::sin(angle) * across) + std::sqrt(1 - u) * frame.normal;

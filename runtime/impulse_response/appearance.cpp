@@ -73,7 +73,9 @@ float value_of(const ImpulseResponseView& view, const LitState& lit, std::uint32
   return mean * (quantum[0] * lit.unit[0]) + static_cast<float>(of_modes) * (quantum[1] * lit.unit[1]);
 }
 
-void add_pairs(const std::int8_t* values, const std::int16_t* numbers, std::uint32_t pairs, std::int32_t* sums) {
+// once, not in every part: what it keeps in registers and on the stack is much
+[[gnu::noinline]] void add_pairs(const std::int8_t* values, const std::int16_t* numbers, std::uint32_t pairs,
+                                 std::int32_t* sums) {
   for (std::uint32_t p = 0; p < pairs; ++p, values += pair_bytes) {
     const std::int32_t first = numbers[std::size_t{2} * p], second = numbers[std::size_t{2} * p + 1];
     for (std::uint32_t v = 0; v < block_vertices; ++v)
