@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 
 #include "formats/testing/temporary_folder.hpp"
 #include "offline/simulate/state_file.hpp"
@@ -181,7 +182,7 @@ TEST_CASE("a goal of replay ends sampling, a stricter one later") {
     CHECK(loose < 100);
     const auto strict = orbits(0.15);
     CHECK(strict > loose);
-    MESSAGE((sampling == Sampling::random ? "random: " : "coverage: ")
+    MESSAGE(std::string(sampling == Sampling::random ? "random: " : "coverage: ")
             << loose << " orbits until half of those held out replay with 30 %, " << strict << " with 15 %");
   }
 }
