@@ -74,15 +74,19 @@ TEST_CASE("what does not fit is refused by name") {
   refused([](auto& data) { data.successions.push_back(1); }, "successions");
   refused([](auto& data) { data.info.planes = 3; }, "info.planes");
   refused([](auto& data) { data.orbits[3].impulse = 9; }, "impulse");
+  refused([](auto& data) { data.appearance.coordinates.push_back(0); }, "appearance.coordinates");
+  refused([](auto& data) { data.appearance.amplitudes.push_back({1, 0}); }, "appearance.quanta");
 }
 
 TEST_CASE("a model is cut after a level: fewer modes, the same orbits") {
-  const auto whole = encode(synthetic_motion({.modes = 8, .groups = 4}));
+  const auto whole = encode(synthetic_motion({.modes = 8, .groups = 4, .transfer_modes = 3}));
   const auto cut = truncate_to_level(whole, 1);
   const ModelFile file = verified_model(AlignedBytes(cut), "cut");
   CHECK(cut.size() < whole.size());
   CHECK(file.view.impulse_response.levels == 2);
   CHECK(file.view.impulse_response.modes == 4);
+  CHECK(file.view.impulse_response.appearance.modes == 0);
+  CHECK(truncate_to_level(whole, 3) == whole);
   CHECK(file.view.impulse_response.info->modes == 8);
   CHECK(file.view.impulse_response.orbits.size() == 10);
   CHECK_THROWS_AS(static_cast<void>(truncate_to_level(whole, 4)), std::invalid_argument);
