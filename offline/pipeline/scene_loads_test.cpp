@@ -20,6 +20,8 @@
 #include "offline/volume/testing/shapes.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/hosted/hosted.hpp"
+#include "runtime/mask.hpp"
+#include "runtime/surface.hpp"
 
 namespace greenloop::offline {
 namespace {
@@ -201,6 +203,52 @@ TEST_CASE("pressures along a vector and along the normals have the resultants of
   CHECK(loads.records[0].resultant[2] == doctest::Approx(-0.8 * side * side));
   for (const float force : loads.records[1].resultant) CHECK(std::abs(force) < 1e-6 * side * side);
   CHECK(loads.displacement.col(0).norm() > 0);
+}
+
+TEST_CASE("a mask of the scene presses as the same mask does that is made at run time") {
+  Block block;
+  const ModelFile file = open_model_file(block.build(
+      "finger.gloop",
+      "[[loads]]\nname = \"finger\"\nmask = true\nsphere = { center = [0.5, 0.5, 1], radius = \"1.8 cm\" }\n"));
+  const Model model = Model::open(file.bytes.span()).model;
+  REQUIRE(file.view.loads.size() == 1);
+  const float newtons = file.view.loads[0].resultant[2];  // a pascal
+  auto limits = Elastostatic::intended(model).limits;
+  limits.max_forces = model.node_count();
+  Hosted<Elastostatic> body(model, limits);
+  constexpr float pascals = 100;
+  Elastostatic::Loads loads;
+  loads.pressure = {&pascals, 1};
+  REQUIRE(body.step({}, loads, any_budget, true).status == Status::ok);
+  const std::vector<float> stored(body.field().begin(), body.field().end());
+
+  const std::uint32_t finest = model.level_count() - 1;
+  AlignedBytes memory(Surface::required(model, finest).bytes);
+  const auto surface = Surface::create(model, finest, {memory.data(), memory.size()});
+  REQUIRE(surface);
+  std::vector<float> area(model.node_count()), weight(model.node_count());
+  REQUIRE(surface.surface.areas(finest, {}, area));
+  const auto away = [&](std::uint32_t node) {
+    const Vec3 x = model.position(node);
+    return Vector3d(x.x - side / 2, x.y - side / 2, x.z - height).norm();
+  };
+  std::uint32_t middle = 0;  // of the top
+  for (std::uint32_t node = 1; node < model.node_count(); ++node) middle = away(node) < away(middle) ? node : middle;
+  std::vector<std::uint32_t> node(model.node_count());
+  const Mask mask = make_mask(model, area, at_node(middle), 0.018F, node, weight);
+  REQUIRE(mask.node.size() > 4);
+  const std::vector<Constraint> force = {{0, {0, 0, pascals * newtons}, Constraint::Kind::pattern}};
+  loads = {};
+  loads.masks = {&mask, 1};
+  REQUIRE(body.step(force, loads, any_budget, true).status == Status::ok);
+  float worst = 0, largest = 0;
+  for (std::uint32_t i = 0; i < model.node_count(); ++i) {
+    const std::size_t z = std::size_t{4} * i + 2;
+    worst = std::max(worst, std::fabs(stored[z] - body.field()[z]));
+    largest = std::max(largest, std::fabs(body.field()[z]));
+  }
+  MESSAGE("a stored mask beside one that is made: " << 100 * worst / largest << " % of the largest displacement");
+  CHECK(worst < 0.02F * largest);
 }
 
 }  // namespace
