@@ -73,6 +73,7 @@ void plan_set(Body& body, const Task& task, std::uint32_t level, Plan& plan) {
   plan.cached = body.planned.columns > 0 ? body.cache.find(body.planned.all()) : nullptr;
   plan.work += resolve_work(body.counts, plan.counts);
   plan.factor = 0;
+  plan.reserve = 0;
   plan.update = false;
   if (task.field || plan.cached == nullptr || body.is_loaded) {
     touch_set(body, plan);
@@ -177,7 +178,8 @@ void plan_without_new(Body& body, const Task& task, Plan& plan) {
   const std::uint64_t preparing = resolve_contacts_work(body.counts.prices, plan.counts.contacts) +
                                   compare_factors_work(body.counts, plan.counts.columns);
   const std::uint64_t limit = task.budget < body.counts.refining_work ? task.budget : body.counts.refining_work;
-  plan.fits = plan.factor <= whole && planned_work(plan) + preparing <= limit;
+  plan.reserve = preparing + task.budget - limit;
+  plan.fits = plan.factor <= whole && planned_work(plan) + plan.reserve <= task.budget;
 }
 
 // takes details of the field away, the finest first, while the answer does not fit; knows_factor: of the level
@@ -191,7 +193,7 @@ void cut_field(Body& body, const Task& task, bool knows_factor, Plan& plan) {
       plan_factor(body, task, plan);
       knows_factor = true;
     }
-    plan.fits = knows_factor && planned_work(plan) <= task.budget;
+    plan.fits = knows_factor && planned_work(plan) + plan.reserve <= task.budget;
   }
 }
 
@@ -220,11 +222,17 @@ Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wa
     if (knows_factor) {
       plan_factor(body, task, plan);
     }
+    const auto leave_new = [&] {
+      if (!plan.fits && c > coarsest && plan.wanted.exists && plan.wanted.level == c) {
+        plan_without_new(body, task, plan);
+      }
+    };
+    leave_new();
     if (wants.field && wants.keeps_level && c == finest && c > coarsest) {
       cut_field(body, task, knows_factor, plan);
-    }
-    if (!plan.fits && c > coarsest && plan.wanted.exists && plan.wanted.level == c) {
-      plan_without_new(body, task, plan);
+      if (!knows_factor) {
+        leave_new();
+      }
     }
     if (!plan.fits && c == finest) {
       plan.field_levels.details = wants.finest_displaced;

@@ -31,8 +31,9 @@ struct Plan {
   std::uint64_t bounded = 0;    ///< the part of it that is not known before, but counted where it is done
   std::uint64_t displaced = 0;  ///< bound of the work of what the loads displace of the contacts
   FieldLevels field_levels;
-  std::uint64_t work = 0;   ///< spent on deciding
-  std::uint64_t field = 0;  ///< work of the field
+  std::uint64_t work = 0;     ///< spent on deciding
+  std::uint64_t field = 0;    ///< work of the field
+  std::uint64_t reserve = 0;  ///< what the budget has to hold besides, of a step in which contacts wait
   bool fits = false;
 
   /// The finest level that nothing but its factor kept from answering.
