@@ -13,7 +13,7 @@ struct Wants {
   std::uint64_t budget = 0;
   bool field = false;
   std::uint32_t finest_displaced = 0;  ///< level of the nodes that are displaced
-  bool keeps_level = false;            ///< details of the field go before the finest constraint level does
+  bool keeps_level = false;            ///< new contacts, then details of the field go before the finest level does
   std::uint32_t corners = 0;           ///< as of SetCounts
   std::uint32_t iterations = 0;
   std::uint32_t rows = 0;
@@ -52,8 +52,9 @@ struct Plan {
 
 /// Chooses by closed-form work the finest level whose answer fits, with the field as it was asked for: by its cached
 /// factor, an update of another one or a fresh one. Where only the factor of the finest level is too dear, contacts
-/// that are new may wait, and the others be answered there by what a factor at hand has of them. If no level fits, the
-/// coarsest with as many details in the field as fit. For the loop; work: Plan::work.
+/// that are new may wait, and the others be answered there by what a factor at hand has of them; where the level
+/// is kept, the field then goes without details before a coarser one is tried. If no level fits, the coarsest with as
+/// many details in the field as fit. For the loop; work: Plan::work.
 [[nodiscard]] Plan make_plan(Body& body, std::span<const Constraint> contacts, const Wants& wants) noexcept;
 
 }  // namespace greenloop
