@@ -73,7 +73,7 @@ grep -q '"verdict": "HELD"' run.json
 for figure in frames rank size run; do test -s "figures/$figure.svg"; done
 grep -q 'The run held its budget in every cycle' flag.html
 
-# the same with colours in light; through the transport form nothing is lost, and a cut file has none
+# the same with colours in light
 cat scene.toml - >lit.toml <<'TOML'
 
 [appearance]
@@ -88,9 +88,7 @@ TOML
 "$greenloop" build lit.toml -o lit.gloop
 "$greenloop" inspect lit.gloop --json | grep -q '"rank_appearance": [1-9]'
 "$greenloop" inspect lit.gloop | grep -q 'appearance  '
-"$greenloop" convert lit.gloop -o lit.gloopz
-"$greenloop" convert lit.gloopz -o again.gloop
-cmp lit.gloop again.gloop
+"$greenloop" verify lit.gloop
 "$loop" lit.gloop --script impulses --rate 1000 --seconds 1 --transport memq --json | grep -q '"verdict": "HELD"'
 "$greenloop" report lit.gloop --figures lit_figures
 test -s lit_figures/light.svg
