@@ -159,27 +159,16 @@ ElasticSolidScene make_elastic_solid(const Scene& scene, ProgressBar& progress) 
 
 SheetScene make_sheet_scene(const Scene& scene) {
   const Simulation& simulation = scene.simulation.value();
-  const Sheet& sheet = simulation.sheet.value();
   SheetScene result;
+  static_cast<Sheet&>(result) = simulation.sheet.value();
   result.mesh = read_surface(scene.mesh.path);
   Eigen::AlignedBox3d box;
   for (const auto& vertex : result.mesh.vertices) box.extend(vertex);
   const double scale = scene.mesh.scale(box);
   for (auto& vertex : result.mesh.vertices) vertex *= scale;
   result.fixed = fixed_vertices(scene, result.mesh.vertices);
-  result.rigid = sheet.rigid;
-  result.density = sheet.density;
-  result.stretch = sheet.stretch;
-  result.bend = sheet.bend;
-  result.thickness = sheet.thickness;
-  result.friction = sheet.friction;
-  result.damping = sheet.damping;
-  result.air = sheet.air;
   result.time_step = simulation.time_step;
-  result.substeps = sheet.substeps;
-  result.finer = sheet.finer;
   result.rest = simulation.rest;
-  result.settling = sheet.settling;
   for (const auto& impulse : simulation.impulses) {
     result.impulses.push_back({impulse.velocity(), impulse.turning});
   }

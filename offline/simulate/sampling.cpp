@@ -313,8 +313,7 @@ void require_valid(const SamplingPlan& plan) {
   if (!valid) {
     throw std::invalid_argument(
         "sampling: durations must be 0 < shortest <= longest <= longest to rest, the share to rest 0 to 1; a goal of "
-        "replay "
-        "needs orbits that are held out");
+        "replay needs orbits that are held out");
   }
 }
 

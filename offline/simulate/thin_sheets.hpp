@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "formats/mesh/triangle_mesh.hpp"
-#include "offline/scene/rigid_shape.hpp"
+#include "offline/scene/sheet.hpp"
 #include "offline/simulate/loop_subdivision.hpp"
 #include "offline/simulate/sheet_contacts.hpp"
 #include "offline/simulate/sheet_elasticity.hpp"
@@ -20,22 +20,11 @@ struct SupportMotion {
 };
 
 /// Thin sheets on a support, which moves or turns. Places are seen from the support.
-struct SheetScene {
+struct SheetScene : Sheet {
   TriangleMesh mesh;                ///< m, as sewn: without load it is so
   std::vector<std::uint8_t> fixed;  ///< per vertex, nonzero = held by the support
-  std::vector<RigidShape> rigid;    ///< part of the support: nothing gets into them
-  double density = 0;               ///< kg/m^2
-  double stretch = 0;               ///< N/m
-  double bend = 0;                  ///< N m
-  double thickness = 0;             ///< m, vertices keep this distance from triangles that they do not belong to
-  double friction = 0;              ///< 0..1
-  double damping = 0;               ///< 1/s, rate at which velocities die out, seen from the support
-  double air = 0;                   ///< 1/s, rate at which the normal part of the velocity through still air does
   double time_step = 0;             ///< s, between frames
-  int substeps = 20;                ///< of a time step
   double rest = 0;                  ///< m, what is displaced less, and moves less in a second, is at rest
-  double settling = 0;              ///< s, for which the sheets hang under gravity before they are taken to be at rest
-  int finer = 0;                    ///< times that they are split for what is shown
   std::vector<SupportMotion> impulses;
 };
 

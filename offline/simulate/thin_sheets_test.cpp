@@ -24,6 +24,8 @@ SheetScene sheet_of(TriangleMesh mesh) {
   scene.stretch = 500;
   scene.bend = 3e-4;
   scene.thickness = 3e-3;
+  scene.friction = 0;
+  scene.settling = 0;
   scene.time_step = 0.02;
   scene.substeps = 12;
   scene.rest = 5e-3;

@@ -295,7 +295,7 @@ void CandidateSearch::take_beside(const Step& step, const Double3& centre, const
   std::uint32_t places = 1;
   const auto look = [&](std::uint32_t t, int k) {
     step.work += SurfacePrices::triangle;
-    bool is_new = t != nearest && places < most_places;
+    bool is_new = t != nearest && places < most_places;  // and not seen around a corner before
     for (const std::uint32_t node : step.surface.triangle(t).node) {
       for (int j = 0; j < k; ++j) is_new = is_new && node != corner[j];
     }
