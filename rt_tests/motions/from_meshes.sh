@@ -86,10 +86,13 @@ box = [[0, 0, 0], [0.3, 1, 1]]
 reflectance = [0.1, 0.2, 0.9]
 TOML
 "$greenloop" build lit.toml -o lit.gloop
-"$greenloop" inspect lit.gloop --json | grep -q '"rank_appearance": [1-9]'
-"$greenloop" inspect lit.gloop | grep -q 'appearance  '
+"$greenloop" inspect lit.gloop --json >inspected.json
+grep -q '"rank_appearance": [1-9]' inspected.json
+"$greenloop" inspect lit.gloop >inspected.txt
+grep -q 'appearance  ' inspected.txt
 "$greenloop" verify lit.gloop
-"$loop" lit.gloop --script impulses --rate 1000 --seconds 1 --transport memq --json | grep -q '"verdict": "HELD"'
+"$loop" lit.gloop --script impulses --rate 1000 --seconds 1 --transport memq --json >run.json
+grep -q '"verdict": "HELD"' run.json
 "$greenloop" report lit.gloop --figures lit_figures
 test -s lit_figures/light.svg
 grep -q 'In the evening sun' lit.html
