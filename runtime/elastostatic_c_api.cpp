@@ -148,13 +148,6 @@ uint32_t greenloop_pressure_count(const greenloop_model* model) {
   return static_cast<uint32_t>(view.loads.size()) - (view.has_gravity() ? layout::accelerations : 0);
 }
 
-greenloop_mask greenloop_make_mask(const greenloop_model* model, const float* area, size_t areas,
-                                   const greenloop_vertex* point, float radius, uint32_t* node, float* weight,
-                                   size_t capacity) {
-  return std::bit_cast<greenloop_mask>(
-      make_mask(model_in(model), {area, areas}, points_of(point, 1)[0], radius, {node, capacity}, {weight, capacity}));
-}
-
 greenloop_directed_mask greenloop_direct_mask(const greenloop_mask* mask, const float* direction, float* part,
                                               size_t capacity) {
   return std::bit_cast<greenloop_directed_mask>(

@@ -317,14 +317,6 @@ greenloop_elastostatic_report greenloop_elastostatic_step_loaded(greenloop_elast
 int greenloop_has_gravity(const greenloop_model* model);
 uint32_t greenloop_pressure_count(const greenloop_model* model);
 
-/* The mask of a point-like contact: of every corner of the point the function max(0, 1 - distance / radius) on
- * touchable nodes, times their areas, normalised; of these the mean by the point's weights. area:
- * greenloop_surface_areas of the first `areas` nodes. node, weight: room for `capacity` of each, which the mask refers
- * to. Of 0 nodes if they do not fit, or a number or node is wrong. For the loop; some 60 operations per area. */
-greenloop_mask greenloop_make_mask(const greenloop_model* model, const float* area, size_t areas,
-                                   const greenloop_vertex* point, float radius, uint32_t* node, float* weight,
-                                   size_t capacity);
-
 /* A mask along a unit vector, 3 floats; and the torque of a mask, N m, about a unit vector through its centre, without
  * a force in all. part: room for 3 floats a node, which the directed mask refers to. Of 0 nodes if there are more than
  * `capacity`, or none is off the axis. For the loop; linear in the nodes. */
@@ -427,6 +419,13 @@ int greenloop_surface_normals(const greenloop_surface* surface, uint32_t level, 
                               float* normal, uint32_t count);
 int greenloop_surface_areas(const greenloop_surface* surface, uint32_t level, const float* displacement, float* area,
                             uint32_t count);
+
+/* The mask of a point-like contact: of every corner of the point the function max(0, 1 - distance / radius), integrated
+ * with touchable nodes' linear functions, normalised; of these the mean by the point's weights. node, weight: room for
+ * `capacity` of each, which the mask refers to. Of 0 nodes if they do not fit, or a number, node or level is wrong. For
+ * the loop; work: make_mask of runtime/mask.hpp. */
+greenloop_mask greenloop_make_mask(const greenloop_surface* surface, uint32_t level, const greenloop_vertex* point,
+                                   float radius, uint32_t* node, float* weight, size_t capacity);
 
 /* What is nearest to a position, 3 floats [m], at rest; of equally near ones the first. flags: all of them must be set
  * of the node. Work: some tens of triangles as a rule, at most all. */

@@ -3,54 +3,107 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/surface.hpp"
+#include "runtime/surface/parts.hpp"
+
 namespace greenloop {
 namespace {
 
-// of a corner's function at a node, times its area
-double spread(Vec3 corner, const layout::NodeRecord& node, float area, float radius) {
-  const double x = double{node.position[0]} - corner.x;
-  const double y = double{node.position[1]} - corner.y;
-  const double z = double{node.position[2]} - corner.z;
-  const double part = 1 - std::sqrt(x * x + y * y + z * z) / radius;
-  return part > 0 ? part * area : 0;
+struct Point {
+  double x = 0, y = 0, z = 0;
+};
+
+Point operator-(Point a, Point b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+
+double length(Point a) { return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z); }
+
+Point cross(Point a, Point b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+
+Point position(const layout::NodeRecord& node) {
+  return {double{node.position[0]}, double{node.position[1]}, double{node.position[2]}};
 }
 
-// calls visit(node, record) for the touchable nodes of the first `nodes`
+bool is_touchable(const layout::NodeRecord& node) { return (node.flags & layout::node_touchable) != 0; }
+
+// of a triangle's corners
+struct Integrals {
+  double of[3] = {};
+};
+
+// parts along an edge, so that there are some within the radius
+int parts_of(double edge, double radius) {
+  constexpr int most = 8;
+  const double parts = 2 * edge / radius;
+  return parts <= 2 ? 2 : parts >= most ? most : static_cast<int>(parts) + 1;
+}
+
+// of a corner's function with the linear functions of a triangle, by the middles of its parts
+Integrals integrals(const Point& corner, const Point (&x)[3], double radius) {
+  Integrals sum;
+  const Point ab = x[1] - x[0], ac = x[2] - x[0];
+  const double edge = std::max({length(ab), length(ac), length(x[2] - x[1])});
+  if (length(x[0] - corner) >= radius + edge) return sum;
+  const int parts = parts_of(edge, radius);
+  const double area = 0.5 * length(cross(ab, ac)) / (parts * parts);
+  for (int i = 0; i < parts; ++i) {
+    for (int j = 0; j < 2 * (parts - i) - 1; ++j) {
+      // parts stand in rows, every other one upside down
+      const double third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+      const double v = (i + third) / parts, w = (j / 2 + third) / parts, u = 1 - v - w;
+      const Point middle{u * x[0].x + v * x[1].x + w * x[2].x, u * x[0].y + v * x[1].y + w * x[2].y,
+                         u * x[0].z + v * x[1].z + w * x[2].z};
+      const double part = std::max(0.0, 1 - length(middle - corner) / radius) * area;
+      sum.of[0] += u * part;
+      sum.of[1] += v * part;
+      sum.of[2] += w * part;
+    }
+  }
+  return sum;
+}
+
+// calls visit(node, integral) for the touchable corners of the triangles near a corner, a node as often as it stands in
+// them
 template <class Visit>
-void visit_touchable(const ModelView& view, std::size_t nodes, Visit visit) {
-  for (std::uint32_t q = 0; q < view.levels; ++q) {
-    const LevelView& level = view.level[q];
-    for (std::uint32_t i = 0; i < level.counts->node_count && level.node_begin + i < nodes; ++i) {
-      if ((level.nodes[i].flags & layout::node_touchable) != 0) {
-        visit(level.node_begin + i, level.nodes[i]);
-      }
+void visit_near(const Surface& surface, std::uint32_t level, const Point& corner, double radius, Visit visit) {
+  const layout::NodeRecord* const nodes = surface.parts().nodes;
+  for (std::uint32_t t = 0; t < surface.triangle_count(level); ++t) {
+    const Surface::Triangle triangle = surface.triangle(level, t);
+    const Point x[3] = {position(nodes[triangle.node[0]]), position(nodes[triangle.node[1]]),
+                        position(nodes[triangle.node[2]])};
+    const Integrals of = integrals(corner, x, radius);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (of.of[k] > 0 && is_touchable(nodes[triangle.node[k]])) visit(triangle.node[k], of.of[k]);
     }
   }
 }
 
-struct Corner {
-  Vec3 position;
-  double share = 0;  // of the point, over the sum of its function times areas
-};
+// a mask that is being made, in the caller's memory
+class Parts {
+ public:
+  Parts(std::span<std::uint32_t> node, std::span<float> weight)
+      : node_(node), weight_(weight), room_(std::min(node.size(), weight.size())) {}
 
-// false if it has no part, or is no node of these
-bool fill_corner(const Model& model, std::span<const float> area, const MeshPoint& point, std::size_t k, float radius,
-                 Corner& corner) {
-  const std::uint32_t node = point.node[k];
-  if (node >= area.size() || !std::isfinite(point.weight[k])) {
-    return false;
+  void add(std::uint32_t node, double part) {
+    std::size_t at = 0;
+    while (at < count_ && node_[at] != node) ++at;
+    if (at == room_) {
+      fits_ = false;
+      return;
+    }
+    if (at == count_) {
+      node_[count_] = node;
+      weight_[count_++] = 0;
+    }
+    weight_[at] += static_cast<float>(part);
   }
-  if (point.weight[k] == 0 || !model.is_touchable(node)) {
-    return true;
-  }
-  corner.position = model.position(node);
-  double sum = 0;
-  visit_touchable(model.view(), area.size(), [&](std::uint32_t at, const layout::NodeRecord& record) {
-    sum += spread(corner.position, record, area[at], radius);
-  });
-  corner.share = point.weight[k] / sum;
-  return std::isfinite(corner.share);
-}
+  [[nodiscard]] Mask take() const { return fits_ ? Mask{node_.first(count_), weight_.first(count_)} : Mask{}; }
+
+ private:
+  std::span<std::uint32_t> node_;
+  std::span<float> weight_;
+  std::size_t room_, count_ = 0;
+  bool fits_ = true;
+};
 
 // of the positions, by the weights
 Vec3 centre_of(const Model& model, const Mask& mask) {
@@ -103,32 +156,27 @@ DirectedMask make_torque_mask(const Model& model, const Mask& mask, Vec3 axis, s
   return square > 0 && std::isfinite(1 / square) ? DirectedMask{mask.node, part.first(count)} : DirectedMask{};
 }
 
-Mask make_mask(const Model& model, std::span<const float> area, const MeshPoint& point, float radius,
+Mask make_mask(const Surface& surface, std::uint32_t level, const MeshPoint& point, float radius,
                std::span<std::uint32_t> node, std::span<float> weight) noexcept {
-  if (area.size() > model.node_count() || !(radius > 0) || !std::isfinite(radius)) {
-    return {};
-  }
-  Corner corners[3];
+  if (surface.node_count(level) == 0 || !(radius > 0) || !std::isfinite(radius)) return {};
+  Parts parts(node, weight);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!fill_corner(model, area, point, k, radius, corners[k])) {
+    if (point.node[k] >= surface.node_count(level) || !std::isfinite(point.weight[k])) return {};
+    const layout::NodeRecord& corner = surface.parts().nodes[point.node[k]];
+    if (point.weight[k] == 0 || !is_touchable(corner)) continue;
+    const Point centre = position(corner);
+    double sum = 0;
+    visit_near(surface, level, centre, radius, [&sum](std::uint32_t, double part) { sum += part; });
+    const double share = static_cast<double>(point.weight[k]) / sum;
+    if (!(sum > 0)) {
+      parts.add(point.node[k], static_cast<double>(point.weight[k]));
+    } else if (std::isfinite(share)) {
+      visit_near(surface, level, centre, radius, [&](std::uint32_t at, double part) { parts.add(at, share * part); });
+    } else {
       return {};
     }
   }
-  std::size_t count = 0;
-  visit_touchable(model.view(), area.size(), [&](std::uint32_t at, const layout::NodeRecord& record) {
-    double part = 0;
-    for (const Corner& corner : corners) {
-      part += corner.share == 0 ? 0 : corner.share * spread(corner.position, record, area[at], radius);
-    }
-    if (part > 0) {
-      if (count < std::min(node.size(), weight.size())) {
-        node[count] = at;
-        weight[count] = static_cast<float>(part);
-      }
-      ++count;
-    }
-  });
-  return count <= std::min(node.size(), weight.size()) ? Mask{node.first(count), weight.first(count)} : Mask{};
+  return parts.take();
 }
 
 }  // namespace greenloop

@@ -9,6 +9,8 @@
 
 namespace greenloop {
 
+class Surface;  // runtime/surface.hpp
+
 /// A point of the surface: three corners and the share of each, as Surface::NearestPoint has it. A node is that node
 /// with a share of 1.
 struct MeshPoint {
@@ -26,14 +28,16 @@ struct Mask {
 };
 
 /// The mask of a point-like contact: of every corner i the collocated linear function rho_i(x) = max(0, 1 - |x - x_i| /
-/// radius) on the touchable nodes of the domain, times their areas, divided by the sum of the products (sections 6.1.1
-/// and 6.1.2), and of these the mean by the point's weights (equation 35). What corners that are not touchable take has
-/// no part in it: it goes straight into what holds them, so that the weights sum to less than 1 there.
-/// area: [nodes of some levels, from the coarsest on] m^2, Surface::areas; nodes after them have no part. radius: m.
-/// node, weight: memory for the mask, which refers to it; as many as there are nodes within the radius of the corners.
-/// Empty if they do not fit, a node is not of `area` or of the model, nothing is within the radius, or a number is not
-/// finite. For the loop; work: some 60 operations per node of `area`.
-[[nodiscard]] Mask make_mask(const Model& model, std::span<const float> area, const MeshPoint& point, float radius,
+/// radius), integrated over the surface with each touchable node's linear function, divided by the sum of these
+/// (sections 6.1.1 and 6.1.2, where areas of nodes stand for the integrals, which lets the mask depend on where nodes
+/// happen to be), and of these the mean by the point's weights (equation 35). What corners that are not touchable take
+/// has no part in it: it goes straight into what holds them, so that the weights sum to less than 1 there. A radius
+/// below a 24th of the edges around gives the node alone.
+/// surface: triangles of a mesh level of it. radius: m. node, weight: memory for the mask, which refers to it; as many
+/// as there are nodes of triangles within the radius of the corners. Empty if they do not fit, a node is not of that
+/// level, nothing is within the radius, or a number is not finite. For the loop; work: some 100 operations per triangle
+/// of the level, 500 to 5000 per triangle within the radius, and the square of the mask's nodes.
+[[nodiscard]] Mask make_mask(const Surface& surface, std::uint32_t level, const MeshPoint& point, float radius,
                              std::span<std::uint32_t> node, std::span<float> weight) noexcept;
 
 /// A mask whose force has a direction of its own at each node, in fixed proportion: pressure along the surface's

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "runtime/c_values.hpp"
+#include "runtime/mask.hpp"
 #include "runtime/surface.hpp"
 
 namespace greenloop {
@@ -85,6 +86,17 @@ int greenloop_surface_areas(const greenloop_surface* surface, uint32_t level, co
   return is_aligned(displacement) && surface_of(surface).areas(level, displaced(displacement, count), {area, count})
              ? 1
              : 0;
+}
+
+greenloop_mask greenloop_make_mask(const greenloop_surface* surface, uint32_t level, const greenloop_vertex* point,
+                                   float radius, uint32_t* node, float* weight, size_t capacity) {
+  MeshPoint mesh_point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    mesh_point.node[k] = point->node[k];
+    mesh_point.weight[k] = point->weight[k];
+  }
+  return std::bit_cast<greenloop_mask>(
+      make_mask(surface_of(surface), level, mesh_point, radius, {node, capacity}, {weight, capacity}));
 }
 
 greenloop_nearest_node greenloop_surface_nearest_node(const greenloop_surface* surface, const float* position,

@@ -12,6 +12,7 @@
 #include "offline/report/mask_figure.hpp"
 #include "offline/report/svg_plot.hpp"
 #include "offline/report/theme.hpp"
+#include "offline/surface/linear_mask.hpp"
 #include "offline/surface/lumped_areas.hpp"
 #include "offline/volume/tetrahedralize.hpp"
 
@@ -124,11 +125,17 @@ void MaskedBody::add_mask(int node, double radius, int column, std::vector<Eigen
     entries.emplace_back(node, column, 1);
     return;
   }
-  const auto part = [&](int j) { return std::max(0.0, 1 - (at[j] - at[node]).norm() / radius) * area_[j]; };
+  std::vector<double> share(at.size(), 0.0);
+  for (const std::array<int, 3>& triangle : nodule_.surface.triangles) {
+    Matrix3d corners;
+    for (int k = 0; k < 3; ++k) corners.col(k) = at[triangle[k]];
+    const Vector3d part = mask_integrals(corners, at[node], radius);
+    for (int k = 0; k < 3; ++k) share[triangle[k]] += part(k);
+  }
   double sum = 0;
-  for (const int j : free_) sum += part(j);
+  for (const int j : free_) sum += share[j];
   for (const int j : free_) {
-    if (part(j) > 0) entries.emplace_back(j, column, part(j) / sum);
+    if (share[j] > 0) entries.emplace_back(j, column, share[j] / sum);
   }
 }
 

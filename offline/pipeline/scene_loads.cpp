@@ -2,10 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "offline/sources/fem/green_functions.hpp"
+#include "offline/surface/linear_mask.hpp"
 #include "offline/volume/tetrahedra_quality.hpp"
 #include "offline/volume/tetrahedralize.hpp"
 
@@ -41,23 +44,49 @@ Eigen::AlignedBox3d bounding_box(const std::vector<Vector3d>& positions) {
   return box;
 }
 
-// N per Pa on each surface node: a third of what each of its triangles takes
-std::vector<Vector3d> pressure_forces(const PressureLoad& load, const TriangleMesh& surface) {
-  const auto& x = surface.vertices;
-  const auto pressure = node_pressures(load, x, bounding_box(x));
-  std::vector<Vector3d> forces(x.size(), Vector3d::Zero());
-  bool any = false;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const double least = std::min({pressure[a], pressure[b], pressure[c]});
-    const double most = std::max({pressure[a], pressure[b], pressure[c]});
-    if (!((load.mask ? most : least) > 0)) continue;
-    any = true;
-    const Vector3d outward = (x[b] - x[a]).cross(x[c] - x[a]) / 2;
-    const Vector3d force =
-        load.direction ? Vector3d(outward.norm() * load.direction->stableNormalized()) : Vector3d(-outward);
-    for (const int node : {a, b, c}) forces[node] += pressure[node] / 3 * force;
+// m^2 of each of a triangle's corners that a pressure acts on: a third of it, or the integrals of a mask
+Vector3d pressed_areas(const PressureLoad& load, const std::vector<double>& pressure, const MaskSphere& sphere,
+                       const Eigen::Matrix3d& corners, const std::array<int, 3>& triangle) {
+  if (load.mask) return mask_integrals(corners, sphere.center, sphere.radius);
+  const double least = std::min({pressure[triangle[0]], pressure[triangle[1]], pressure[triangle[2]]});
+  const double area = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0)).norm() / 2;
+  return Vector3d::Constant(least > 0 ? area / 3 : 0);
+}
+
+// what a mask puts on nodes that have no column goes to those that have one, in proportion
+void keep_to_columns(const std::vector<int>& column_node, std::vector<Vector3d>& forces) {
+  std::vector<Vector3d> kept(forces.size(), Vector3d::Zero());
+  double all = 0, some = 0;
+  for (const Vector3d& force : forces) all += force.norm();
+  for (const int node : column_node) {
+    kept[node] = forces[node];
+    some += forces[node].norm();
   }
-  if (!any) {
+  if (some > 0) {
+    for (Vector3d& force : kept) force *= all / some;
+  }
+  forces = std::move(kept);
+}
+
+// N per Pa on each surface node
+std::vector<Vector3d> pressure_forces(const PressureLoad& load, const TriangleMesh& surface,
+                                      const std::vector<int>& column_node) {
+  const auto& x = surface.vertices;
+  const Eigen::AlignedBox3d box = bounding_box(x);
+  const auto pressure = node_pressures(load, x, box);
+  const MaskSphere sphere = load.mask ? mask_sphere(std::get<SphereRegion>(load.region), x, box) : MaskSphere{};
+  std::vector<Vector3d> forces(x.size(), Vector3d::Zero());
+  for (const std::array<int, 3>& triangle : surface.triangles) {
+    Eigen::Matrix3d corners;
+    for (int k = 0; k < 3; ++k) corners.col(k) = x[triangle[k]];
+    const Vector3d area = pressed_areas(load, pressure, sphere, corners, triangle);
+    const Vector3d outward = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
+    const Vector3d along = load.direction ? load.direction->stableNormalized() : Vector3d(-outward.stableNormalized());
+    for (int k = 0; k < 3; ++k) forces[triangle[k]] += area(k) * along;
+  }
+  if (load.mask) keep_to_columns(column_node, forces);
+  const auto presses = [](const Vector3d& force) { return force != Vector3d::Zero(); };
+  if (std::none_of(forces.begin(), forces.end(), presses)) {
     throw SceneError(
         {"loads: \"" + load.name + "\": no triangle of the surface has its three corners in the region; enlarge it"});
   }
@@ -70,7 +99,7 @@ void add_pressures(const Scene& scene, const GreenStore& store, LoadDisplacement
   const auto count = static_cast<Index>(scene.pressures.size());
   MatrixXd forces(Index{3} * store.column_count(), count);
   for (Index p = 0; p < count; ++p) {
-    const auto of_nodes = pressure_forces(scene.pressures[p], surface);
+    const auto of_nodes = pressure_forces(scene.pressures[p], surface, nodes);
     Vector3d resultant = Vector3d::Zero();
     for (const Vector3d& force : of_nodes) resultant += force;
     loads.records.push_back(load_record(layout::LoadKind::pressure, resultant, scene.pressures[p].name));

@@ -226,8 +226,7 @@ TEST_CASE("a mask of the scene presses as the same mask does that is made at run
   AlignedBytes memory(Surface::required(model, finest).bytes);
   const auto surface = Surface::create(model, finest, {memory.data(), memory.size()});
   REQUIRE(surface);
-  std::vector<float> area(model.node_count()), weight(model.node_count());
-  REQUIRE(surface.surface.areas(finest, {}, area));
+  std::vector<float> weight(model.node_count());
   const auto away = [&](std::uint32_t node) {
     const Vec3 x = model.position(node);
     return Vector3d(x.x - side / 2, x.y - side / 2, x.z - height).norm();
@@ -235,7 +234,7 @@ TEST_CASE("a mask of the scene presses as the same mask does that is made at run
   std::uint32_t middle = 0;  // of the top
   for (std::uint32_t node = 1; node < model.node_count(); ++node) middle = away(node) < away(middle) ? node : middle;
   std::vector<std::uint32_t> node(model.node_count());
-  const Mask mask = make_mask(model, area, at_node(middle), 0.018F, node, weight);
+  const Mask mask = make_mask(surface.surface, finest, at_node(middle), 0.018F, node, weight);
   REQUIRE(mask.node.size() > 4);
   const std::vector<Constraint> force = {{0, {0, 0, pascals * newtons}, Constraint::Kind::pattern}};
   loads = {};

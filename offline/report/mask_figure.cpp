@@ -22,14 +22,18 @@ namespace {
 constexpr std::uint32_t most_masked = 4096;  // nodes of a mask, beside one contact
 constexpr float single = 1e-12F;             // m, a radius that reaches no other node
 
-std::vector<float> finest_areas(const Model& model) {
-  const std::uint32_t finest = model.view().levels - 1;
-  AlignedBytes memory(Surface::required(model, finest).bytes);
-  const auto created = Surface::create(model, finest, {memory.data(), memory.size()});
-  std::vector<float> area(model.node_count());
-  if (!created || !created.surface.areas(finest, {}, area)) throw std::runtime_error("the model has no surface");
-  return area;
-}
+// the finest surface of a model, with its memory
+struct FinestSurface {
+  explicit FinestSurface(const Model& model)
+      : level(model.view().levels - 1), memory(Surface::required(model, level).bytes) {
+    const auto created = Surface::create(model, level, {memory.data(), memory.size()});
+    if (!created) throw std::runtime_error("the model has no surface");
+    surface = created.surface;
+  }
+  std::uint32_t level;
+  AlignedBytes memory;
+  Surface surface;
+};
 
 float stiffness_of(Elastostatic& body, std::uint32_t node, const Mask& mask) {
   float block[9];
@@ -72,13 +76,13 @@ std::vector<double> masked_stiffness(const ModelFile& model, double radius) {
   AlignedBytes memory(Elastostatic::required(opened.model, limits).bytes);
   auto created = Elastostatic::create(opened.model, limits, {memory.data(), memory.size()});
   if (!created) throw std::runtime_error("the runtime takes no masks on this model");
-  const std::vector<float> area = finest_areas(opened.model);
+  const FinestSurface finest(opened.model);
   std::vector<std::uint32_t> node(most_masked + 1);
   std::vector<float> weight(most_masked + 1);
   std::vector<double> norm(opened.model.node_count(), 0.0);
   for (std::uint32_t i = 0; i < norm.size(); ++i) {
     if (!opened.model.is_touchable(i)) continue;
-    const Mask mask = make_mask(opened.model, area, at_node(i), static_cast<float>(radius), node, weight);
+    const Mask mask = make_mask(finest.surface, finest.level, at_node(i), static_cast<float>(radius), node, weight);
     if (mask.node.empty()) {
       throw std::runtime_error(fmt::format("a mask of {} m has more than {} nodes", radius, node.size()));
     }

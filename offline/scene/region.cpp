@@ -63,15 +63,20 @@ std::vector<bool> evaluate(const Region& region, Positions positions, const Box&
   return std::visit([&](const auto& shape) { return select(shape, positions, box); }, region);
 }
 
-std::vector<double> linear_mask(const SphereRegion& region, Positions positions, const Box& box) {
+MaskSphere mask_sphere(const SphereRegion& region, Positions positions, const Box& box) {
   const Eigen::Vector3d center = at_fractions(box, region.center);
-  const double radius = radius_of(region, box);
   const auto vertex = std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
     return (a - center).squaredNorm() < (b - center).squaredNorm();
   });
+  return {*vertex, radius_of(region, box)};
+}
+
+std::vector<double> linear_mask(const SphereRegion& region, Positions positions, const Box& box) {
+  const MaskSphere sphere = mask_sphere(region, positions, box);
   std::vector<double> mask(positions.size());
-  std::transform(positions.begin(), positions.end(), mask.begin(),
-                 [&](const Eigen::Vector3d& p) { return std::max(0.0, 1 - (p - *vertex).norm() / radius); });
+  std::transform(positions.begin(), positions.end(), mask.begin(), [&](const Eigen::Vector3d& p) {
+    return std::max(0.0, 1 - (p - sphere.center).norm() / sphere.radius);
+  });
   return mask;
 }
 

@@ -41,6 +41,14 @@ using Region = std::variant<HalfSpace, BoxRegion, SphereRegion, NearestRegion>;
 [[nodiscard]] std::vector<bool> evaluate(const Region& region, std::span<const Eigen::Vector3d> positions,
                                          const Eigen::AlignedBox3d& box);
 
+/// Where the linear function of a vertex mask stands, m.
+struct MaskSphere {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< the position nearest to the sphere's
+  double radius = 0;
+};
+[[nodiscard]] MaskSphere mask_sphere(const SphereRegion& region, std::span<const Eigen::Vector3d> positions,
+                                     const Eigen::AlignedBox3d& box);
+
 /// The linear function of a vertex mask (James & Pai 2001, section 6.1.1) at each position: 1 at the one nearest to the
 /// sphere's center, falling to 0 at the radius around that. Work: linear.
 [[nodiscard]] std::vector<double> linear_mask(const SphereRegion& region, std::span<const Eigen::Vector3d> positions,

@@ -23,6 +23,7 @@
 #include "rt_tests/harness/touching_script.hpp"
 #include "runtime/bound_mesh.hpp"
 #include "runtime/look.hpp"
+#include "runtime/mask.hpp"
 #include "runtime/relief.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
@@ -243,6 +244,8 @@ TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is 
   AlignedBytes memory(Surface::required(model.model(), 3).bytes);
   std::vector<Vec4> normal(model.model().node_count());
   std::vector<float> area(normal.size());
+  std::vector<std::uint32_t> node(normal.size());
+  const std::uint32_t touchable = model.touchable()[0];
   const std::uint64_t allocations = allocation_guard::count();
   const std::uint64_t locks = mutex_guard::count();
   allocation_guard::arm();
@@ -252,7 +255,8 @@ TEST_CASE("no allocation and no lock in what a surface is asked, nor when it is 
   for (int i = 0; i < cycles; ++i) {
     const Vec3 position{static_cast<float>(i) * 1e-4F - 0.1F, 0.01F, 0.02F};
     right = right && created.surface.nearest_node(position).node != layout::none &&
-            created.surface.nearest_point(position).triangle != layout::none;
+            created.surface.nearest_point(position).triangle != layout::none &&
+            !make_mask(created.surface, 3, at_node(touchable), 0.02F, node, area).node.empty();
   }
   mutex_guard::disarm();
   allocation_guard::disarm();
