@@ -98,10 +98,11 @@ void Hierarchy::factor(const BlockMatrix& matrix) {
 void Hierarchy::cycle(std::span<const Double4> r, std::span<Double4> z) {
   Fields& finest = fields_.front();
   for (std::size_t v = 0; v < r.size(); ++v) finest.b[v] = __builtin_convertvector(r[v], Float4);
-  const auto coarsest_vertices = static_cast<std::uint32_t>(fields_.back().b.size());
-  v_cycle({views_, {coarsest_vertices, coarsest_}, field_views_, scratch_});
+  v_cycle({views_, coarsest(), field_views_, scratch_});
   for (std::size_t v = 0; v < z.size(); ++v) z[v] = __builtin_convertvector(finest.x[v], Double4);
 }
+
+CoarsestFactor Hierarchy::coarsest() const { return {static_cast<std::uint32_t>(fields_.back().b.size()), coarsest_}; }
 
 std::vector<Hierarchy::LevelSize> Hierarchy::sizes() const {
   std::vector<LevelSize> sizes;

@@ -18,8 +18,15 @@ class Hierarchy {
   /// Work: blocks times parents of each level, the cube of the coarsest.
   Hierarchy(const BlockMatrix& matrix, const std::vector<Prolongation>& prolongations);
 
+  Hierarchy(Hierarchy&&) = default;
+  Hierarchy& operator=(Hierarchy&&) = default;
+
   /// z = about the solution of matrix z = r: one V(1,1) cycle, symmetric and positive definite.
   void cycle(std::span<const Double4> r, std::span<Double4> z);
+
+  /// All but the coarsest, and its factor.
+  [[nodiscard]] std::span<const MultigridLevel> levels() const { return views_; }
+  [[nodiscard]] CoarsestFactor coarsest() const;
 
   struct LevelSize {
     std::size_t vertices, blocks, bytes;
