@@ -149,32 +149,32 @@ struct Balance {
 
 /// Of a pass with one cycle, along the last acceleration first, and of the residual behind it.
 std::uint64_t least_balance_work(const MultigridView& view) {
-  return 2 * pass_work(view) + product_work(view) + iteration_work(view);
+  return 2 * residual_work(view) + pass_work(view) + product_work(view) + iteration_work(view);
 }
 
-/// Newton passes within `work`, of which one pass more than it begins is always left for the last residual.
+/// Newton passes within `work`, of which what the last residual takes is always left.
 Balance balance(ElasticBody& body, double loads, float tolerance, std::uint64_t work) {
-  const std::uint64_t pass = pass_work(body.view), iteration = iteration_work(body.view);
+  const std::uint64_t residual = residual_work(body.view), iteration = iteration_work(body.view);
   const double relative = static_cast<double>(tolerance) * static_cast<double>(tolerance);
   Balance balance;
   double first = 0, before = std::numeric_limits<double>::infinity();
   for (;;) {
     const Imbalance now = find_residual(body);
-    balance.work += pass;
+    balance.work += residual;
     if (balance.passes == 0) first = now.moving;
     const double largest = std::fmax(first, std::fmax(loads, now.held));
     const double goal = relative * largest;
     balance.residual = largest > 0 ? std::sqrt(now.moving / largest) : 0;
     const bool first_pass = balance.passes == 0;
-    const std::uint64_t start = first_pass ? product_work(body.view) : 0;
-    const bool fits = balance.work + start + iteration + pass <= work;
+    const std::uint64_t start = pass_work(body.view) + (first_pass ? product_work(body.view) : 0);
+    const bool fits = balance.work + start + iteration + residual <= work;
     // rounding leaves a rest that no pass lessens
     const bool falls = now.moving < least_fall * before;
     if (!(now.moving > goal) || !fits || !falls) return balance;
     before = now.moving;
     const double enough = std::fmax(0.5 * goal, forcing * forcing * now.moving);
     balance.work += start;
-    const Solved solved = newton_pass(body, first_pass, enough, work - balance.work - pass);
+    const Solved solved = newton_pass(body, first_pass, enough, work - balance.work - residual);
     balance.work += solved.work;
     balance.cycles += solved.cycles;
     ++balance.passes;

@@ -54,7 +54,9 @@ void begin_elastic_body(ElasticBody& body) noexcept;
 
 // Work units: instructions of x86-64.
 
-/// Of frames, rotations of vertices and the residual of a state. Constant.
+/// Of frames and the residual of a state. Constant.
+[[nodiscard]] std::uint64_t residual_work(const MultigridView& view) noexcept;
+/// Of a pass but for its iterations. Constant.
 [[nodiscard]] std::uint64_t pass_work(const MultigridView& view) noexcept;
 /// Of the operator times a field. Constant.
 [[nodiscard]] std::uint64_t product_work(const MultigridView& view) noexcept;

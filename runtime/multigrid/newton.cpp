@@ -72,7 +72,6 @@ void follow_last_acceleration(ElasticBody& body) {
 Imbalance find_residual(ElasticBody& body) noexcept {
   const ElasticState& state = body.next;
   find_frames(body.measure, body.groups, state.displacement.data(), body.quaternion, body.frame);
-  turn_vertices(body);
   for (std::size_t v = 0; v < body.inertia.size(); ++v) {
     body.residual[v] = body.force[v];
     body.inertia[v] = (state.acceleration[v] + splat(body.newmark.mass_damping) * state.velocity[v]) - body.gravity;
@@ -96,6 +95,7 @@ Solved newton_pass(ElasticBody& body, bool first, double goal, std::uint64_t wor
     body.change[v] = Float4{};
     body.direction[v] = Float4{};
   }
+  turn_vertices(body);
   if (first) follow_last_acceleration(body);
   Solved solved;
   double rr = dot(r, r, free), rz = 0, step = 0;
