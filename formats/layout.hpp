@@ -5,4 +5,5 @@
 #include "formats/layout/elastostatic.hpp"
 #include "formats/layout/header.hpp"
 #include "formats/layout/impulse_response.hpp"
+#include "formats/layout/multigrid.hpp"
 #include "formats/layout/section_kinds.hpp"

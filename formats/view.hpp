@@ -4,6 +4,7 @@
 #include "formats/view/elastostatic.hpp"
 #include "formats/view/file.hpp"
 #include "formats/view/impulse_response.hpp"
+#include "formats/view/multigrid.hpp"
 
 namespace greenloop {
 
@@ -12,6 +13,7 @@ namespace greenloop {
 /// and stay unchanged. Trivially copyable; no heap. Made by greenloop::verify only.
 struct ModelView : FileView, ElastostaticView {
   ImpulseResponseView impulse_response;
+  MultigridView multigrid;
 };
 
 }  // namespace greenloop

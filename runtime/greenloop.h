@@ -1,8 +1,7 @@
 /* Greenloop for C99 and every language that calls C: the same loops as the C++ headers beside it, the same bits.
  *
- * Memory: the caller owns all of it. A model is read in place: its bytes and the arena stay where they are, unchanged
- * by others, while a body uses them; a body needs the greenloop_model no more once it is made. Nothing here allocates,
- * locks or enters the kernel.
+ * Memory: the caller owns all of it. A model is read in place: its bytes and the arena stay as they are while a body
+ * uses them; a body needs the greenloop_model no more once it is made. Nothing allocates, locks or enters the kernel.
  *
  * Threads: a greenloop_model does not change once it is open, so any number of threads may use one at once, each with a
  * body and an arena of its own. A body is for one thread at a time; so are the buffers of a step.
@@ -39,7 +38,8 @@ typedef struct greenloop_version_numbers {
 typedef enum greenloop_problem {
   GREENLOOP_PROBLEM_ELASTOSTATIC = 1,
   GREENLOOP_PROBLEM_SCALAR = 2,
-  GREENLOOP_PROBLEM_IMPULSE_RESPONSE = 3
+  GREENLOOP_PROBLEM_IMPULSE_RESPONSE = 3,
+  GREENLOOP_PROBLEM_MULTIGRID = 4
 } greenloop_problem;
 
 /* Rules of the verifier that a model file can break. */
@@ -100,7 +100,7 @@ typedef enum greenloop_status {
 /* An open model; its contents are the library's. */
 typedef struct greenloop_model {
 #if UINTPTR_MAX > 0xffffffffU
-  uint64_t storage[640];
+  uint64_t storage[832];
 #else
   uint64_t storage[384];
 #endif

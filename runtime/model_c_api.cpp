@@ -59,7 +59,8 @@ static_assert(same(GREENLOOP_HOLD, Constraint::Kind::hold) && same(GREENLOOP_NOR
               same(GREENLOOP_MASK, Constraint::Kind::mask) && same(GREENLOOP_ALONG, Constraint::Kind::along));
 static_assert(same(GREENLOOP_PROBLEM_ELASTOSTATIC, layout::Problem::elastostatic) &&
               same(GREENLOOP_PROBLEM_SCALAR, layout::Problem::scalar) &&
-              same(GREENLOOP_PROBLEM_IMPULSE_RESPONSE, layout::Problem::impulse_response));
+              same(GREENLOOP_PROBLEM_IMPULSE_RESPONSE, layout::Problem::impulse_response) &&
+              same(GREENLOOP_PROBLEM_MULTIGRID, layout::Problem::multigrid));
 // NOLINTBEGIN(misc-redundant-expression): two types are compared
 static_assert(sizeof(Model) <= sizeof(greenloop_model) && alignof(Model) <= alignof(greenloop_model) &&
               std::is_trivially_destructible_v<Model>);

@@ -22,7 +22,7 @@ namespace greenloop::layout {
 inline constexpr char magic[8] = {'G', 'R', 'E', 'E', 'N', 'L', 'P', '\n'};
 inline constexpr std::uint32_t endian_tag = 0x01020304;
 inline constexpr std::uint16_t version_major = 4;
-inline constexpr std::uint16_t version_minor = 8;
+inline constexpr std::uint16_t version_minor = 9;
 inline constexpr std::uint64_t alignment = 64;
 inline constexpr std::uint32_t max_levels = 12;
 inline constexpr std::uint32_t none = 0xffffffff;  ///< no node
@@ -60,17 +60,20 @@ enum class Problem : std::uint32_t {
   elastostatic = 1,
   scalar = 2,            ///< a quantity of one number a node, as a temperature or a potential
   impulse_response = 3,  ///< motions of a scene that was simulated, played and blended
+  multigrid = 4,         ///< an elastic body that is simulated in the loop
 };
 
 /// The minor version that brought a problem.
 constexpr std::uint16_t first_minor(Problem problem) {
+  if (problem == Problem::multigrid) return 9;
   return problem == Problem::impulse_response ? 7 : problem == Problem::scalar ? 3 : 0;
 }
 
 /// How many problems, numbered from 1, a minor version has.
 constexpr std::uint32_t problems_of(std::uint16_t minor) {
   if (minor < first_minor(Problem::scalar)) return 1;
-  return minor < first_minor(Problem::impulse_response) ? 2 : 3;
+  if (minor < first_minor(Problem::impulse_response)) return 2;
+  return minor < first_minor(Problem::multigrid) ? 3 : 4;
 }
 
 /// Numbers at a node, N: a load and what it causes there are vectors of so many.

@@ -5,6 +5,7 @@
 
 #include "formats/layout/elastostatic.hpp"
 #include "formats/layout/impulse_response.hpp"
+#include "formats/layout/multigrid.hpp"
 
 // The one table of section kinds. Verifier, names, writer, transport form and report are made from it, and a test holds
 // docs/format.md to it.
@@ -60,11 +61,30 @@
   ROW(transfer_amplitudes, 33, "TransferAmplitudes", 0, ModeRecord, words) \
   ROW(transfer_coordinates, 34, "TransferCoordinates", 0, std::int16_t, bytes)
 
-#define GREENLOOP_SECTION_KINDS(ROW)   \
-  GREENLOOP_COMMON_SECTIONS(ROW)       \
-  GREENLOOP_ELASTOSTATIC_SECTIONS(ROW) \
-  GREENLOOP_READY_SECTIONS(ROW)        \
-  GREENLOOP_IMPULSE_RESPONSE_SECTIONS(ROW)
+#define GREENLOOP_MULTIGRID_SECTIONS(ROW)                                \
+  ROW(points, 35, "Points", 0, float[3], words)                          \
+  ROW(tetrahedra, 36, "Tetrahedra", 0, TetrahedronRecord, words)         \
+  ROW(matters, 37, "Matters", 0, MatterRecord, words)                    \
+  ROW(shown_points, 38, "ShownPoints", 0, float[3], words)               \
+  ROW(shown_triangles, 39, "ShownTriangles", 0, std::uint32_t[3], words) \
+  ROW(bindings, 40, "Bindings", 0, BindingRecord, words)                 \
+  ROW(grid, 41, "Grid", 1, GridRecord, words)                            \
+  ROW(row_starts, 42, "RowStarts", 1, std::uint32_t, words)              \
+  ROW(row_uppers, 43, "RowUppers", 1, std::uint32_t, words)              \
+  ROW(columns, 44, "Columns", 1, std::uint32_t, words)                   \
+  ROW(blocks, 45, "Blocks", 1, float[12], words)                         \
+  ROW(inverses, 46, "Inverses", 1, float[12], words)                     \
+  ROW(parent_starts, 47, "ParentStarts", 1, std::uint32_t, words)        \
+  ROW(parents, 48, "Parents", 1, std::uint32_t, words)                   \
+  ROW(weights, 49, "Weights", 1, float, words)                           \
+  ROW(coarsest_factor, 50, "CoarsestFactor", 0, double, bytes)
+
+#define GREENLOOP_SECTION_KINDS(ROW)       \
+  GREENLOOP_COMMON_SECTIONS(ROW)           \
+  GREENLOOP_ELASTOSTATIC_SECTIONS(ROW)     \
+  GREENLOOP_READY_SECTIONS(ROW)            \
+  GREENLOOP_IMPULSE_RESPONSE_SECTIONS(ROW) \
+  GREENLOOP_MULTIGRID_SECTIONS(ROW)
 
 namespace greenloop::layout {
 
@@ -117,9 +137,15 @@ constexpr bool is_impulse_response_kind(SectionKind kind) {
   return kind >= SectionKind::shape && kind <= SectionKind::transfer_coordinates;
 }
 
+/// Whether the kind is one of multigrid models. Work: constant.
+constexpr bool is_multigrid_kind(SectionKind kind) {
+  return kind >= SectionKind::points && kind <= SectionKind::coarsest_factor;
+}
+
 /// The minor version that brought the kind; those before 4.1 are not told apart.
 constexpr std::uint16_t first_minor(SectionKind kind) {
   if (kind >= SectionKind::transfer_quanta && kind <= SectionKind::transfer_coordinates) return 8;
+  if (is_multigrid_kind(kind)) return first_minor(Problem::multigrid);
   if (is_impulse_response_kind(kind)) return first_minor(Problem::impulse_response);
   if (kind == SectionKind::loads || kind == SectionKind::load_columns) return 6;
   return is_ready_kind(kind) ? 4 : kind == SectionKind::vertex_map ? 2 : 0;

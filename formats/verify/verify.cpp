@@ -2,6 +2,7 @@
 
 #include "formats/verify/elastostatic/walk.hpp"
 #include "formats/verify/impulse_response/walk.hpp"
+#include "formats/verify/multigrid/walk.hpp"
 #include "formats/verify/section_table.hpp"
 
 namespace greenloop {
@@ -20,6 +21,8 @@ bool verify_problem(const Section& info, SectionTable& table, ModelView& view, V
       return elastostatic::verify_sections(info, table, view, result);
     case layout::Problem::impulse_response:
       return impulse_response::verify_sections(info, table, view, result);
+    case layout::Problem::multigrid:
+      return multigrid::verify_sections(info, table, view, result);
   }
   return false;
 }

@@ -34,6 +34,8 @@ std::string_view problem_name(layout::Problem problem) {
       return "scalar";
     case layout::Problem::impulse_response:
       return "impulse response";
+    case layout::Problem::multigrid:
+      return "multigrid";
   }
   return "unknown";
 }

@@ -271,7 +271,7 @@ ModelView require_valid(const AlignedBytes& file) {
 }
 
 void require_constraint_level(const ModelView& view, std::uint32_t q) {
-  if (view.problem == layout::Problem::impulse_response) return;
+  if (view.problem != layout::Problem::elastostatic && view.problem != layout::Problem::scalar) return;
   const layout::Info& info = *view.info;
   require(q >= info.coarsest_constraint_level,
           fmt::format("cut after level {}, but the coarsest constraint level is {}; keep at least that many levels", q,

@@ -73,12 +73,6 @@ Eigen::Matrix<double, 12, 12> element_stiffness(const Eigen::Matrix<double, 3, 4
   return stiffness;
 }
 
-FreeVertices::FreeVertices(const std::vector<std::uint8_t>& fixed) : number(fixed.size(), -1) {
-  for (std::size_t v = 0; v < fixed.size(); ++v) {
-    if (fixed[v] == 0) number[v] = count++;
-  }
-}
-
 Eigen::SparseMatrix<double> assemble_stiffness(const TetrahedralMesh& mesh, const Material& material,
                                                const FreeVertices& free) {
   require_valid(material);

@@ -6,6 +6,7 @@
 
 #include "formats/mesh/tetrahedral_mesh.hpp"
 #include "formats/store/material.hpp"
+#include "offline/volume/free_vertices.hpp"
 
 namespace greenloop::offline {
 
@@ -24,15 +25,6 @@ struct Lame {
 /// `corners` holds the four vertices as columns, m, positively oriented.
 [[nodiscard]] Eigen::Matrix<double, 12, 12> element_stiffness(const Eigen::Matrix<double, 3, 4>& corners,
                                                               const Material& material);
-
-/// Degrees of freedom 3v + i of the vertices that are not fixed, numbered in vertex order.
-struct FreeVertices {
-  std::vector<int> number;  ///< per vertex: its number among the free ones, or -1 when fixed
-  int count = 0;
-
-  /// `fixed` holds one byte per vertex, nonzero = fixed.
-  explicit FreeVertices(const std::vector<std::uint8_t>& fixed);
-};
 
 /// Stiffness matrix over the free vertices, N/m: lower triangle only, 3 count x 3 count, fixed vertices eliminated.
 /// Linear work, deterministic. Throws std::invalid_argument on a tetrahedron without positive volume.
