@@ -123,15 +123,6 @@ Barycentric TetrahedronGrid::nearest(const Eigen::Vector3d& point) const {
   return *nearest(point, kMostCells, [](std::uint32_t) { return true; });
 }
 
-std::uint32_t TetrahedronGrid::around(const Eigen::Vector3d& point, const Before& before) const {
-  std::optional<std::uint32_t> first;
-  const std::size_t cell = index_of(cell_of(point));
-  for (std::uint32_t i = start_[cell]; i < start_[cell + 1]; ++i) {
-    const std::uint32_t t = entry_[i];
-    if (first && !before(t, *first)) continue;
-    if (coordinates(t, point).minCoeff() >= kInside) first = t;
-  }
-  return first ? *first : nearest(point).tetrahedron;
-}
+std::size_t TetrahedronGrid::region(const Eigen::Vector3d& point) const { return index_of(cell_of(point) / 2); }
 
 }  // namespace greenloop::offline

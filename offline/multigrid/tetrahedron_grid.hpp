@@ -34,11 +34,8 @@ class TetrahedronGrid {
   /// The same of all tetrahedra.
   [[nodiscard]] Barycentric nearest(const Eigen::Vector3d& point) const;
 
-  using Before = std::function<bool(std::uint32_t a, std::uint32_t b)>;
-
-  /// The first by `before` of the tetrahedra that a point lies in or on; of a point outside the nearest. Work: the
-  /// tetrahedra of a few cells.
-  [[nodiscard]] std::uint32_t around(const Eigen::Vector3d& point, const Before& before) const;
+  /// A number that points of the same two by two by two cells have in common.
+  [[nodiscard]] std::size_t region(const Eigen::Vector3d& point) const;
 
  private:
   [[nodiscard]] Eigen::Vector3i cell_of(const Eigen::Vector3d& point) const;

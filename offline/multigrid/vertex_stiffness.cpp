@@ -77,34 +77,20 @@ bool VertexStiffness::follows(std::uint32_t vertex, const VertexStiffness& other
   return ratio >= contrast || (ratio * contrast > 1.0 && other.piece[other_vertex] == piece[vertex]);
 }
 
-Matter::Matter(const TetrahedralMesh& mesh, std::span<const double> young) : mesh_(mesh), young_(young) {
-  if (young.size() != mesh.tetrahedra.size()) {
+VertexStiffness vertex_stiffness(const TetrahedralMesh& mesh, std::span<const double> young) {
+  if (young.size() != mesh.tetrahedra.size() || young.empty()) {
     throw std::invalid_argument("multigrid: " + std::to_string(young.size()) + " moduli for " +
                                 std::to_string(mesh.tetrahedra.size()) + " tetrahedra");
   }
-  piece_ = pieces(mesh, young);
-}
-
-VertexStiffness Matter::at_vertices() const {
-  VertexStiffness result{std::vector<double>(mesh_.vertices.size(), 0.0),
-                         std::vector<std::uint32_t>(mesh_.vertices.size(), 0)};
-  for (std::size_t t = 0; t < young_.size(); ++t) {
-    for (const int v : mesh_.tetrahedra[t]) {
-      if (young_[t] <= result.young[v]) continue;
-      result.young[v] = young_[t];
-      result.piece[v] = piece_[t];
+  const std::vector<std::uint32_t> piece = pieces(mesh, young);
+  VertexStiffness result{std::vector<double>(mesh.vertices.size(), 0.0),
+                         std::vector<std::uint32_t>(mesh.vertices.size(), 0)};
+  for (std::size_t t = 0; t < young.size(); ++t) {
+    for (const int v : mesh.tetrahedra[t]) {
+      if (young[t] <= result.young[v]) continue;
+      result.young[v] = young[t];
+      result.piece[v] = piece[t];
     }
-  }
-  return result;
-}
-
-VertexStiffness Matter::at(std::span<const Eigen::Vector3d> points, const TetrahedronGrid& grid) const {
-  VertexStiffness result;
-  for (const Eigen::Vector3d& point : points) {
-    const std::uint32_t t =
-        grid.around(point, [this](std::uint32_t a, std::uint32_t b) { return young_[a] > young_[b]; });
-    result.young.push_back(young_[t]);
-    result.piece.push_back(piece_[t]);
   }
   return result;
 }

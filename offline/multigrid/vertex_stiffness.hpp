@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "formats/mesh/tetrahedral_mesh.hpp"
-#include "offline/multigrid/tetrahedron_grid.hpp"
 
 namespace greenloop::offline {
 
@@ -21,21 +20,8 @@ struct VertexStiffness {
   [[nodiscard]] bool follows(std::uint32_t vertex, const VertexStiffness& other, std::uint32_t other_vertex) const;
 };
 
-/// The matter of a body: Young's modulus of each tetrahedron of its finest mesh. Refers to both.
-class Matter {
- public:
-  /// `young`: Pa, one a tetrahedron. Work: tetrahedra. Throws std::invalid_argument on another number of them.
-  Matter(const TetrahedralMesh& mesh, std::span<const double> young);
-
-  /// Of the mesh's own vertices.
-  [[nodiscard]] VertexStiffness at_vertices() const;
-  /// Of points: what the tetrahedron around, or the nearest one, is made of; where it stands on several, the stiffest.
-  [[nodiscard]] VertexStiffness at(std::span<const Eigen::Vector3d> points, const TetrahedronGrid& grid) const;
-
- private:
-  const TetrahedralMesh& mesh_;
-  std::span<const double> young_;
-  std::vector<std::uint32_t> piece_;  // of each tetrahedron
-};
+/// Of the vertices of a mesh. `young`: Pa, one a tetrahedron. Work: tetrahedra, and sorting their faces where not all
+/// are about as stiff. Throws std::invalid_argument on another number of moduli, or none.
+[[nodiscard]] VertexStiffness vertex_stiffness(const TetrahedralMesh& mesh, std::span<const double> young);
 
 }  // namespace greenloop::offline

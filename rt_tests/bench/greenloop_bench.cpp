@@ -17,6 +17,7 @@
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
 #include "rt_tests/bench/kernel_benchmark.hpp"
+#include "rt_tests/bench/multigrid_benchmark.hpp"
 #include "rt_tests/bench/roofline.hpp"
 #include "rt_tests/bench/synthesis_benchmark.hpp"
 #include "runtime/model.hpp"
@@ -30,8 +31,10 @@ using greenloop::bench::ContactFigures;
 using greenloop::bench::CreationFigures;
 using greenloop::bench::FieldFigures;
 using greenloop::bench::ForceFigures;
+using greenloop::bench::MultigridFigures;
 using greenloop::bench::Roofline;
 using greenloop::bench::RooflinePoint;
+using greenloop::bench::SolverFigures;
 using greenloop::bench::SynthesisFigures;
 using greenloop::bench::TransformFigures;
 using nlohmann::json;
@@ -41,6 +44,9 @@ struct Arguments {
   std::vector<std::size_t> contacts{1, 16, 64, 256};
   std::size_t rounds = 40;
   std::uint64_t updates = 10000;
+  bool multigrid = false;
+  std::vector<int> cells{12, 24};
+  int netgen_cells = 12;
   bool json = false;
 };
 
@@ -141,6 +147,35 @@ json as_json(const RooflinePoint& point) {
           {"compute_us", point.compute_us},
           {"compute_ratio", point.us / point.compute_us},
           {"bound_by", point.compute_bound() ? "arithmetic" : "bytes"}};
+}
+
+/// Seconds, or nothing of a solver that failed.
+json seconds_of(const SolverFigures& figures) { return figures.reached ? json(figures.seconds()) : json(nullptr); }
+
+json as_json(const MultigridFigures& f) {
+  json result{{"problem", f.problem},
+              {"tetrahedra", f.tetrahedra},
+              {"unknowns", f.unknowns},
+              {"contrast", f.contrast},
+              {"poisson", f.poisson},
+              {"levels", f.levels},
+              {"memory_bytes", f.memory_bytes},
+              {"setup_s", f.multigrid.setup_s},
+              {"solve_s", f.multigrid.solve_s},
+              {"iterations", f.multigrid.iterations},
+              {"residual", f.multigrid.residual},
+              {"reached", f.multigrid.reached},
+              {"gamg_s", nullptr},
+              {"diagonal_cg_s", seconds_of(f.diagonal)},
+              {"diagonal_cg_iterations", f.diagonal.iterations}};
+  if (f.gamg) {
+    result["gamg_s"] = seconds_of(*f.gamg);
+    result["gamg_setup_s"] = f.gamg->setup_s;
+    result["gamg_solve_s"] = f.gamg->solve_s;
+    result["gamg_iterations"] = f.gamg->iterations;
+    result["gamg_residual"] = f.gamg->residual;
+  }
+  return result;
 }
 
 template <class Figures>
@@ -310,7 +345,35 @@ int run_contact(const Arguments& arguments, const greenloop::Model& model) {
   return 0;
 }
 
+std::string times_of(const std::optional<SolverFigures>& figures) {
+  if (!figures) return "-";
+  if (!figures->reached) return fmt::format("fails ({})", figures->iterations);
+  return fmt::format("{:.3f} + {:.3f} ({})", figures->setup_s, figures->solve_s, figures->iterations);
+}
+
+int run_multigrid(const Arguments& arguments) {
+  const std::vector<MultigridFigures> all =
+      greenloop::bench::measure_multigrid(arguments.cells, arguments.netgen_cells);
+  if (arguments.json) {
+    greenloop::print_result(greenloop::json_text(json{{"multigrid", list_of(all)}}) + "\n");
+    return 0;
+  }
+  fmt::print("Set-up s + solution s (iterations) to a true residual of 1e-5, thread CPU time\n");
+  fmt::print("{:<26} {:>10} {:>8} {:>6} {:>23} {:>23} {:>8} {:>24} {:>8} {:>8}\n", "problem", "tetrahedra", "contrast",
+             "nu", "multigrid", "PETSc CG + GAMG", "x", "diagonal CG", "x", "MB");
+  for (const MultigridFigures& f : all) {
+    const double ours = f.multigrid.seconds();
+    fmt::print("{:<26} {:>10} {:>8.0e} {:>6} {:>23} {:>23} {:>8} {:>24} {:>8.1f} {:>8.1f}\n", f.problem, f.tetrahedra,
+               f.contrast, f.poisson, times_of(f.multigrid), times_of(f.gamg),
+               f.gamg && f.gamg->reached ? fmt::format("{:.1f}", f.gamg->seconds() / ours) : "-", times_of(f.diagonal),
+               f.diagonal.seconds() / ours, 1e-6 * static_cast<double>(f.memory_bytes));
+  }
+  return 0;
+}
+
 int run(const Arguments& arguments) {
+  if (arguments.multigrid) return run_multigrid(arguments);
+  if (arguments.model.empty()) throw std::runtime_error("greenloop-bench: name a model, or --multigrid");
   const auto file = greenloop::open_model_file(arguments.model);
   const auto opened = greenloop::Model::open(file.bytes.span());
   if (opened.model.problem() == greenloop::layout::Problem::impulse_response) {
@@ -327,10 +390,11 @@ int main(int argc, char** argv) {
       "Measures the field of given forces and a whole step (cached factor, forces, displacement of every node) against "
       "summing dense columns and against a sparse back-substitution, side by side in one run, and field and contact "
       "forces against the exact solution. Of an impulse response model: frames a second by as many modes as a budget "
-      "holds.",
+      "holds. With --multigrid: elastic cubes by multigrid, PETSc's algebraic multigrid and diagonal conjugate "
+      "gradients.",
       "greenloop-bench");
   Arguments arguments;
-  app.add_option("model", arguments.model, "The model file")->required()->check(CLI::ExistingFile);
+  app.add_option("model", arguments.model, "The model file")->check(CLI::ExistingFile);
   app.add_option("--store", arguments.store, "The HDF5 store an elastostatic model was built from")
       ->check(CLI::ExistingFile);
   app.add_option("--contacts", arguments.contacts, "Constraint counts to measure")
@@ -341,6 +405,13 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--updates", arguments.updates, "Nodes that leave and enter a factor before its drift is measured")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32))
+      ->capture_default_str();
+  app.add_flag("--multigrid", arguments.multigrid, "Measure multigrid, which needs no model");
+  app.add_option("--cells", arguments.cells, "Cells along an edge of the cubes that multigrid solves")
+      ->check(CLI::Range(2, 96))
+      ->capture_default_str();
+  app.add_option("--netgen-cells", arguments.netgen_cells, "The same of cubes by Netgen, 0 for none")
+      ->check(CLI::Range(0, 64))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");
   return greenloop::run_program(app, argc, argv, [&] { return run(arguments); });
