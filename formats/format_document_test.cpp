@@ -13,6 +13,7 @@
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_motion.hpp"
+#include "formats/testing/synthetic_multigrid.hpp"
 #include "formats/transport/stream.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/ready_file.hpp"
@@ -135,6 +136,14 @@ TEST_CASE("docs/format.md: the sections of a level stand in the order it says, a
   for (const layout::SectionEntry& entry : moving.table()) {
     const bool next_level = entry.kind == static_cast<std::uint32_t>(layout::SectionKind::level);
     CHECK((next_level || place(entry.kind) >= place(before) || before == 0));
+    before = entry.kind;
+    seen.insert(entry.kind);
+  }
+  before = 0;
+  ModelMutant elastic(encoded_file(synthetic_multigrid({})).bytes.span());
+  for (const layout::SectionEntry& entry : elastic.table()) {
+    const bool next_grid = entry.kind == static_cast<std::uint32_t>(layout::SectionKind::grid);
+    CHECK((next_grid || place(entry.kind) >= place(before) || before == 0));
     before = entry.kind;
     seen.insert(entry.kind);
   }

@@ -111,4 +111,10 @@ ModelFile encoded_file(const MultigridData& model) {
   return file;
 }
 
+std::vector<std::byte> encode(const MultigridData& model) {
+  const ModelFile file = encoded_file(model);
+  const auto bytes = file.bytes.span();
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace greenloop

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,5 +36,8 @@ struct MultigridData {
 /// The file of such a model: deterministic, complete, checksummed, verified. Throws std::invalid_argument naming the
 /// field that does not fit.
 [[nodiscard]] ModelFile encoded_file(const MultigridData& model);
+
+/// The bytes of that file.
+[[nodiscard]] std::vector<std::byte> encode(const MultigridData& model);
 
 }  // namespace greenloop

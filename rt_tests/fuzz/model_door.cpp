@@ -1,6 +1,7 @@
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/testing/synthetic_motion.hpp"
+#include "formats/testing/synthetic_multigrid.hpp"
 #include "formats/write/aligned_bytes.hpp"
 #include "formats/write/describe.hpp"
 #include "rt_tests/fuzz/doors.hpp"
@@ -24,7 +25,8 @@ class ModelDoor final : public Door {
               encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6})),
               encode(synthetic_motion({.vertices = 40, .planes = 2, .orbits = 4, .rows = 5, .alternating = true})),
               encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6, .transfer_modes = 2})),
-              encode(measured)};
+              encode(measured),
+              encode(synthetic_multigrid({}))};
   }
 
   bool try_one(Random& random) override {

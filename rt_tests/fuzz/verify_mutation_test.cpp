@@ -11,6 +11,7 @@
 #include "formats/testing/model_mutant.hpp"
 #include "formats/testing/smallest_model.hpp"
 #include "formats/testing/synthetic_motion.hpp"
+#include "formats/testing/synthetic_multigrid.hpp"
 #include "formats/write/describe.hpp"
 #include "formats/write/ready_file.hpp"
 #include "rt_tests/fuzz/walk_view.hpp"
@@ -140,6 +141,30 @@ TEST_CASE("verify survives random changes of impulse response models, and what i
       {encode(synthetic_model({.levels = 2})), encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6})),
        encode(synthetic_motion({.vertices = 40, .planes = 2, .orbits = 4, .rows = 5, .alternating = true})),
        encode(synthetic_motion({.vertices = 20, .orbits = 4, .rows = 6, .transfer_modes = 2}))}));
+}
+
+TEST_CASE("verify survives random changes of multigrid models, and what it accepts is sound") {
+  check_survival(Mutator({encode(synthetic_model({.levels = 2})), encode(synthetic_multigrid({})),
+                          encode(synthetic_multigrid({.cells = 3, .grids = 1})),
+                          encode(synthetic_multigrid({.cells = 1, .grids = 2, .strain = layout::Strain::green}))}));
+}
+
+TEST_CASE("walk_view sees rows and parents of multigrid models that verify must prevent") {
+  ModelMutant mutant(encode(synthetic_multigrid({})));
+  REQUIRE(mutant.verdict().ok());
+  const ModelView view = mutant.view();
+  const auto seen = [&](auto& number, auto wrong) {
+    const auto right = number;
+    number = static_cast<std::remove_reference_t<decltype(number)>>(wrong);
+    const bool found = !walk_view(mutant.bytes(), view);
+    number = right;
+    return found && walk_view(mutant.bytes(), view);
+  };
+  CHECK(seen(mutant.records<layout::TetrahedronRecord>(layout::SectionKind::tetrahedra)[3].vertex[2], 12));
+  CHECK(seen(mutant.records<std::uint32_t>(layout::SectionKind::columns)[3], 8));
+  CHECK(seen(mutant.records<std::uint32_t>(layout::SectionKind::row_starts)[3], 99));
+  CHECK(seen(mutant.records<std::uint32_t>(layout::SectionKind::parents, 1)[1], 2));
+  CHECK(seen(mutant.records<float>(layout::SectionKind::inverses)[0], std::numeric_limits<float>::infinity()));
 }
 
 TEST_CASE("walk_view sees orbits and references of impulse responses that verify must prevent") {

@@ -18,6 +18,7 @@ class Walk {
   Walk(std::span<const std::byte> file, const ModelView& view) : file_(file), view_(view) {}
 
   bool whole_view() {
+    if (view_.problem == layout::Problem::multigrid) return multigrid_view();
     return view_.problem == layout::Problem::impulse_response ? impulse_view() : elastostatic_view();
   }
 
@@ -69,6 +70,59 @@ class Walk {
                  return reference.orbit == layout::none || reference.orbit < info.orbits;
                }) &&
            impulse_groups(view) && appearance(view);
+  }
+
+  bool multigrid_view() const {
+    const MultigridView& view = view_.multigrid;
+    if (!array(view_.header, 1) || !array(view_.provenance.data(), view_.provenance.size()) || !array(view.info, 1)) {
+      return false;
+    }
+    const layout::MultigridInfo& info = *view.info;
+    const auto is_finite = [](auto x) { return std::isfinite(x); };
+    const auto of_body = [&](const layout::TetrahedronRecord& record) {
+      return std::all_of(std::begin(record.vertex), std::end(record.vertex),
+                         [&](auto v) { return v < info.vertices; }) &&
+             record.matter < info.matters;
+    };
+    const auto bound = [&](const layout::BindingRecord& binding) {
+      return std::all_of(std::begin(binding.vertex), std::end(binding.vertex),
+                         [&](auto v) { return v < info.vertices; });
+    };
+    const std::uint64_t order = std::uint64_t{3} * info.coarsest_vertices;
+    return array(view.points, std::uint64_t{3} * info.vertices) && array(view.tetrahedra.data(), info.tetrahedra) &&
+           array(view.matters, info.matters) && array(view.shape, std::uint64_t{3} * info.shown) &&
+           array(view.triangles, std::uint64_t{3} * info.triangles) && array(view.bindings.data(), info.shown) &&
+           array(view.coarsest_factor.data(), order * (order + 1) / 2) &&
+           all(view.points, std::uint64_t{3} * info.vertices, is_finite) &&
+           all(view.tetrahedra.data(), info.tetrahedra, of_body) &&
+           all(view.triangles, std::uint64_t{3} * info.triangles, [&](auto v) { return v < info.shown; }) &&
+           all(view.bindings.data(), info.shown, bound) &&
+           all(view.coarsest_factor.data(), order * (order + 1) / 2, is_finite) && grids(view);
+  }
+
+  bool grids(const MultigridView& view) const {
+    std::uint32_t vertices = view.info->free;
+    for (std::uint32_t g = 0; g + 1 < view.info->grids; ++g) {
+      const GridView& grid = view.grid[g];
+      const std::uint32_t coarser = g + 2 < view.info->grids ? view.grid[g + 1].vertices : view.info->coarsest_vertices;
+      const std::uint64_t blocks = grid.columns.size(), parents = grid.parents.size();
+      const auto in = [](std::uint64_t end) { return [end](std::uint32_t i) { return i <= end; }; };
+      if (grid.vertices != vertices || !array(grid.row_starts, std::uint64_t{vertices} + 1) ||
+          !array(grid.row_uppers, vertices) || !array(grid.columns.data(), blocks) ||
+          !array(grid.blocks, 12 * blocks) || !array(grid.inverses, std::uint64_t{12} * vertices) ||
+          !array(grid.parents.data(), parents) || !array(grid.parent_starts, std::uint64_t{vertices} + 1) ||
+          !array(grid.weights, parents) || !all(grid.row_starts, std::uint64_t{vertices} + 1, in(blocks)) ||
+          !all(grid.row_uppers, vertices, in(blocks)) ||
+          !all(grid.parent_starts, std::uint64_t{vertices} + 1, in(parents)) ||
+          !all(grid.columns.data(), blocks, [&](auto v) { return v < vertices; }) ||
+          !all(grid.parents.data(), parents, [&](auto v) { return v < coarser; }) ||
+          !all(grid.blocks, 12 * blocks, [](float x) { return std::isfinite(x); }) ||
+          !all(grid.inverses, std::uint64_t{12} * vertices, [](float x) { return std::isfinite(x); })) {
+        return false;
+      }
+      vertices = coarser;
+    }
+    return vertices == view.info->coarsest_vertices;
   }
 
   bool appearance(const ImpulseResponseView& view) const {

@@ -18,12 +18,14 @@
 #include <vector>
 
 #include "formats/testing/synthetic_motion.hpp"
+#include "formats/testing/synthetic_multigrid.hpp"
 #include "rt_tests/harness/impulse_run.hpp"
 #include "rt_tests/harness/minor_faults.hpp"
 #include "rt_tests/harness/touching_script.hpp"
 #include "runtime/bound_mesh.hpp"
 #include "runtime/look.hpp"
 #include "runtime/mask.hpp"
+#include "runtime/multigrid.hpp"
 #include "runtime/relief.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/testing/search_bench.hpp"
@@ -130,6 +132,63 @@ class Moving {
   std::vector<float> coordinate_;
   std::vector<Vec3> displacement_, colour_;
 };
+
+// loads, holds and budgets of a multigrid body, refused ones among them
+class Elastic {
+ public:
+  explicit Elastic(layout::Strain strain)
+      : file_(encoded_file(synthetic_multigrid({.cells = 4, .strain = strain}))),
+        model_(Model::open(file_.bytes.span()).model),
+        need_(Multigrid::required(model_, {})),
+        memory_(need_.bytes),
+        body_(Multigrid::create(model_, {}, {memory_.data(), memory_.size()}).body),
+        displacement_(file_.view.multigrid.info->vertices),
+        stress_(displacement_.size()) {}
+
+  Multigrid::StepReport cycle() {
+    ++cycles_;
+    const float swing = static_cast<float>(cycles_ % 40) - 20;
+    const Multigrid::Load load{cycles_ % 18, {0.001F * swing, 0.01F, 0}};
+    const Multigrid::Hold hold{cycles_ / 50 % 17, {0, 1.0e-5F * swing, 0}};
+    const std::uint64_t work =
+        need_.least_work + (cycles_ % 3) * need_.cycle_work + need_.shown_work + need_.stress_work;
+    return body_.step({.loads = {&load, 1}, .holds = {&hold, cycles_ % 100 < 50 ? 1U : 0U}},
+                      {cycles_ % 7 == 0 ? work / 16 : work},
+                      {.displacement = displacement_, .shown = shown_, .stress = stress_});
+  }
+
+ private:
+  ModelFile file_;
+  Model model_;
+  Multigrid::Requirement need_;
+  AlignedBytes memory_;
+  Multigrid body_;
+  std::vector<Vec3> displacement_;
+  Vec3 shown_[3];
+  std::vector<float> stress_;
+  std::uint32_t cycles_ = 0;
+};
+
+TEST_CASE("no allocation and no lock in the steps of a multigrid body, of any strain") {
+  for (const auto strain : {layout::Strain::linear, layout::Strain::corotational, layout::Strain::green}) {
+    Elastic elastic(strain);
+    const std::uint64_t allocations = allocation_guard::count();
+    const std::uint64_t locks = mutex_guard::count();
+    allocation_guard::arm();
+    mutex_guard::arm();
+    int steps = 0, refused = 0;
+    for (int i = 0; i < cycles; ++i) {
+      const auto report = elastic.cycle();
+      (answered(report.status) ? steps : refused)++;
+    }
+    mutex_guard::disarm();
+    allocation_guard::disarm();
+    CHECK(steps > cycles / 2);
+    CHECK(refused > 0);
+    CHECK(allocation_guard::count() == allocations);
+    CHECK(mutex_guard::count() == locks);
+  }
+}
 
 TEST_CASE("the allocation guard trips on malloc, new and free") {
   void* volatile memory = nullptr;
