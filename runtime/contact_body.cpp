@@ -246,6 +246,14 @@ std::uint64_t ContactBody::touching_work(std::span<const ToolInput> tools) const
 
 const ContactBody::Energy& ContactBody::energy() const noexcept { return body_->energy; }
 
+double ContactBody::area(const Contact& contact) const noexcept {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (contact.node[k] < body_->nodes) sum += contact.weight[k] * double{body_->area[contact.node[k]]};
+  }
+  return sum;
+}
+
 std::span<const ContactBody::ToolAnswer> ContactBody::tools() const noexcept {
   return {body_->tool_answer, body_->tool_count};
 }

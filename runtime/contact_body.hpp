@@ -44,7 +44,7 @@ class ContactBody {
   struct ToolAnswer {
     ToolFault fault = ToolFault::none;  ///< with one the tool is left out
     Double3 force;                      ///< N, on the tool
-    Double3 torque;                     ///< N m, on the tool about its pose's position
+    Double3 torque;                     ///< N m, on the tool about its origin: its pose's position and sag
     std::uint32_t first_contact = 0;    ///< among contacts()
     std::uint32_t contacts = 0;         ///< places that may touch, of which those with a force do
     double depth = 0;                   ///< m, how far the tool was inside of the surface before this step's answer
@@ -117,6 +117,11 @@ class ContactBody {
   [[nodiscard]] std::span<const Contact> contacts() const noexcept;   ///< by tool
   [[nodiscard]] std::span<const Vec4> displacement() const noexcept;  ///< [nodes] m, x y z 0
   [[nodiscard]] const Energy& energy() const noexcept;
+
+  /// m^2, of the surface at rest that a contact stands for: the areas of its nodes (Surface::areas) by its weights. Its
+  /// force over that is the traction there. Nodes that the model does not have count nothing. For the loop; constant
+  /// work.
+  [[nodiscard]] double area(const Contact& contact) const noexcept;
 
   /// The tool is somewhere else without having been between: in the next step it is placed where it is, and holds on to
   /// nothing. Numbers that no tool has are ignored. For the loop; work: linear in the contacts.

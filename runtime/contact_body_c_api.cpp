@@ -231,6 +231,10 @@ greenloop_contact_energy greenloop_contact_body_energy(const greenloop_contact_b
   return {energy.in, energy.stored, energy.dissipated, energy.lost, energy.generated};
 }
 
+double greenloop_contact_body_area(const greenloop_contact_body* body, const greenloop_touch* touch) {
+  return touched_in(body).area(*reinterpret_cast<const ContactBody::Contact*>(touch));
+}
+
 const float* greenloop_contact_body_displacement(const greenloop_contact_body* body, size_t* nodes) {
   const auto field = touched_in(body).displacement();
   *nodes = field.size();

@@ -224,10 +224,14 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
       CHECK(same_bytes(touch[k].normal, contact.normal));
       CHECK(same_bytes(touch[k].force, contact.force));
       CHECK(touch[k].gap == contact.gap);
+      CHECK(greenloop_contact_body_area(made.body, &touch[k]) == cpp.body.area(contact));
     }
     touches += count;
     const float* const field = greenloop_contact_body_displacement(made.body, &count);
     CHECK(std::memcmp(field, cpp.body.displacement().data(), cpp.body.displacement().size_bytes()) == 0);
+    const greenloop_contact_energy energy = greenloop_contact_body_energy(made.body);
+    CHECK(energy.in == cpp.body.energy().in);
+    CHECK(energy.generated == cpp.body.energy().generated);
   }
   CHECK(touches > 100);
   CHECK(std::count(felt, felt + 6, true) == 6);

@@ -87,6 +87,22 @@ TEST_CASE("a ball that is pressed in is pushed out, by as much as its contacts a
   }
 }
 
+TEST_CASE("contacts stand for the surface around them: the areas of all nodes are that of the body") {
+  const TestModel model(sphere);
+  TouchableBody touched(model);
+  const double body_radius = radius_of(model);
+  double sum = 0;
+  for (std::uint32_t node = 0; node < model.model().node_count(); ++node) {
+    ContactBody::Contact contact;
+    contact.node[0] = node;
+    contact.node[1] = contact.node[2] = layout::none;
+    contact.weight[0] = 1;
+    sum += touched.body.area(contact);
+  }
+  constexpr double of_unit_sphere = 12.566370614359172;
+  CHECK(sum == doctest::Approx(of_unit_sphere * body_radius * body_radius).epsilon(0.02));
+}
+
 TEST_CASE("friction holds a ball that is dragged, up to its coefficient") {
   const TestModel model(sphere);
   const double body_radius = radius_of(model), radius = 0.3 * body_radius, depth = 0.03 * body_radius;

@@ -117,7 +117,7 @@ typedef enum greenloop_tool_fault {
 typedef struct greenloop_tool_answer {
   uint8_t fault;          /* a greenloop_tool_fault: with one the tool is left out */
   double force[3];        /* N, on the tool */
-  double torque[3];       /* N m, on the tool about its position */
+  double torque[3];       /* N m, on the tool about its position and sag */
   uint32_t first_contact; /* among greenloop_contact_body_contacts */
   uint32_t contacts;      /* places that may touch, of which those with a force do */
   double depth;           /* m, how far the tool was inside of the surface before this step's answer */
@@ -203,6 +203,9 @@ const greenloop_tool_answer* greenloop_contact_body_tools(const greenloop_contac
 const greenloop_touch* greenloop_contact_body_contacts(const greenloop_contact_body* body, size_t* count);
 greenloop_contact_energy greenloop_contact_body_energy(const greenloop_contact_body* body);
 const float* greenloop_contact_body_displacement(const greenloop_contact_body* body, size_t* nodes);
+
+/* m^2, of the surface at rest that a contact stands for: its force over it is the traction there. For the loop. */
+double greenloop_contact_body_area(const greenloop_contact_body* body, const greenloop_touch* touch);
 
 /* The tool is somewhere else without having been between. For the loop. */
 void greenloop_contact_body_forget(greenloop_contact_body* body, uint32_t tool);

@@ -20,15 +20,11 @@ bool in_range(const ContactBody::Limits& limits) {
 }
 
 // of all triangles of the finest level, at rest
-double mean_edge(const Surface& surface, Vec4* normal) {
-  const std::uint32_t level = surface.level();
-  const std::uint32_t nodes = surface.node_count(level);
-  auto* area = reinterpret_cast<float*>(normal);
-  if (!surface.areas(level, {}, {area, nodes})) return 0;
+double mean_edge(const Surface& surface, std::span<const float> area) {
   double sum = 0;
-  for (std::uint32_t i = 0; i < nodes; ++i) sum += double{area[i]};
+  for (const float of_node : area) sum += double{of_node};
   constexpr double equilateral = 0.4330127018922193;  // area of a triangle with unit edges
-  return std::sqrt(sum / (equilateral * surface.triangle_count(level)));
+  return std::sqrt(sum / (equilateral * surface.triangle_count(surface.level())));
 }
 
 // memory that a part carves itself
@@ -75,6 +71,7 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.force = arena.take<Vec3>(body.max_contacts);
   body.gap = arena.take<Vec4>(body.max_contacts);
   body.yield = arena.take<float>(body.max_contacts);
+  body.area = arena.take<float>(body.nodes);
   body.held_out = arena.take_zeroed<float>(body.nodes);
   body.state = arena.take<ContactState>(body.max_contacts);
   body.answered = arena.take<ContactBody::Contact>(body.max_contacts);
@@ -100,9 +97,9 @@ bool place_parts(Arena& arena, const Model& model, const ContactBody::Limits& li
   body.surface = made_surface.surface;
   body.deformed = made_deformed.surface;
   body.elastostatic = made_body.body;
-  body.mean_edge = mean_edge(body.surface, body.displacement);
+  if (!body.surface.areas(finest, {}, {body.area, body.nodes})) return false;
+  body.mean_edge = mean_edge(body.surface, {body.area, body.nodes});
   const double margin = limits.margin > 0 ? limits.margin : 0.25 * body.mean_edge;
-  for (std::uint32_t i = 0; i < body.nodes; ++i) body.displacement[i] = {};
   const auto made_search = CandidateSearch::create(search_limits(limits, margin, 2 * body.mean_edge), search);
   if (!made_search) return false;
   body.search = made_search.search;

@@ -44,6 +44,7 @@ struct TouchedBody {
   Vec3* force = nullptr;                     ///< [max_contacts]
   Vec4* gap = nullptr;                       ///< [max_contacts]
   float* yield = nullptr;                    ///< [max_contacts] m
+  float* area = nullptr;                     ///< [nodes] m^2, of the surface at rest
   float* held_out = nullptr;                 ///< [nodes] m, how far the contacts of the last answer push each
   ContactState* state = nullptr;             ///< [max_contacts]
   ContactBody::Contact* answered = nullptr;  ///< [max_contacts] of the last answer
