@@ -95,7 +95,7 @@ SolverFigures fastest(const Run& run) {
 
 }  // namespace
 
-MultigridFigures measure_multigrid(const MultigridProblem& problem) {
+MultigridFigures measure_multigrid(const MultigridProblem& problem, Peers peers) {
   const System system(problem);
   MultigridFigures figures;
   figures.problem = problem.name;
@@ -104,17 +104,18 @@ MultigridFigures measure_multigrid(const MultigridProblem& problem) {
   figures.contrast = problem.contrast;
   figures.poisson = problem.poisson;
   figures.multigrid = fastest([&] { return by_multigrid(problem, system, figures); });
+  if (peers == Peers::none) return figures;
   if (PetscGamg::available()) figures.gamg = fastest([&] { return by_gamg(problem, system); });
   figures.diagonal = by_diagonal(system);
   return figures;
 }
 
-std::vector<MultigridFigures> measure_multigrid(const std::vector<int>& cells, int netgen_cells) {
+std::vector<MultigridFigures> measure_multigrid(const std::vector<int>& cells, int netgen_cells, Peers peers) {
   constexpr double stiff = 1e6, usual = 0.3;
   std::vector<MultigridFigures> all;
   const auto measure = [&](Meshes meshes, int along, StiffPart part, double poisson) {
     const double contrast = part == StiffPart::none ? 1.0 : stiff;
-    all.push_back(measure_multigrid(multigrid_problem(meshes, along, part, contrast, poisson)));
+    all.push_back(measure_multigrid(multigrid_problem(meshes, along, part, contrast, poisson), peers));
   };
   for (const int along : cells) {
     for (const StiffPart part : {StiffPart::none, StiffPart::ball, StiffPart::checkerboard}) {

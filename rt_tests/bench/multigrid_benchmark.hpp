@@ -27,16 +27,19 @@ struct MultigridFigures {
   std::vector<std::size_t> levels;  ///< free vertices of each
   std::size_t memory_bytes = 0;     ///< beside the matrix and the right side: hierarchy and vectors
   SolverFigures multigrid;          ///< set-up: transfer between the levels, operators and coarsest factor
-  std::optional<SolverFigures> gamg;
-  SolverFigures diagonal;
+  std::optional<SolverFigures> gamg, diagonal;
 };
 
+/// Whether others solve the same beside multigrid.
+enum class Peers { none, all };
+
 /// Least times of three runs each, of the diagonal one run.
-[[nodiscard]] MultigridFigures measure_multigrid(const MultigridProblem& problem);
+[[nodiscard]] MultigridFigures measure_multigrid(const MultigridProblem& problem, Peers peers);
 
 /// Homogeneous bodies, and stiff balls and checkerboards of contrast 1e6, of each number of cells along an edge of a
 /// cube; nu = 0.49 and 0.499 at the last of them; the first two of these bodies by Netgen at `netgen_cells`, where it
 /// is not 0.
-[[nodiscard]] std::vector<MultigridFigures> measure_multigrid(const std::vector<int>& cells, int netgen_cells);
+[[nodiscard]] std::vector<MultigridFigures> measure_multigrid(const std::vector<int>& cells, int netgen_cells,
+                                                              Peers peers);
 
 }  // namespace greenloop::bench
