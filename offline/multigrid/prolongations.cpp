@@ -132,6 +132,7 @@ class Guests {
       return;
     }
     std::vector<Eigen::Vector3d> points;
+    points.reserve(part.size());
     for (const int v : part) points.push_back(fine_.mesh->vertices[v]);
     std::array<int, 4> parent{};
     Eigen::Matrix<double, 3, 4> corner;

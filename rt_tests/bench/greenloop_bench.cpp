@@ -6,18 +6,22 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "formats/output/json_text.hpp"
 #include "formats/output/program.hpp"
 #include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
+#include "offline/report/report.hpp"
 #include "rt_tests/bench/contact_benchmark.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
 #include "rt_tests/bench/kernel_benchmark.hpp"
 #include "rt_tests/bench/multigrid_benchmark.hpp"
+#include "rt_tests/bench/multigrid_figures.hpp"
 #include "rt_tests/bench/roofline.hpp"
 #include "rt_tests/bench/synthesis_benchmark.hpp"
 #include "runtime/model.hpp"
@@ -45,8 +49,8 @@ struct Arguments {
   std::size_t rounds = 40;
   std::uint64_t updates = 10000;
   bool multigrid = false, alone = false;
-  std::vector<int> cells{12, 24};
-  int netgen_cells = 12;
+  greenloop::bench::MultigridStudy study;
+  std::optional<std::filesystem::path> figures;
   bool json = false;
 };
 
@@ -360,9 +364,12 @@ std::string times_as_long(const std::optional<SolverFigures>& figures, const Sol
 }
 
 int run_multigrid(const Arguments& arguments) {
-  const std::vector<MultigridFigures> all = greenloop::bench::measure_multigrid(
-      arguments.cells, arguments.netgen_cells,
-      arguments.alone ? greenloop::bench::Peers::none : greenloop::bench::Peers::all);
+  greenloop::bench::MultigridStudy study = arguments.study;
+  if (arguments.alone) study.peers = greenloop::bench::Peers::none;
+  const std::vector<MultigridFigures> all = greenloop::bench::measure_multigrid(study);
+  if (arguments.figures) {
+    greenloop::offline::write_figures(*arguments.figures, {greenloop::bench::multigrid_figure(all)});
+  }
   if (arguments.json) {
     greenloop::print_result(greenloop::json_text(json{{"multigrid", list_of(all)}}) + "\n");
     return 0;
@@ -416,10 +423,14 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--multigrid", arguments.multigrid, "Measure multigrid, which needs no model");
   app.add_flag("--alone", arguments.alone, "Leave its peers out");
-  app.add_option("--cells", arguments.cells, "Cells along an edge of the cubes that multigrid solves")
+  app.add_option("--cells", arguments.study.cells, "Cells along an edge of the cubes that multigrid solves")
       ->check(CLI::Range(2, 96))
       ->capture_default_str();
-  app.add_option("--netgen-cells", arguments.netgen_cells, "The same of cubes by Netgen, 0 for none")
+  app.add_option("--contrasts", arguments.study.contrasts, "Of their stiff parts' moduli to the others'")
+      ->check(CLI::Range(1.0, 1e12))
+      ->capture_default_str();
+  app.add_option("--figures", arguments.figures, "Folder to draw multigrid's curves to, as SVG");
+  app.add_option("--netgen-cells", arguments.study.netgen_cells, "The same of cubes by Netgen, 0 for none")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");

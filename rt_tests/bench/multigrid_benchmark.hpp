@@ -36,10 +36,15 @@ enum class Peers { none, all };
 /// Least times of three runs each, of the diagonal one run.
 [[nodiscard]] MultigridFigures measure_multigrid(const MultigridProblem& problem, Peers peers);
 
-/// Homogeneous bodies, and stiff balls and checkerboards of contrast 1e6, of each number of cells along an edge of a
-/// cube; nu = 0.49 and 0.499 at the last of them; the first two of these bodies by Netgen at `netgen_cells`, where it
-/// is not 0.
-[[nodiscard]] std::vector<MultigridFigures> measure_multigrid(const std::vector<int>& cells, int netgen_cells,
-                                                              Peers peers);
+struct MultigridStudy {
+  std::vector<int> cells{12, 24};      ///< along an edge of cubes, at least one
+  std::vector<double> contrasts{1e6};  ///< of stiff parts
+  int netgen_cells = 12;               ///< of cubes by Netgen; 0 for none
+  Peers peers = Peers::all;
+};
+
+/// Homogeneous bodies, stiff balls and checkerboards of each number of cells; nu = 0.49 and 0.499 at the last of them;
+/// homogeneous bodies and stiff balls by Netgen.
+[[nodiscard]] std::vector<MultigridFigures> measure_multigrid(const MultigridStudy& study);
 
 }  // namespace greenloop::bench

@@ -2,13 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include "rt_tests/bench/multigrid_figures.hpp"
 #include "rt_tests/bench/petsc_gamg.hpp"
 
 namespace greenloop::bench {
 namespace {
 
 TEST_CASE("every solver reaches the tolerance on every small problem") {
-  const auto all = measure_multigrid({8}, 8, Peers::all);
+  const auto all = measure_multigrid({.cells = {8}, .netgen_cells = 8});
   REQUIRE(all.size() == 7);
   for (const MultigridFigures& figures : all) {
     INFO(figures.problem, " nu ", figures.poisson);
@@ -25,6 +26,7 @@ TEST_CASE("every solver reaches the tolerance on every small problem") {
     CHECK((!figures.gamg || figures.gamg->reached));
   }
   CHECK(all[1].diagonal->iterations > all[0].diagonal->iterations);
+  CHECK(multigrid_figure(all).svg().find("multigrid") != std::string::npos);
 }
 
 TEST_CASE("a cube by Netgen fills the cube") {
