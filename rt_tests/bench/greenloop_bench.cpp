@@ -388,7 +388,7 @@ int run_multigrid(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   if (arguments.multigrid) return run_multigrid(arguments);
-  if (arguments.model.empty()) throw std::runtime_error("greenloop-bench: name a model, or --multigrid");
+  if (arguments.model.empty()) throw std::runtime_error("name a model, or --multigrid");
   const auto file = greenloop::open_model_file(arguments.model);
   const auto opened = greenloop::Model::open(file.bytes.span());
   if (opened.model.problem() == greenloop::layout::Problem::impulse_response) {
