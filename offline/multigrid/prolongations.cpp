@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kNoWeight = 1.0e-9;
 constexpr double kLeastSum = 1.0e-3;  // of a vertex's weights, below which nothing depends on it
-constexpr double kFarthest = -2.0;    // least barycentric coordinate to which a tetrahedron is continued
+constexpr double kFarthest = -1.0;    // least barycentric coordinate to which a tetrahedron is continued
 constexpr int kRings = 2;             // of cells in which one of the same matter is looked for
 
 /// Vertices of a mesh, what moves and how stiff they are.
@@ -132,6 +132,7 @@ class Guests {
       return;
     }
     std::vector<Eigen::Vector3d> points;
+    points.reserve(part.size());
     for (const int v : part) points.push_back(fine_.mesh->vertices[v]);
     std::array<int, 4> parent{};
     Eigen::Matrix<double, 3, 4> corner;

@@ -6,18 +6,22 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "formats/output/json_text.hpp"
 #include "formats/output/program.hpp"
 #include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
+#include "offline/report/report.hpp"
 #include "rt_tests/bench/contact_benchmark.hpp"
 #include "rt_tests/bench/exact_columns.hpp"
 #include "rt_tests/bench/field_benchmark.hpp"
 #include "rt_tests/bench/kernel_benchmark.hpp"
 #include "rt_tests/bench/multigrid_benchmark.hpp"
+#include "rt_tests/bench/multigrid_figures.hpp"
 #include "rt_tests/bench/roofline.hpp"
 #include "rt_tests/bench/synthesis_benchmark.hpp"
 #include "runtime/model.hpp"
@@ -44,9 +48,9 @@ struct Arguments {
   std::vector<std::size_t> contacts{1, 16, 64, 256};
   std::size_t rounds = 40;
   std::uint64_t updates = 10000;
-  bool multigrid = false;
-  std::vector<int> cells{12, 24};
-  int netgen_cells = 12;
+  bool multigrid = false, alone = false;
+  greenloop::bench::MultigridStudy study;
+  std::optional<std::filesystem::path> figures;
   bool json = false;
 };
 
@@ -166,8 +170,11 @@ json as_json(const MultigridFigures& f) {
               {"residual", f.multigrid.residual},
               {"reached", f.multigrid.reached},
               {"gamg_s", nullptr},
-              {"diagonal_cg_s", seconds_of(f.diagonal)},
-              {"diagonal_cg_iterations", f.diagonal.iterations}};
+              {"diagonal_cg_s", nullptr}};
+  if (f.diagonal) {
+    result["diagonal_cg_s"] = seconds_of(*f.diagonal);
+    result["diagonal_cg_iterations"] = f.diagonal->iterations;
+  }
   if (f.gamg) {
     result["gamg_s"] = seconds_of(*f.gamg);
     result["gamg_setup_s"] = f.gamg->setup_s;
@@ -351,9 +358,18 @@ std::string times_of(const std::optional<SolverFigures>& figures) {
   return fmt::format("{:.3f} + {:.3f} ({})", figures->setup_s, figures->solve_s, figures->iterations);
 }
 
+/// How many times as long it takes.
+std::string times_as_long(const std::optional<SolverFigures>& figures, const SolverFigures& ours) {
+  return figures && figures->reached ? fmt::format("{:.1f}", figures->seconds() / ours.seconds()) : "-";
+}
+
 int run_multigrid(const Arguments& arguments) {
-  const std::vector<MultigridFigures> all =
-      greenloop::bench::measure_multigrid(arguments.cells, arguments.netgen_cells);
+  greenloop::bench::MultigridStudy study = arguments.study;
+  if (arguments.alone) study.peers = greenloop::bench::Peers::none;
+  const std::vector<MultigridFigures> all = greenloop::bench::measure_multigrid(study);
+  if (arguments.figures) {
+    greenloop::offline::write_figures(*arguments.figures, {greenloop::bench::multigrid_figure(all)});
+  }
   if (arguments.json) {
     greenloop::print_result(greenloop::json_text(json{{"multigrid", list_of(all)}}) + "\n");
     return 0;
@@ -362,18 +378,17 @@ int run_multigrid(const Arguments& arguments) {
   fmt::print("{:<26} {:>10} {:>8} {:>6} {:>23} {:>23} {:>8} {:>24} {:>8} {:>8}\n", "problem", "tetrahedra", "contrast",
              "nu", "multigrid", "PETSc CG + GAMG", "x", "diagonal CG", "x", "MB");
   for (const MultigridFigures& f : all) {
-    const double ours = f.multigrid.seconds();
-    fmt::print("{:<26} {:>10} {:>8.0e} {:>6} {:>23} {:>23} {:>8} {:>24} {:>8.1f} {:>8.1f}\n", f.problem, f.tetrahedra,
-               f.contrast, f.poisson, times_of(f.multigrid), times_of(f.gamg),
-               f.gamg && f.gamg->reached ? fmt::format("{:.1f}", f.gamg->seconds() / ours) : "-", times_of(f.diagonal),
-               f.diagonal.seconds() / ours, 1e-6 * static_cast<double>(f.memory_bytes));
+    fmt::print("{:<26} {:>10} {:>8.0e} {:>6} {:>23} {:>23} {:>8} {:>24} {:>8} {:>8.1f}\n", f.problem, f.tetrahedra,
+               f.contrast, f.poisson, times_of(f.multigrid), times_of(f.gamg), times_as_long(f.gamg, f.multigrid),
+               times_of(f.diagonal), times_as_long(f.diagonal, f.multigrid),
+               1e-6 * static_cast<double>(f.memory_bytes));
   }
   return 0;
 }
 
 int run(const Arguments& arguments) {
   if (arguments.multigrid) return run_multigrid(arguments);
-  if (arguments.model.empty()) throw std::runtime_error("greenloop-bench: name a model, or --multigrid");
+  if (arguments.model.empty()) throw std::runtime_error("name a model, or --multigrid");
   const auto file = greenloop::open_model_file(arguments.model);
   const auto opened = greenloop::Model::open(file.bytes.span());
   if (opened.model.problem() == greenloop::layout::Problem::impulse_response) {
@@ -407,10 +422,15 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 32))
       ->capture_default_str();
   app.add_flag("--multigrid", arguments.multigrid, "Measure multigrid, which needs no model");
-  app.add_option("--cells", arguments.cells, "Cells along an edge of the cubes that multigrid solves")
+  app.add_flag("--alone", arguments.alone, "Leave its peers out");
+  app.add_option("--cells", arguments.study.cells, "Cells along an edge of the cubes that multigrid solves")
       ->check(CLI::Range(2, 96))
       ->capture_default_str();
-  app.add_option("--netgen-cells", arguments.netgen_cells, "The same of cubes by Netgen, 0 for none")
+  app.add_option("--contrasts", arguments.study.contrasts, "Of their stiff parts' moduli to the others'")
+      ->check(CLI::Range(1.0, 1e12))
+      ->capture_default_str();
+  app.add_option("--figures", arguments.figures, "Folder to draw multigrid's curves to, as SVG");
+  app.add_option("--netgen-cells", arguments.study.netgen_cells, "The same of cubes by Netgen, 0 for none")
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");

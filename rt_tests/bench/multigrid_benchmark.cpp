@@ -95,7 +95,7 @@ SolverFigures fastest(const Run& run) {
 
 }  // namespace
 
-MultigridFigures measure_multigrid(const MultigridProblem& problem) {
+MultigridFigures measure_multigrid(const MultigridProblem& problem, Peers peers) {
   const System system(problem);
   MultigridFigures figures;
   figures.problem = problem.name;
@@ -104,26 +104,31 @@ MultigridFigures measure_multigrid(const MultigridProblem& problem) {
   figures.contrast = problem.contrast;
   figures.poisson = problem.poisson;
   figures.multigrid = fastest([&] { return by_multigrid(problem, system, figures); });
+  if (peers == Peers::none) return figures;
   if (PetscGamg::available()) figures.gamg = fastest([&] { return by_gamg(problem, system); });
   figures.diagonal = by_diagonal(system);
   return figures;
 }
 
-std::vector<MultigridFigures> measure_multigrid(const std::vector<int>& cells, int netgen_cells) {
-  constexpr double stiff = 1e6, usual = 0.3;
+std::vector<MultigridFigures> measure_multigrid(const MultigridStudy& study) {
+  constexpr double usual = 0.3;
   std::vector<MultigridFigures> all;
-  const auto measure = [&](Meshes meshes, int along, StiffPart part, double poisson) {
-    const double contrast = part == StiffPart::none ? 1.0 : stiff;
-    all.push_back(measure_multigrid(multigrid_problem(meshes, along, part, contrast, poisson)));
+  const auto measure = [&](Meshes meshes, int cells, StiffPart part, double contrast, double poisson) {
+    all.push_back(measure_multigrid(multigrid_problem(meshes, cells, part, contrast, poisson), study.peers));
   };
-  for (const int along : cells) {
-    for (const StiffPart part : {StiffPart::none, StiffPart::ball, StiffPart::checkerboard}) {
-      measure(Meshes::structured, along, part, usual);
+  for (const int cells : study.cells) {
+    measure(Meshes::structured, cells, StiffPart::none, 1.0, usual);
+    for (const double contrast : study.contrasts) {
+      measure(Meshes::structured, cells, StiffPart::ball, contrast, usual);
+      measure(Meshes::structured, cells, StiffPart::checkerboard, contrast, usual);
     }
   }
-  for (const double poisson : {0.49, 0.499}) measure(Meshes::structured, cells.back(), StiffPart::none, poisson);
-  if (netgen_cells == 0) return all;
-  for (const StiffPart part : {StiffPart::none, StiffPart::ball}) measure(Meshes::netgen, netgen_cells, part, usual);
+  for (const double poisson : {0.49, 0.499}) {
+    measure(Meshes::structured, study.cells.back(), StiffPart::none, 1.0, poisson);
+  }
+  if (study.netgen_cells == 0) return all;
+  measure(Meshes::netgen, study.netgen_cells, StiffPart::none, 1.0, usual);
+  measure(Meshes::netgen, study.netgen_cells, StiffPart::ball, study.contrasts.back(), usual);
   return all;
 }
 

@@ -27,16 +27,24 @@ struct MultigridFigures {
   std::vector<std::size_t> levels;  ///< free vertices of each
   std::size_t memory_bytes = 0;     ///< beside the matrix and the right side: hierarchy and vectors
   SolverFigures multigrid;          ///< set-up: transfer between the levels, operators and coarsest factor
-  std::optional<SolverFigures> gamg;
-  SolverFigures diagonal;
+  std::optional<SolverFigures> gamg, diagonal;
 };
 
-/// Least times of three runs each, of the diagonal one run.
-[[nodiscard]] MultigridFigures measure_multigrid(const MultigridProblem& problem);
+/// Whether others solve the same beside multigrid.
+enum class Peers { none, all };
 
-/// Homogeneous bodies, and stiff balls and checkerboards of contrast 1e6, of each number of cells along an edge of a
-/// cube; nu = 0.49 and 0.499 at the last of them; the first two of these bodies by Netgen at `netgen_cells`, where it
-/// is not 0.
-[[nodiscard]] std::vector<MultigridFigures> measure_multigrid(const std::vector<int>& cells, int netgen_cells);
+/// Least times of three runs each, of the diagonal one run.
+[[nodiscard]] MultigridFigures measure_multigrid(const MultigridProblem& problem, Peers peers);
+
+struct MultigridStudy {
+  std::vector<int> cells{12, 24};      ///< along an edge of cubes, at least one
+  std::vector<double> contrasts{1e6};  ///< of stiff parts
+  int netgen_cells = 12;               ///< of cubes by Netgen; 0 for none
+  Peers peers = Peers::all;
+};
+
+/// Homogeneous bodies, stiff balls and checkerboards of each number of cells; nu = 0.49 and 0.499 at the last of them;
+/// homogeneous bodies and stiff balls by Netgen.
+[[nodiscard]] std::vector<MultigridFigures> measure_multigrid(const MultigridStudy& study);
 
 }  // namespace greenloop::bench

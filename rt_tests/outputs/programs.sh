@@ -58,6 +58,7 @@ json 0 HELD greenloop-loop c.gloop --seconds 0.2 --transport memq --json
 json 0 HELD greenloop-stress c.gloop --cycles 200 --json
 json 0 - greenloop-calibrate c.gloop --cycles 200 --json
 json 0 - greenloop-bench c.gloop --store c.h5 --contacts 1 --rounds 3 --updates 10 --json
+json 0 - greenloop-bench --multigrid --cells 4 --netgen-cells 0 --json
 json 0 - greenloop-figures c.h5 --contacts 1 --rounds 3 --json
 json 0 - greenloop-columns cube.toml --records c.csv --json
 json 0 - greenloop-masks 1 --sliding-splits 1 --points 8 --json
