@@ -72,7 +72,8 @@ class ContactBody {
     double stored = 0;      ///< what the contacts' forces strain the body with
     double dissipated = 0;  ///< by friction
     double lost = 0;        ///< by going in steps: never negative where the laws of contact hold
-    double generated = 0;   ///< the most that did not add up: rounding, and answers short of budget
+    double generated = 0;   ///< the most that did not add up: rounding, answers short of budget, and with loads what
+                            ///< these do at the contacts (docs/contact.md, "Energy")
   };
 
   /// What Limits cost. least_work: with that budget every step is answered, its contacts found and held at least at the

@@ -288,6 +288,20 @@ TEST_CASE("every script touches, holds and lets nothing through; those that lose
   CHECK(dropped.exit_status == 0);
   CHECK(nlohmann::json::parse(dropped.output)["contact_cycles"] > 10);
   CHECK(nlohmann::json::parse(dropped.output)["fall_throughs"] == 0);
+}
+
+TEST_CASE("a model that knows gravity is tilted under a probe; one that does not is refused") {
+  ModelData data = synthetic_model({.levels = 4, .touchable_above = -0.2, .gravity = true});
+  data.info.max_contacts = 16;
+  write_file(workspace().file("heavy.gloop"), encode(data));
+  const ProgramRun tilted = run_program(
+      GREENLOOP_LOOP, {workspace().file("heavy.gloop"), "--script", "tilt", "--transport", "memq", "--json"});
+  INFO(tilted.output << tilted.errors);
+  REQUIRE(tilted.exit_status == 0);
+  const auto json = nlohmann::json::parse(tilted.output);
+  CHECK(json["script"] == "tilt");
+  CHECK(json["fall_throughs"] == 0);
+  CHECK(json["contact_cycles"] > 1000);
   const ProgramRun no_gravity = run_text({"--script", "tilt"});
   CHECK(no_gravity.exit_status == 1);
   CHECK(contains(no_gravity.errors, "gravity = true"));
