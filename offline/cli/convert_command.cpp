@@ -91,6 +91,9 @@ ModelFile read_model(const ConvertArguments& arguments) {
   if (model.view.problem == layout::Problem::impulse_response) {
     refuse(arguments, "an impulse response model has nothing to be made ready; leave --ready and --no-ready out");
   }
+  if (model.view.problem == layout::Problem::multigrid) {
+    refuse(arguments, "a multigrid model has nothing to be made ready; leave --ready and --no-ready out");
+  }
   const auto bytes = *arguments.ready ? ready_model(model.bytes.span()) : plain_file(model.bytes.span());
   return verified_model(AlignedBytes(bytes), arguments.output.string());
 }
@@ -105,6 +108,9 @@ void convert_model(const ConvertArguments& arguments, const std::string& to) {
   const ModelFile model = read_model(arguments);
   if (model.view.problem == layout::Problem::impulse_response && !is_c_source(to) && !is_model(to)) {
     refuse(arguments, "an impulse response model becomes .gloop with --levels, or .h and .c");
+  }
+  if (model.view.problem == layout::Problem::multigrid && !is_c_source(to)) {
+    refuse(arguments, "a multigrid model becomes .h and .c");
   }
   if (is_c_source(to)) {
     write_c_array(arguments.output, model.bytes.span());

@@ -19,6 +19,7 @@
 #include "formats/write/describe.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/cli/inspect_budget.hpp"
+#include "offline/cli/inspect_elastic.hpp"
 #include "offline/cli/inspect_motion.hpp"
 #include "offline/cli/inspect_patterns.hpp"
 #include "offline/compress/measure/field_size.hpp"
@@ -288,12 +289,16 @@ void print_table(const std::filesystem::path& file, const Json& found, std::ostr
 int run_inspect(const InspectArguments& arguments, std::ostream& out) {
   const ModelFile model = open_model_file(arguments.file);
   const bool motion = model.view.problem == layout::Problem::impulse_response;
-  Json found = motion ? motion_inspection(model, provenance_of(model.view)) : inspection_of(model);
-  if (motion) found["sections"] = sections_of(model);
+  const bool elastic = model.view.problem == layout::Problem::multigrid;
+  Json found = motion    ? motion_inspection(model, provenance_of(model.view))
+               : elastic ? elastic_inspection(model, provenance_of(model.view))
+                         : inspection_of(model);
+  if (motion || elastic) found["sections"] = sections_of(model);
   if (arguments.json) {
     out << json_text(found) << '\n';
   } else {
-    motion ? print_motion_table(arguments.file, found, out) : print_table(arguments.file, found, out);
+    const auto print = motion ? print_motion_table : elastic ? print_elastic_table : print_table;
+    print(arguments.file, found, out);
     if (arguments.provenance) fmt::print(out, "\n  provenance: {}\n", json_text(found["provenance"]));
   }
   return 0;

@@ -83,6 +83,9 @@ void run(const Options& options) {
   const std::string first = options.traces.empty() ? "" : options.traces.front();
   const auto more = options.traces.begin() + (options.traces.empty() ? 0 : 1);
   const bool motion = file.view.problem == layout::Problem::impulse_response;
+  if (file.view.problem == layout::Problem::multigrid) {
+    require_problem(file.view, layout::Problem::elastostatic, options.model);
+  }
   const ReportInputs inputs{.model = options.model,
                             .trace = given(first),
                             .snapshot = given(options.snapshot),
