@@ -11,6 +11,7 @@
 #include "formats/output/streams.hpp"
 #include "offline/pipeline/build_model_file.hpp"
 #include "offline/pipeline/build_motion_model.hpp"
+#include "offline/pipeline/build_multigrid_model.hpp"
 #include "offline/pipeline/model_quality.hpp"
 #include "offline/scene/motion_scene.hpp"
 
@@ -71,6 +72,21 @@ int build_motion(const BuildArguments& arguments, const MotionScene& scene, Prog
   return 0;
 }
 
+int build_multigrid(const BuildArguments& arguments, const MultigridBody& body, ProgressBar& progress) {
+  const auto& request = arguments.request;
+  if (!request.store.empty() || request.overwrite_store) {
+    throw std::runtime_error(request.scene.string() + ": is simulated in the loop and has no store; leave --store out");
+  }
+  const auto record = build_multigrid_model(request.scene, body, request.model, progress);
+  print_result(arguments.json
+                   ? json_text(record) + "\n"
+                   : fmt::format("{}: {} bytes, {} tetrahedra on {} grids; a step takes at least {} units, {} "
+                                 "for each cycle more\n",
+                                 request.model.string(), record["bytes"].dump(), record["tetrahedra"].dump(),
+                                 record["grids"].dump(), record["least_work"].dump(), record["cycle_work"].dump()));
+  return 0;
+}
+
 int run_build(BuildArguments& arguments) {
   auto& request = arguments.request;
   if (request.model.empty()) {
@@ -78,6 +94,7 @@ int run_build(BuildArguments& arguments) {
   }
   ProgressBar progress(arguments.json);
   if (const auto motion = read_motion_scene(request.scene)) return build_motion(arguments, *motion, progress);
+  if (const auto body = read_multigrid_scene(request.scene)) return build_multigrid(arguments, *body, progress);
   print_outcome(arguments, build_model_file(request, progress));
   return 0;
 }

@@ -371,10 +371,10 @@ void read_store(const Table& scene, const std::filesystem::path& file, Scene& re
 Scene parse_scene(std::string_view text, const std::filesystem::path& file) {
   const auto toml = parse_toml(text, file);
   Problems problems(file.string());
-  const Table table(toml, "",
-                    {"surface",  "volume",   "remesh",      "material", "solve",        "fixed",     "touched",
-                     "read",     "loads",    "constraints", "accuracy", "compression",  "budget",    "store",
-                     "simulate", "impulses", "sheet",       "rigid",    "trajectories", "reduction", "appearance"},
+  const Table table(toml, "", {"surface",      "volume",    "remesh",     "material",    "solve",    "fixed",
+                               "touched",      "read",      "loads",      "constraints", "accuracy", "compression",
+                               "budget",       "store",     "simulate",   "impulses",    "sheet",    "rigid",
+                               "trajectories", "reduction", "appearance", "multigrid"},
                     problems);
   Scene scene;
   read_mesh(table, file, scene.mesh);
