@@ -102,7 +102,7 @@ typedef struct greenloop_model {
 #if UINTPTR_MAX > 0xffffffffU
   uint64_t storage[832];
 #else
-  uint64_t storage[384];
+  uint64_t storage[512];
 #endif
 } greenloop_model;
 
