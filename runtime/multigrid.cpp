@@ -1,5 +1,6 @@
 #include "runtime/multigrid.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -162,7 +163,7 @@ Balance balance(ElasticBody& body, double loads, float tolerance, std::uint64_t 
     const Imbalance now = find_residual(body);
     balance.work += residual;
     if (balance.passes == 0) first = now.moving;
-    const double largest = std::fmax(first, std::fmax(loads, now.held));
+    const double largest = std::max(first, std::max(loads, now.held));
     const double goal = relative * largest;
     balance.residual = largest > 0 ? std::sqrt(now.moving / largest) : 0;
     const bool first_pass = balance.passes == 0;
@@ -172,7 +173,7 @@ Balance balance(ElasticBody& body, double loads, float tolerance, std::uint64_t 
     const bool falls = now.moving < least_fall * before;
     if (!(now.moving > goal) || !fits || !falls) return balance;
     before = now.moving;
-    const double enough = std::fmax(0.5 * goal, forcing * forcing * now.moving);
+    const double enough = std::max(0.5 * goal, forcing * forcing * now.moving);
     balance.work += start;
     const Solved solved = newton_pass(body, first_pass, enough, work - balance.work - residual);
     balance.work += solved.work;
