@@ -388,7 +388,6 @@ int run_multigrid(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   if (arguments.multigrid) return run_multigrid(arguments);
-  if (arguments.model.empty()) throw std::runtime_error("name a model, or --multigrid");
   const auto file = greenloop::open_model_file(arguments.model);
   const auto opened = greenloop::Model::open(file.bytes.span());
   if (opened.model.problem() == greenloop::layout::Problem::impulse_response) {
@@ -434,5 +433,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, 64))
       ->capture_default_str();
   app.add_flag("--json", arguments.json, "Print JSON");
+  app.callback([&arguments] {
+    if (arguments.model.empty() && !arguments.multigrid) throw CLI::RequiredError("model, or --multigrid");
+  });
   return greenloop::run_program(app, argc, argv, [&] { return run(arguments); });
 }
