@@ -49,7 +49,8 @@ Integrals integrals(const Point& corner, const Point (&x)[3], double radius) {
     for (int j = 0; j < 2 * (parts - i) - 1; ++j) {
       // parts stand in rows, every other one upside down
       const double third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-      const double v = (i + third) / parts, w = (j / 2 + third) / parts, u = 1 - v - w;
+      const int pair = j / 2;
+      const double v = (i + third) / parts, w = (pair + third) / parts, u = 1 - v - w;
       const Point middle{u * x[0].x + v * x[1].x + w * x[2].x, u * x[0].y + v * x[1].y + w * x[2].y,
                          u * x[0].z + v * x[1].z + w * x[2].z};
       const double part = std::max(0.0, 1 - length(middle - corner) / radius) * area;

@@ -17,7 +17,8 @@ Eigen::Vector3d mask_integrals(const Eigen::Matrix3d& corners, const Eigen::Vect
     for (int j = 0; j < 2 * (parts - i) - 1; ++j) {
       // parts stand in rows, every other one upside down
       const double third = j % 2 == 0 ? 1.0 / 3.0 : 2.0 / 3.0;
-      const double v = (i + third) / parts, w = (j / 2 + third) / parts;
+      const int pair = j / 2;
+      const double v = (i + third) / parts, w = (pair + third) / parts;
       const Eigen::Vector3d weight(1.0 - v - w, v, w);
       sum += std::max(0.0, 1.0 - (corners * weight - centre).norm() / radius) * area * weight;
     }

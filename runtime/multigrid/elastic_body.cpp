@@ -174,7 +174,8 @@ std::uint64_t stress_work(const MultigridView& view) noexcept {
 }
 
 std::uint64_t state_work(const MultigridView& view, std::uint32_t loads, std::uint32_t holds) noexcept {
-  return step_units + stepped_vertex_units * view.info->vertices + input_units * (std::uint64_t{loads} + 2 * holds);
+  return step_units + stepped_vertex_units * view.info->vertices +
+         input_units * (std::uint64_t{loads} + std::uint64_t{2} * holds);
 }
 
 }  // namespace greenloop
