@@ -125,6 +125,19 @@ std::span<Candidate> take_candidates(TouchedBody& body, std::span<const Candidat
   return {body.candidate, found.size()};
 }
 
+// candidates, of which this one is the deepest
+void leave_out(const Candidate& deepest, std::uint32_t count, ContactBody::StepReport& report) {
+  if (report.left_out == 0 || -deepest.gap > report.deepest_left_out) {
+    report.deepest_left_out = -deepest.gap;
+    report.left_out_place.tool = deepest.tool;
+    for (int k = 0; k < 3; ++k) {
+      report.left_out_place.node[k] = deepest.node[k];
+      report.left_out_place.weight[k] = deepest.weight[k];
+    }
+  }
+  report.left_out += count;
+}
+
 // the candidates that there is room for, by their corners: while there is none, those of triangles farthest from the
 // tool are left out, which hang on nodes that may be candidates themselves
 std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, ContactBody::StepReport& report,
@@ -151,8 +164,7 @@ std::uint32_t choose(TouchedBody& body, std::span<const Candidate> found, Contac
     if (!is_left_out(candidate, least)) {
       body.candidate[count++] = candidate;
     } else if (!is_said_by_nodes(body, candidate)) {
-      ++report.left_out;
-      report.deepest_left_out = larger(report.deepest_left_out, -candidate.gap);
+      leave_out(candidate, 1, report);
     }
   }
   return count;
@@ -200,8 +212,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
     body.placement[t] = place(shapes[t].pose).placement;
   }
   StepReport report;
-  report.left_out = found.left_out;
-  report.deepest_left_out = found.left_out > 0 ? -found.deepest_left_out.gap : 0;
+  if (found.left_out > 0) leave_out(found.deepest_left_out, found.left_out, report);
   report.unfinished = found.unfinished;
   const std::uint32_t count = choose(body, take_candidates(body, found.candidates), report, work);
   body.grips.begin_step();  // the last step may have been refused
@@ -227,6 +238,7 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   response.state = {body.state, count};
   response.gap = {body.gap, count};
   response.yield = {body.yield, count};
+  response.by_loads = {body.by_loads, count};
   static_cast<Elastostatic::UnilateralReport&>(report) = body.elastostatic.step(
       std::span<const UnilateralContact>(body.contact, count), loads, {budget.work - work}, response);
   report.touching_work = work;

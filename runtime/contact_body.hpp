@@ -48,7 +48,7 @@ class ContactBody {
     std::uint32_t first_contact = 0;    ///< among contacts()
     std::uint32_t contacts = 0;         ///< places that may touch, of which those with a force do
     double depth = 0;                   ///< m, how far the tool was inside of the surface before this step's answer
-    bool is_behind = false;             ///< a point of it that is followed (Shape::point) is behind the surface
+    bool is_behind = false;             ///< a point of it that is followed (Shape::point) was behind the surface then
     Double3 sag;                        ///< m, how far its spring (ToolInput::compliance) lets it be from its pose
   };
 
@@ -65,15 +65,15 @@ class ContactBody {
     Double3 slip;      ///< m, along the tool's surface in this step
   };
 
-  /// J, of all steps so far, by the forces at the end of each: in = stored + dissipated + lost, but for what is
-  /// generated.
+  /// J, of all steps so far, by the forces at the end of each: in + from_loads = stored + dissipated + lost, but for
+  /// what is generated.
   struct Energy {
     double in = 0;          ///< work of the tools on the body while they touch
     double stored = 0;      ///< what the contacts' forces strain the body with
     double dissipated = 0;  ///< by friction
     double lost = 0;        ///< by going in steps: never negative where the laws of contact hold
-    double generated = 0;   ///< the most that did not add up: rounding, answers short of budget, and with loads what
-                            ///< these do at the contacts (docs/contact.md, "Energy")
+    double generated = 0;   ///< the most that did not add up: rounding, and answers short of budget
+    double from_loads = 0;  ///< what loads that change put in at the contacts; < 0: took out
   };
 
   /// What Limits cost. least_work: with that budget every step is answered, its contacts found and held at least at the
@@ -83,10 +83,18 @@ class ContactBody {
     std::uint64_t touching_work = 0;  ///< of finding contacts, at most: a part of both
   };
 
+  /// A place of the surface that a tool comes near.
+  struct Place {
+    std::uint32_t tool = layout::none;
+    std::uint32_t node[3] = {layout::none, layout::none, layout::none};  ///< as of a Contact
+    double weight[3] = {};
+  };
+
   struct StepReport : Elastostatic::UnilateralReport {
     std::uint64_t touching_work = 0;  ///< units of `work` that finding what touches took
     std::uint32_t left_out = 0;       ///< places that may touch, but for which there was no room: the deepest were kept
     double deepest_left_out = 0;      ///< m, depth of the deepest of these
+    Place left_out_place;             ///< which is there; none: nothing was left out
     std::uint32_t unfinished = 0;     ///< tools that search_work did not suffice for: what is nearest was looked at
   };
 

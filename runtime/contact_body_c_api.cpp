@@ -210,8 +210,15 @@ uint64_t greenloop_contact_body_touching_work(const greenloop_contact_body* body
 greenloop_contact_body_report greenloop_contact_body_step(greenloop_contact_body* body, const greenloop_tool* tools,
                                                           size_t count, const greenloop_loads* loads, uint64_t work) {
   const ContactBody::StepReport report = touched_in(body).step(Tools(tools, count).all(), acting(loads), {work});
-  return {push_report_of(static_cast<const Elastostatic::UnilateralReport&>(report)), report.touching_work,
-          report.left_out, report.deepest_left_out, report.unfinished};
+  const ContactBody::Place& place = report.left_out_place;
+  return {push_report_of(static_cast<const Elastostatic::UnilateralReport&>(report)),
+          report.touching_work,
+          report.left_out,
+          report.deepest_left_out,
+          place.tool,
+          {place.node[0], place.node[1], place.node[2]},
+          {place.weight[0], place.weight[1], place.weight[2]},
+          report.unfinished};
 }
 
 const greenloop_tool_answer* greenloop_contact_body_tools(const greenloop_contact_body* body, size_t* count) {
@@ -228,7 +235,7 @@ const greenloop_touch* greenloop_contact_body_contacts(const greenloop_contact_b
 
 greenloop_contact_energy greenloop_contact_body_energy(const greenloop_contact_body* body) {
   const ContactBody::Energy& energy = touched_in(body).energy();
-  return {energy.in, energy.stored, energy.dissipated, energy.lost, energy.generated};
+  return {energy.in, energy.stored, energy.dissipated, energy.lost, energy.generated, energy.from_loads};
 }
 
 double greenloop_contact_body_area(const greenloop_contact_body* body, const greenloop_touch* touch) {

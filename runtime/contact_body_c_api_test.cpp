@@ -197,6 +197,11 @@ TEST_CASE("a body that tools touch is answered the same through C, bit for bit")
     CHECK(report.touching_work == expected.touching_work);
     CHECK(report.left_out == expected.left_out);
     CHECK(report.deepest_left_out == expected.deepest_left_out);
+    CHECK(report.left_out_tool == expected.left_out_place.tool);
+    for (int k = 0; k < 3; ++k) {
+      CHECK(report.left_out_node[k] == expected.left_out_place.node[k]);
+      CHECK(report.left_out_weight[k] == expected.left_out_place.weight[k]);
+    }
     CHECK(report.unfinished == expected.unfinished);
     std::size_t count = 0;
     const greenloop_tool_answer* const answers = greenloop_contact_body_tools(made.body, &count);

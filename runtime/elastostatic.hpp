@@ -98,6 +98,7 @@ class Elastostatic {
     std::span<ContactState> state;  ///< [contacts] what each does; empty: not wanted
     std::span<Vec4> gap;            ///< [contacts] m, from where it touches and has not slid; empty: not wanted
     std::span<float> yield;         ///< [contacts] m, how far its own force pushes each, >= 0; empty: not wanted
+    std::span<Vec4> by_loads;       ///< [contacts] m, where each would be without contact forces; empty: not wanted
   };
 
   struct UnilateralReport : StepReport {

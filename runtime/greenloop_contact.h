@@ -121,7 +121,7 @@ typedef struct greenloop_tool_answer {
   uint32_t first_contact; /* among greenloop_contact_body_contacts */
   uint32_t contacts;      /* places that may touch, of which those with a force do */
   double depth;           /* m, how far the tool was inside of the surface before this step's answer */
-  uint8_t is_behind;      /* a point of it that is followed is behind the surface */
+  uint8_t is_behind;      /* a point of it that is followed was behind the surface then */
   double sag[3];          /* m, how far its spring lets it be from its pose */
 } greenloop_tool_answer;
 
@@ -138,13 +138,14 @@ typedef struct greenloop_touch {
   double slip[3];     /* m, along the tool's surface in this step */
 } greenloop_touch;
 
-/* J, of all steps so far: in = stored + dissipated + lost, but for what is generated. */
+/* J, of all steps so far: in + from_loads = stored + dissipated + lost, but for what is generated. */
 typedef struct greenloop_contact_energy {
   double in;         /* work of the tools on the body while they touch */
   double stored;     /* what the contacts' forces strain the body with */
   double dissipated; /* by friction */
   double lost;       /* by going in steps */
   double generated;  /* the most that did not add up */
+  double from_loads; /* what loads that change put in at the contacts; < 0: took out */
 } greenloop_contact_energy;
 
 /* An elastic body that tools touch; it lives in the caller's memory. */
@@ -177,7 +178,10 @@ typedef struct greenloop_contact_body_report {
   uint64_t touching_work;  /* what finding contacts took of the work */
   uint32_t left_out;       /* places that may touch, but for which there was no room: the deepest were kept */
   double deepest_left_out; /* m, depth of the deepest of these */
-  uint32_t unfinished;     /* tools that search_work did not suffice for */
+  /* The deepest of these, as a greenloop_touch says it; the tool is UINT32_MAX if nothing was left out. */
+  uint32_t left_out_tool, left_out_node[3];
+  double left_out_weight[3];
+  uint32_t unfinished; /* tools that search_work did not suffice for */
 } greenloop_contact_body_report;
 
 /* Start-up. */

@@ -8,11 +8,11 @@ double larger(double a, double b) { return a > b ? a : b; }
 Vec4 narrow(const Double3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z), 0}; }
 
 Double3 double3(const Vec3& v) { return {v.x, v.y, v.z}; }
+Double3 double3(const Vec4& v) { return {v.x, v.y, v.z}; }
 
 // where a contact's point has come to: from where it would stick, if it has slipped or the tool has left it
 Double3 place_after(const TouchedBody& body, std::uint32_t i) {
-  const Vec4& gap = body.gap[i];
-  return body.stick_place[i] + Double3{gap.x, gap.y, gap.z};
+  return body.stick_place[i] + double3(body.gap[i]);
 }
 
 // a contact that waits for the factor: nothing is known of it
@@ -30,6 +30,7 @@ void remember(TouchedBody& body, std::uint32_t i, const Double3& place, const Gr
   const bool holds_on = grip != nullptr && grip->touches && made.sticks;
   made.anchor = holds_on ? grip->anchor : body.placement[candidate.tool].to_tool(place);
   made.force = body.force[i];
+  made.by_loads = body.by_loads[i];
   made.shift = waits(body, i) ? body.last_place[i] - body.rest_place[i] : place - body.rest_place[i];
   for (int k = 0; k < 3; ++k) {
     made.node[k] = candidate.node[k];
@@ -72,8 +73,7 @@ ContactBody::Contact contact_after(const TouchedBody& body, std::uint32_t i, con
   contact.position = place;
   contact.normal = candidate.normal;
   contact.force = double3(body.force[i]);
-  const Vec4& gap = body.gap[i];
-  const Double3 from_stick{gap.x, gap.y, gap.z};
+  const Double3 from_stick = double3(body.gap[i]);
   contact.gap = dot(candidate.normal, from_stick);
   contact.slip = contact.state == ContactState::open ? Double3{} : from_stick - contact.gap * candidate.normal;
   return contact;
@@ -107,8 +107,7 @@ void write_tool(TouchedBody& body, std::uint32_t count, std::uint32_t tool, std:
 Double3 displacement_of(const TouchedBody& body, const std::uint32_t (&node)[3], const double (&weight)[3]) noexcept {
   Double3 sum;
   for (int k = 0; k < 3 && node[k] != layout::none; ++k) {
-    const Vec4& u = body.displacement[node[k]];
-    sum += weight[k] * Double3{u.x, u.y, u.z};
+    sum += weight[k] * double3(body.displacement[node[k]]);
   }
   return sum;
 }
@@ -136,19 +135,25 @@ void account_energy(TouchedBody& body, std::uint32_t count) noexcept {
     contact.last_shift = grip.shift;
     contact.shift = displacement_of(body, grip.node, grip.weight);
   }
+  body.grips.begin();
   for (std::uint32_t i = 0; i < count; ++i) {
+    const Grip* const grip = body.grips.find(grip_key(body.candidate[i]));
     EnergyContact& contact = body.energy_contact[last++];
     contact.normal = body.candidate[i].normal;
     contact.force = double3(body.force[i]);
     contact.last_force = double3(body.force_before[i]);
     contact.shift = place_after(body, i) - body.rest_place[i];
     contact.last_shift = body.last_place[i] - body.rest_place[i];
+    const Vec4 loaded_before = grip != nullptr && grip->stays ? grip->by_loads : body.by_loads[i];
+    if (waits(body, i)) body.by_loads[i] = loaded_before;
+    contact.by_loads = double3(body.by_loads[i]);
+    contact.last_by_loads = double3(loaded_before);
     contact.way = body.stick_place[i] - body.last_place[i];
   }
   EnergyAccount& account = body.account;
   account.add({body.energy_contact, last});
   const double generated = larger(body.energy.generated, account.generated());
-  body.energy = {account.in, account.stored, account.dissipated, account.lost, generated};
+  body.energy = {account.in, account.stored, account.dissipated, account.lost, generated, account.from_loads};
 }
 
 void let_go(TouchedBody& body, std::uint32_t tool) noexcept {

@@ -71,6 +71,7 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.force = arena.take<Vec3>(body.max_contacts);
   body.gap = arena.take<Vec4>(body.max_contacts);
   body.yield = arena.take<float>(body.max_contacts);
+  body.by_loads = arena.take<Vec4>(body.max_contacts);
   body.area = arena.take<float>(body.nodes);
   body.held_out = arena.take_zeroed<float>(body.nodes);
   body.state = arena.take<ContactState>(body.max_contacts);

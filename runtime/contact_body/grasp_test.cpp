@@ -41,6 +41,9 @@ class HeldSphere {
     const Elastostatic::Loads loads{.gravity = {0, 0, static_cast<float>(-gravity)}};
     REQUIRE(body_.step(tools, loads, {any_budget}).status == Status::ok);
     check_laws();
+    handled += std::abs(energy().in - last_in_) + std::abs(energy().from_loads - last_from_loads_);
+    last_in_ = energy().in;
+    last_from_loads_ = energy().from_loads;
     double up = 0;
     for (std::size_t i = 0; i < depth.size(); ++i) {
       const Double3 force = body_.tools()[i].force;
@@ -61,7 +64,10 @@ class HeldSphere {
     return -least;
   }
 
+  [[nodiscard]] const ContactBody::Energy& energy() const { return body_.energy(); }
+
   double largest = 0, jump = 0;  ///< N, a ball's force, and its change in a step
+  double handled = 0;            ///< J, by balls and gravity, in or out of each step
 
  private:
   void check_laws() const {
@@ -78,6 +84,7 @@ class HeldSphere {
   double radius_ = 0;
   Double3 last_[3];
   bool stepped_ = false;
+  double last_in_ = 0, last_from_loads_ = 0;  ///< J
 };
 
 TEST_CASE("two and three balls hold by friction what gravity pulls down; one lets go and comes back without a jump") {
@@ -107,6 +114,10 @@ TEST_CASE("two and three balls hold by friction what gravity pulls down; one let
     MESSAGE(balls, " balls carry ", carried[balls], " N, the body sinks by ", 1e3 * sunk[balls],
             " mm, largest step of a force ", 100 * held.jump / held.largest, " %");
     CHECK(held.jump <= 0.02 * held.largest);
+    MESSAGE("of ", held.handled, " J handled, ", held.energy().from_loads, " J by gravity, do not add up ",
+            held.energy().generated, " J");
+    CHECK(std::abs(held.energy().from_loads) > 0.01 * held.handled);
+    CHECK(held.energy().generated <= 1e-5 * held.handled);
   }
   CHECK(carried[1] > 0);
   CHECK(carried[2] > carried[1]);

@@ -19,6 +19,7 @@ struct Grip {
   bool sticks = false;
   bool stays = false;  ///< of the present step again, the same point of the body
   Double3 shift;       ///< m, of the body's point by all that acts
+  Vec4 by_loads;       ///< m, the part of it that is there without contact forces
   // of the body's point
   std::uint32_t node[3] = {layout::none, layout::none, layout::none};
   double weight[3] = {};

@@ -65,6 +65,9 @@ TEST_CASE("with less room than a ball touches places, what is pushed stays, and 
     if (k >= 60) {
       CHECK(std::fabs(force - last) <= 1e-3 * force);
       left_out = std::max(left_out, bench.report.left_out);
+      const ContactBody::Place& place = bench.report.left_out_place;
+      CHECK((place.tool == 0) == (bench.report.left_out > 0));
+      for (const ContactBody::Contact& contact : bench.body.contacts()) CHECK(contact.node[0] != place.node[0]);
     }
     last = force;
   }

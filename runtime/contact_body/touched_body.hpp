@@ -44,6 +44,7 @@ struct TouchedBody {
   Vec3* force = nullptr;                     ///< [max_contacts]
   Vec4* gap = nullptr;                       ///< [max_contacts]
   float* yield = nullptr;                    ///< [max_contacts] m
+  Vec4* by_loads = nullptr;                  ///< [max_contacts] m, where each would be without contact forces
   float* area = nullptr;                     ///< [nodes] m^2, of the surface at rest
   float* held_out = nullptr;                 ///< [nodes] m, how far the contacts of the last answer push each
   ContactState* state = nullptr;             ///< [max_contacts]

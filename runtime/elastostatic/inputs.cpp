@@ -140,7 +140,7 @@ void accept_surfaces(Body& body, std::span<const UnilateralContact> surfaces, co
   contacts.held = holds;
   contacts.force = scratch.hold_force;
   contacts.surfaces = surfaces;
-  contacts.output = {response.force, response.state, response.gap, response.yield};
+  contacts.output = {response.force, response.state, response.gap, response.yield, response.by_loads};
   contacts.found = &found;
   contacts.corner_count = surfaces.empty() || checked.status != Status::ok ? 0 : scratch.begin[surfaces.size()];
 }

@@ -71,15 +71,19 @@ bool is_held(const UnilateralSet& all, const UnilateralScratch& scratch, std::ui
   return held;
 }
 
-ContactCandidate candidate_of(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t i) {
-  const UnilateralContact& contact = all.contacts[i];
-  Float4 gap = -load_vector<3>(contact.value);
+// adds to `sum` how far a contact's point is displaced without contact forces
+Float4 add_displaced(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t i, Float4 sum) {
   for (const UnilateralCorner& corner : corners_of(scratch, i)) {
     if (all.displaced != nullptr) {
-      gap += splat(corner.weight) * load_vector<3>(all.displaced + std::size_t{3} * all.set.place[corner.hold]);
+      sum += splat(corner.weight) * load_vector<3>(all.displaced + std::size_t{3} * all.set.place[corner.hold]);
     }
   }
-  gap = without_denormals(gap);
+  return without_denormals(sum);
+}
+
+ContactCandidate candidate_of(const UnilateralSet& all, const UnilateralScratch& scratch, std::uint32_t i) {
+  const UnilateralContact& contact = all.contacts[i];
+  const Float4 gap = add_displaced(all, scratch, i, -load_vector<3>(contact.value));
   const float scale = 1 / std::sqrt(dot3(contact.normal, contact.normal));
   ContactCandidate candidate;
   candidate.gap = {gap[0], gap[1], gap[2], 0};
@@ -283,6 +287,10 @@ void hand_out_unilateral(const UnilateralSet& all, UnilateralScratch& scratch,
     }
     if (!output.yield.empty()) {
       output.yield[i] = waits ? 0 : yield_of(scratch, held);
+    }
+    if (!output.by_loads.empty()) {
+      const Float4 displaced = waits ? Float4{} : add_displaced(all, scratch, i, Float4{});
+      output.by_loads[i] = {displaced[0], displaced[1], displaced[2], 0};
     }
     held += waits ? 0 : 1;
   }

@@ -89,6 +89,7 @@ struct UnilateralOutput {
   std::span<ContactState> state;
   std::span<Vec4> gap;
   std::span<float> yield;
+  std::span<Vec4> by_loads;
 };
 
 /// Writes what it found: also hold_force. For the loop; linear in the corners.

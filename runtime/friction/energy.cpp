@@ -10,10 +10,12 @@ void EnergyAccount::add(std::span<const EnergyContact> contacts) noexcept {
     const Double3 slip = moved - contact.way;
     const Double3& normal = contact.normal;
     const double closed = -dot(force, normal) * dot(slip, normal);
+    const Double3 carried = contact.by_loads - contact.last_by_loads;
     in += dot(force, contact.way);
-    stored += dot(force, contact.shift) / 2;
+    from_loads -= dot(force, carried);
+    stored += dot(force, contact.shift - contact.by_loads) / 2;
     dissipated -= dot(force, slip) + closed;
-    lost += closed + dot(force - contact.last_force, moved) / 2;
+    lost += closed + dot(force - contact.last_force, moved - carried) / 2;
   }
 }
 

@@ -36,11 +36,11 @@ void RunTally::add(const CycleRecord& record) noexcept {
   if (record.total_force() >= force_max) strongest = record;
   force_max = std::max(force_max, record.total_force());
   residual_max = std::max(residual_max, static_cast<double>(record.report.residual));
-  fall_throughs += record.fell_through;
   worst_touching = std::max(worst_touching, record.report.touching_work);
   ++at_level[record.report.constraint_level];
   for (std::size_t p = 0; cycles > 0 && p < max_tools; ++p) {
     force_step_max = std::max(force_step_max, norm(record.hand_force[p] - last.hand_force[p]));
+    fall_throughs += record.behind[p] && last.behind[p] && norm(last.hand_force[p]) == 0 ? 1 : 0;
   }
   handled += std::abs(record.energy.in - last.energy.in);
   last = record;
@@ -70,7 +70,7 @@ void RunLog::add(const ControlLoop& loop, std::int64_t cycle, double cpu_us) noe
     const ContactBody::ToolAnswer& answer = loop.answers()[p];
     record.hand_force[p] = loop.felt(p).force;
     record.hand_torque[p] = loop.felt(p).torque;
-    record.fell_through += answer.is_behind && norm(record.hand_force[p]) == 0 ? 1 : 0;
+    record.behind[p] = answer.is_behind;
   }
   record.touching_bound = loop.touching_bound();
   tally_.add(record);

@@ -21,7 +21,7 @@ struct CycleRecord {
   bool between = false;                             ///< two steps of the body, by its local model
   std::array<std::uint32_t, max_tools> touching{};  ///< places where each probe pushes the body
   std::uint32_t contacts = 0;                       ///< all that push
-  std::uint32_t fell_through = 0;                   ///< probes that are behind the surface and feel nothing
+  std::array<bool, max_tools> behind{};             ///< probes that came to be behind the surface of the last cycle
   std::uint64_t touching_bound = 0;                 ///< units, of report.touching_work
   ContactBody::StepReport report;
   ContactBody::Energy energy;
@@ -57,14 +57,15 @@ struct FastLoop {
 struct RunTally : CycleTally {
   std::int64_t contact_cycles = 0;
   std::uint32_t contacts_max = 0;
-  double force_max = 0;                                     ///< N
-  CycleRecord strongest;                                    ///< the cycle in which it was
-  CycleRecord last;                                         ///< the cycle before
-  double force_step_max = 0;                                ///< N, of a probe's force from a cycle to the next
-  double residual_max = 0;                                  ///< of the contact laws
-  std::int64_t fall_throughs = 0;                           ///< probes and cycles behind the surface without a force
-  std::uint64_t worst_touching = 0;                         ///< units, of finding what touches
-  double handled = 0;                                       ///< J, the tools' work, in or out, summed over the cycles
+  double force_max = 0;              ///< N
+  CycleRecord strongest;             ///< the cycle in which it was
+  CycleRecord last;                  ///< the cycle before
+  double force_step_max = 0;         ///< N, of a probe's force from a cycle to the next
+  double residual_max = 0;           ///< of the contact laws
+  std::int64_t fall_throughs = 0;    ///< probes and cycles that a probe spent behind the surface without a force and
+                                     ///< left it there
+  std::uint64_t worst_touching = 0;  ///< units, of finding what touches
+  double handled = 0;                ///< J, the tools' work, in or out, summed over the cycles
   std::array<std::int64_t, layout::max_levels> at_level{};  ///< cycles by constraint level
   FastLoop fast;
 

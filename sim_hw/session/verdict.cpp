@@ -105,6 +105,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
         {"dissipated", verdict.energy.dissipated},
         {"lost", verdict.energy.lost},
         {"generated", verdict.energy.generated},
+        {"from_loads", verdict.energy.from_loads},
         {"handled", verdict.handled},
         {"delivered", device.delivered},
         {"delivered_most", device.delivered_most},
