@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace greenloop::offline {
@@ -35,17 +36,23 @@ std::map<Edge, Sides> edges_of(const TriangleMesh& mesh) {
   return edges;
 }
 
-double cotangent(const Vector3d& at, const Vector3d& to, const Vector3d& and_to) {
-  const Vector3d u = to - at, v = and_to - at;
-  return u.dot(v) / u.cross(v).norm();
-}
-
 }  // namespace
 
-Vector3d SheetElasticity::Hinge::curvature(const Places& places) const {
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t i = 0; i < 4; ++i) sum += weights[i] * places[corners[i]];
-  return sum;
+HingeAngle hinge_angle(const std::array<Vector3d, 4>& places) {
+  const auto& [a, b, c, d] = places;
+  const Vector3d edge = b - a, left = edge.cross(c - a), right = (d - a).cross(edge);
+  HingeAngle hinge;
+  hinge.gradient.fill(Vector3d::Zero());
+  const double length = edge.norm(), left_square = left.squaredNorm(), right_square = right.squaredNorm();
+  if (!(left_square > 0) || !(right_square > 0)) return hinge;
+  hinge.angle = std::atan2(left.cross(right).dot(edge) / length, left.dot(right));
+  const Vector3d to_left = length / left_square * left, to_right = length / right_square * right;
+  const double left_at = (c - a).dot(edge) / edge.squaredNorm(), right_at = (d - a).dot(edge) / edge.squaredNorm();
+  hinge.gradient[0] = (1 - left_at) * to_left + (1 - right_at) * to_right;
+  hinge.gradient[1] = left_at * to_left + right_at * to_right;
+  hinge.gradient[2] = -to_left;
+  hinge.gradient[3] = -to_right;
+  return hinge;
 }
 
 SheetElasticity::SheetElasticity(const TriangleMesh& sewn, double stretch, double bend,
@@ -59,13 +66,8 @@ SheetElasticity::SheetElasticity(const TriangleMesh& sewn, double stretch, doubl
     if (mobility(a) + mobility(b) > 0) springs_.push_back({a, b, length, length * length / (stretch * sides.area)});
     if (sides.across.size() != 2) continue;
     const int c = sides.across[0], d = sides.across[1];
-    const double at_a = cotangent(x[a], x[b], x[c]), at_a_right = cotangent(x[a], x[b], x[d]);
-    const double at_b = cotangent(x[b], x[a], x[c]), at_b_right = cotangent(x[b], x[a], x[d]);
-    const double scale = std::sqrt(3 / sides.area);
-    Hinge hinge{{a, b, c, d},
-                {scale * (at_b + at_b_right), scale * (at_a + at_a_right), -scale * (at_a + at_b),
-                 -scale * (at_a_right + at_b_right)}};
-    hinge.bend = hinge.curvature(x).norm();
+    Hinge hinge{{a, b, c, d}, length * std::sqrt(3 / sides.area), 0};
+    hinge.sewn = hinge_angle({x[a], x[b], x[c], x[d]}).angle;
     hinges_.push_back(hinge);
   }
 }
@@ -83,14 +85,15 @@ void SheetElasticity::relax(const Spring& spring, double time_step, Places& plac
 }
 
 void SheetElasticity::relax(const Hinge& hinge, double time_step, Places& places) const {
-  const Vector3d curvature = hinge.curvature(places);
-  const double bend = curvature.norm();
-  if (!(bend > 0)) return;
-  double mobile = bend_compliance_ / (time_step * time_step);
-  for (std::size_t i = 0; i < 4; ++i) mobile += mobility(hinge.corners[i]) * hinge.weights[i] * hinge.weights[i];
-  const Vector3d push = (hinge.bend - bend) / mobile / bend * curvature;
+  std::array<Vector3d, 4> at;
+  for (std::size_t i = 0; i < 4; ++i) at[i] = places[static_cast<std::size_t>(hinge.corners[i])];
+  const HingeAngle now = hinge_angle(at);
+  double turned = now.angle - hinge.sewn;  // the shorter way
+  if (std::abs(turned) > std::numbers::pi) turned -= std::copysign(2 * std::numbers::pi, turned);
+  double mobile = bend_compliance_ / (time_step * time_step) / (hinge.scale * hinge.scale);
+  for (std::size_t i = 0; i < 4; ++i) mobile += mobility(hinge.corners[i]) * now.gradient[i].squaredNorm();
   for (std::size_t i = 0; i < 4; ++i) {
-    places[hinge.corners[i]] += mobility(hinge.corners[i]) * hinge.weights[i] * push;
+    places[hinge.corners[i]] -= mobility(hinge.corners[i]) * turned / mobile * now.gradient[i];
   }
 }
 

@@ -10,9 +10,17 @@ namespace greenloop::offline {
 
 using Places = std::vector<Eigen::Vector3d>;
 
+/// The angle between two triangles that have an edge in common, -pi to pi, 0 if flat, and how it changes with the
+/// places of the edge's ends and of the corner across on either side. Gradients are zero if a triangle has no area.
+struct HingeAngle {
+  double angle = 0;
+  std::array<Eigen::Vector3d, 4> gradient{};
+};
+[[nodiscard]] HingeAngle hinge_angle(const std::array<Eigen::Vector3d, 4>& places);
+
 /// What resists a sheet's deformation, as constraints that give way by their compliance (XPBD: Macklin, Müller,
-/// Chentanez 2016): edges as springs, and the bend of each inner edge (the energy of Bergou et al. 2006, around the
-/// bend that it has as sewn, whichever way).
+/// Chentanez 2016): edges as springs, and the angle between the triangles at each inner edge, around the angle that it
+/// has as sewn (discrete shells: Grinspun et al. 2003).
 class SheetElasticity {
  public:
   /// Stretch stiffness in N/m, bending stiffness in N m, both above 0. Masses of vertices in kg, 0: held.
@@ -26,13 +34,11 @@ class SheetElasticity {
     int a = 0, b = 0;
     double length = 0, compliance = 0;
   };
-  /// C = |curvature| - bend; the first two corners are the edge's.
+  /// C = scale * (angle - sewn); the first two corners are the edge's.
   struct Hinge {
-    [[nodiscard]] Eigen::Vector3d curvature(const Places& places) const;
-
     std::array<int, 4> corners{};
-    std::array<double, 4> weights{};
-    double bend = 0;
+    double scale = 0;  ///< sqrt(3 / area) times the edge
+    double sewn = 0;
   };
 
   [[nodiscard]] double mobility(int vertex) const { return mobilities_[static_cast<std::size_t>(vertex)]; }

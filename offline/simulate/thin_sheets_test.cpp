@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -173,6 +174,34 @@ TEST_CASE("a strip held at one end sinks as its hinges do") {
   CAPTURE(sunk);
   CHECK(sunk > 0.9 * beam);
   CHECK(sunk < 1.1 * beam);
+}
+
+TEST_CASE("the angle of a hinge has a sign, and its gradient is what differences say") {
+  const auto bent = [](double angle) {
+    return std::array<Vector3d, 4>{
+        {{0, 0, 0}, {1.3, 0, 0}, {0.4, 0.8, 0}, {0.9, -0.7 * std::cos(angle), -0.7 * std::sin(angle)}}};
+  };
+  for (const double angle : {-2.5, -0.3, 0.0, 0.3, 2.5}) {
+    CAPTURE(angle);
+    const HingeAngle hinge = hinge_angle(bent(angle));
+    CHECK(std::abs(hinge.angle) == doctest::Approx(std::abs(angle)));
+    CHECK(hinge.angle * hinge_angle(bent(0.3)).angle * angle >= 0);
+    constexpr double h = 1e-6;
+    Vector3d sum = Vector3d::Zero(), turn = Vector3d::Zero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      sum += hinge.gradient[i];
+      turn += bent(angle)[i].cross(hinge.gradient[i]);
+      for (int axis = 0; axis < 3; ++axis) {
+        auto less = bent(angle), more = bent(angle);
+        less[i][axis] -= h;
+        more[i][axis] += h;
+        const double slope = (hinge_angle(more).angle - hinge_angle(less).angle) / (2 * h);
+        CHECK(hinge.gradient[i][axis] == doctest::Approx(slope).epsilon(1e-6));
+      }
+    }
+    CHECK(sum.norm() < 1e-12);
+    CHECK(turn.norm() < 1e-12);
+  }
 }
 
 TEST_CASE("what falls onto a sheet stays above it") {

@@ -11,9 +11,7 @@ Double3 double3(const Vec3& v) { return {v.x, v.y, v.z}; }
 Double3 double3(const Vec4& v) { return {v.x, v.y, v.z}; }
 
 // where a contact's point has come to: from where it would stick, if it has slipped or the tool has left it
-Double3 place_after(const TouchedBody& body, std::uint32_t i) {
-  return body.stick_place[i] + double3(body.gap[i]);
-}
+Double3 place_after(const TouchedBody& body, std::uint32_t i) { return body.stick_place[i] + double3(body.gap[i]); }
 
 // a contact that waits for the factor: nothing is known of it
 bool waits(const TouchedBody& body, std::uint32_t i) {

@@ -23,9 +23,10 @@ struct EnergyContact {
 /// what a step loses are never negative where the contact law holds, and so the tools never get out more than they put
 /// in.
 struct EnergyAccount {
-  double in = 0;          ///< work of the tools on the body
-  double from_loads = 0;  ///< what loads that change, as gravity that turns, put in against the contact forces; < 0: out
-  double stored = 0;      ///< 1/2 f^T A f, what the contact forces strain the body with
+  double in = 0;  ///< work of the tools on the body
+  double from_loads =
+      0;              ///< what loads that change, as gravity that turns, put in against the contact forces; < 0: out
+  double stored = 0;  ///< 1/2 f^T A f, what the contact forces strain the body with
   double dissipated = 0;  ///< by friction
   double lost = 0;        ///< by going in steps: 1/2 of each change of force times its change of displacement, and what
                           ///< forces would have done in gaps that closed in the step
