@@ -9,14 +9,12 @@
 #include <vector>
 
 #include "offline/simulate/solid_dynamics.hpp"
+#include "offline/simulate/testing/simulated_body.hpp"
 #include "offline/volume/testing/shapes.hpp"
-#include "runtime/multigrid.hpp"
 #include "runtime/multigrid/elements.hpp"
 
 namespace greenloop::offline {
 namespace {
-
-constexpr std::uint64_t all = std::uint64_t{1} << 60;
 
 /// A beam of rubber held at its left end, 2 x 1 x 1 cells of 5 cm each `cells` split.
 MultigridScene beam(int cells) {
@@ -30,43 +28,7 @@ MultigridScene beam(int cells) {
   return scene;
 }
 
-/// A body with its memory.
-class Body {
- public:
-  explicit Body(const MultigridScene& scene, Multigrid::Limits limits = {})
-      : file_(encoded_file(multigrid_model(scene))) {
-    const auto opened = Model::open(file_.bytes.span());
-    REQUIRE(opened);
-    model_ = opened.model;
-    need_ = Multigrid::required(model_, limits);
-    memory_ = std::vector<Line>(need_.bytes / sizeof(Line) + 1);
-    const auto created = Multigrid::create(model_, limits, {reinterpret_cast<std::byte*>(memory_.data()), need_.bytes});
-    REQUIRE(created);
-    body_ = created.body;
-    displacement_.resize(file_.view.multigrid.info->vertices);
-  }
-
-  Multigrid::StepReport step(const Multigrid::Inputs& inputs, std::uint64_t work = all) {
-    return body_.step(inputs, {work}, {.displacement = displacement_});
-  }
-  [[nodiscard]] const std::vector<Vec3>& displacement() const { return displacement_; }
-  [[nodiscard]] const Multigrid::Requirement& need() const { return need_; }
-  [[nodiscard]] const MultigridView& view() const { return file_.view.multigrid; }
-  [[nodiscard]] Multigrid& body() { return body_; }
-
- private:
-  struct alignas(64) Line {
-    std::byte bytes[64];
-  };
-  ModelFile file_;
-  Model model_;
-  Multigrid::Requirement need_;
-  std::vector<Line> memory_;
-  Multigrid body_;
-  std::vector<Vec3> displacement_;
-};
-
-Eigen::VectorXd free_displacements(const Body& body) {
+Eigen::VectorXd free_displacements(const SimulatedBody& body) {
   Eigen::VectorXd u(3 * body.view().info->free);
   for (Eigen::Index v = 0; 3 * v < u.size(); ++v) {
     const Vec3& d = body.displacement()[v];
@@ -140,7 +102,7 @@ double difference_from_reference(layout::Strain strain, int steps) {
   MultigridScene scene = beam(4);
   scene.strain = strain;
   scene.stiffness_damping = 1.0e-3;
-  Body body(scene);
+  SimulatedBody body(scene);
   Reference reference(scene, strain == layout::Strain::corotational);
   double largest = 0, size = 0;
   for (int i = 0; i < steps; ++i) {
@@ -158,7 +120,7 @@ TEST_CASE("a body that is loaded without inertia comes to the static displacemen
   MultigridScene scene = beam(4);
   scene.strain = layout::Strain::linear;
   scene.time_step = 1.0e3;
-  Body body(scene);
+  SimulatedBody body(scene);
   const auto report = body.step({});
   CHECK(report.status == Status::ok);
   CHECK(report.residual <= 1.0e-4F);
@@ -180,7 +142,7 @@ TEST_CASE("linear motion without damping keeps its energy") {
   MultigridScene scene = beam(2);
   scene.coarser.clear();
   scene.strain = layout::Strain::linear;
-  Body body(scene, {.tolerance = 1.0e-6F});
+  SimulatedBody body(scene, {.tolerance = 1.0e-6F});
   for (int i = 0; i < 20; ++i) body.step({});
   const Vec3 weightless{};
   const auto energy = [&] {
@@ -231,7 +193,7 @@ TEST_CASE("an element that turns feels nothing, through full turns") {
 TEST_CASE("short of budget a step answers with what it has, never beyond it, and refuses less than the least") {
   MultigridScene scene = beam(4);
   scene.numerical_damping = 0.1;
-  Body body(scene);
+  SimulatedBody body(scene);
   std::mt19937 random(1);
   std::uniform_real_distribution<float> number(-1, 1);
   const std::uint32_t free = body.view().info->free;

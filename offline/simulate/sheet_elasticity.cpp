@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -100,6 +101,16 @@ void SheetElasticity::relax(const Hinge& hinge, double time_step, Places& places
 void SheetElasticity::relax(double time_step, Places& places) const {
   for (const Spring& spring : springs_) relax(spring, time_step, places);
   for (const Hinge& hinge : hinges_) relax(hinge, time_step, places);
+}
+
+double SheetElasticity::largest_stretch(const Places& places) const {
+  double most = 0;
+  for (const Spring& spring : springs_) {
+    const double stretch = (places[spring.b] - places[spring.a]).norm() / spring.length;
+    if (!std::isfinite(stretch)) return std::numeric_limits<double>::infinity();
+    most = std::max(most, stretch);
+  }
+  return most;
 }
 
 std::vector<double> lumped_masses(const TriangleMesh& mesh, double density) {

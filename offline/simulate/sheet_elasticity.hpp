@@ -29,6 +29,9 @@ class SheetElasticity {
   /// One sweep over all constraints, in the order of their vertices. Work: linear.
   void relax(double time_step, Places& places) const;
 
+  /// The largest length of an edge over what it is as sewn; infinity if places are not finite. Work: linear.
+  [[nodiscard]] double largest_stretch(const Places& places) const;
+
  private:
   struct Spring {
     int a = 0, b = 0;

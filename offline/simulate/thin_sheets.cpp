@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 constexpr double gravity = 9.81;
 constexpr double settling_damping = 4;  // 1/s
 constexpr int substeps_per_search = 2;
+constexpr double torn = 2;  // of the length as sewn: what flies apart is no cloth
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("sheets: ") + what);
@@ -78,6 +79,12 @@ void ThinSheets::pass(double damping) {
   for (int i = 0; i < scene_.substeps; ++i) {
     if (i % substeps_per_search == 0) contacts_.find(x_);
     pass_substep(damping, time_step);
+  }
+  const double stretch = elasticity_.largest_stretch(x_);
+  if (stretch > torn) {
+    throw std::runtime_error("sheets: an edge is " + std::to_string(stretch) + " times as long as sewn with " +
+                             std::to_string(scene_.substeps) +
+                             " substeps, each too long for what is as stiff: raise sheet.substeps");
   }
 }
 

@@ -260,6 +260,19 @@ TEST_CASE("clearances of boxes and cylinders, outside, inside and beside their e
   CHECK(clearance(bar, {0, 0.8, 2.4}).distance == doctest::Approx(0.5));
 }
 
+TEST_CASE("what flies apart is said, with how to mend it") {
+  SheetScene scene = cloth_scene(15);
+  scene.bend = 1;
+  scene.substeps = 1;
+  scene.settling = 0;
+  ThinSheets sheets(scene);
+  sheets.apply(0);
+  const auto play = [&] {
+    for (int frame = 0; frame < 200; ++frame) sheets.step();
+  };
+  CHECK_THROWS_WITH(play(), doctest::Contains("raise sheet.substeps"));
+}
+
 TEST_CASE("refused: sheets that lack something") {
   SheetScene scene = cloth_scene(6);
   scene.thickness = 0;
