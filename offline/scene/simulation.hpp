@@ -33,7 +33,7 @@ struct Simulation {
   double stiffness_damping = 0;  ///< and beta, s
   double newmark_gamma = 0.5;    ///< 0.5..1
   double rest = 0;               ///< m, less is not seen
-  bool coverage = true;          ///< starts where nothing near was played, else at random
+  bool coverage = false;         ///< starts where nothing near was played, else at random
   std::uint32_t orbits = 0;
   std::uint32_t held_out = 0;  ///< more orbits, to measure on
   double shortest = 0;         ///< s, of an orbit

@@ -28,7 +28,7 @@ TEST_CASE("simulation: a scene without it has none; with it all is in SI, with d
   CHECK(simulation.time_step == 0.01);
   CHECK(simulation.rest == 1e-4);
   CHECK(simulation.corotational);
-  CHECK(simulation.coverage);
+  CHECK(!simulation.coverage);
   CHECK(simulation.level == scene.remesh.levels);
   CHECK(simulation.longest_to_rest == 4);
   CHECK(simulation.orbits == 20);

@@ -187,6 +187,29 @@ TEST_CASE("a goal of replay ends sampling, a stricter one later") {
   }
 }
 
+TEST_CASE("more orbits replay better, by chance as by coverage") {
+  constexpr std::size_t runs = 5;
+  for (const Sampling sampling : {Sampling::random, Sampling::coverage}) {
+    double before = 1;
+    for (const std::uint32_t orbits : {5U, 20U, 80U}) {
+      std::vector<double> errors;
+      for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+        const TemporaryFolder folder("sampling_curve");
+        Oscillator simulator;
+        const SamplingPlan asked{sampling, orbits, 20, 0.1, 0.5, 0.2, 4, seed};
+        auto writer = new_file(simulator, asked, folder.path() / "t.h5");
+        errors.push_back(sample(simulator, asked, writer, folder.path() / "t.states").value());
+      }
+      std::nth_element(errors.begin(), errors.begin() + runs / 2, errors.end());
+      MESSAGE(std::string(sampling == Sampling::random ? "random: " : "coverage: ")
+              << orbits << " orbits, median replay error of " << runs << " runs " << 100 * errors[runs / 2] << " %");
+      CHECK(errors[runs / 2] < before);
+      before = errors[runs / 2];
+    }
+    CHECK(before < 0.15);
+  }
+}
+
 TEST_CASE("refused: plans that contradict themselves, states of something else") {
   const TemporaryFolder folder("sampling_refused");
   auto asked = plan(Sampling::random);
