@@ -10,9 +10,9 @@
 #include "rt_tests/bench/contact_sets.hpp"
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/siconos.hpp"
+#include "rt_tests/bench/thread_timer.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/hosted/hosted.hpp"
-#include "runtime/hosted/thread_clock.hpp"
 #include "runtime/testing/carved.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
 
@@ -94,10 +94,10 @@ class Solver {
   }
 
   Timed solve(const std::vector<ContactCandidate>& step) {
-    const std::int64_t begun = thread_nanoseconds();
+    const ThreadTimer timer;
     const ContactAnswer answer =
         problem_->solve(step, compliance_, {.residual = asked_residual}, any_budget, force, {}, displacement);
-    return {answer, 1e-3 * static_cast<double>(thread_nanoseconds() - begun)};
+    return {answer, timer.us()};
   }
 
   void advance(const std::vector<ContactCandidate>& step) {
