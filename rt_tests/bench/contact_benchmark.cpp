@@ -122,12 +122,15 @@ struct Samples {
   std::size_t siconos_failed[2] = {};
 };
 
-void time_siconos(const ContactSequence& sequence, const std::vector<ContactCandidate>& step,
-                  const std::vector<Vec4>& start, const std::vector<Vec4>& forces, Samples& samples) {
-  ContactSequence copy = sequence;
-  SiconosProblem other({copy.compliance.data()}, step);
+struct SolvedStep {
+  std::vector<ContactCandidate> candidates;
+  std::vector<Vec4> start, forces;
+};
+
+void time_siconos(ContactSequence& sequence, const SolvedStep& step, Samples& samples) {
+  SiconosProblem other({sequence.compliance.data()}, step.candidates);
   for (const bool newton : {false, true}) {
-    const auto answer = other.solve(newton, start, forces, double{asked_residual});
+    const auto answer = other.solve(newton, step.start, step.forces, double{asked_residual});
     if (answer.solved) {
       samples.siconos[newton ? 1 : 0].push_back(answer.us);
     } else {
@@ -136,7 +139,9 @@ void time_siconos(const ContactSequence& sequence, const std::vector<ContactCand
   }
 }
 
+// one solver after the other, so that neither finds the other's data in the caches instead of its own
 void time_sequence(ContactSequence& sequence, Samples& samples, ContactFigures& figures) {
+  std::vector<SolvedStep> solved;
   Solver solver(sequence);
   Solver cold(sequence);
   for (const auto& next : sequence.steps) {
@@ -150,8 +155,10 @@ void time_sequence(ContactSequence& sequence, Samples& samples, ContactFigures& 
     figures.unfinished += timed.answer.residual > asked_residual ? 1 : 0;
     std::fill(cold.force.begin(), cold.force.end(), Vec4{});
     samples.cold.push_back(cold.solve(step).us);
-    if (SiconosProblem::available()) time_siconos(sequence, step, start, solver.force, samples);
+    solved.push_back({step, start, solver.force});
   }
+  if (!SiconosProblem::available()) return;
+  for (const SolvedStep& step : solved) time_siconos(sequence, step, samples);
 }
 
 }  // namespace
