@@ -10,9 +10,9 @@
 #include "rt_tests/bench/contact_sets.hpp"
 #include "rt_tests/bench/median.hpp"
 #include "rt_tests/bench/siconos.hpp"
+#include "rt_tests/bench/thread_timer.hpp"
 #include "runtime/elastostatic.hpp"
 #include "runtime/hosted/hosted.hpp"
-#include "runtime/hosted/thread_clock.hpp"
 #include "runtime/testing/carved.hpp"
 #include "runtime/testing/touchable_nodes.hpp"
 
@@ -94,10 +94,10 @@ class Solver {
   }
 
   Timed solve(const std::vector<ContactCandidate>& step) {
-    const std::int64_t begun = thread_nanoseconds();
+    const ThreadTimer timer;
     const ContactAnswer answer =
         problem_->solve(step, compliance_, {.residual = asked_residual}, any_budget, force, {}, displacement);
-    return {answer, 1e-3 * static_cast<double>(thread_nanoseconds() - begun)};
+    return {answer, timer.us()};
   }
 
   void advance(const std::vector<ContactCandidate>& step) {
@@ -122,12 +122,15 @@ struct Samples {
   std::size_t siconos_failed[2] = {};
 };
 
-void time_siconos(const ContactSequence& sequence, const std::vector<ContactCandidate>& step,
-                  const std::vector<Vec4>& start, const std::vector<Vec4>& forces, Samples& samples) {
-  ContactSequence copy = sequence;
-  SiconosProblem other({copy.compliance.data()}, step);
+struct SolvedStep {
+  std::vector<ContactCandidate> candidates;
+  std::vector<Vec4> start, forces;
+};
+
+void time_siconos(ContactSequence& sequence, const SolvedStep& step, Samples& samples) {
+  SiconosProblem other({sequence.compliance.data()}, step.candidates);
   for (const bool newton : {false, true}) {
-    const auto answer = other.solve(newton, start, forces, double{asked_residual});
+    const auto answer = other.solve(newton, step.start, step.forces, double{asked_residual});
     if (answer.solved) {
       samples.siconos[newton ? 1 : 0].push_back(answer.us);
     } else {
@@ -136,7 +139,9 @@ void time_siconos(const ContactSequence& sequence, const std::vector<ContactCand
   }
 }
 
+// one solver after the other, so that neither finds the other's data in the caches instead of its own
 void time_sequence(ContactSequence& sequence, Samples& samples, ContactFigures& figures) {
+  std::vector<SolvedStep> solved;
   Solver solver(sequence);
   Solver cold(sequence);
   for (const auto& next : sequence.steps) {
@@ -150,8 +155,10 @@ void time_sequence(ContactSequence& sequence, Samples& samples, ContactFigures& 
     figures.unfinished += timed.answer.residual > asked_residual ? 1 : 0;
     std::fill(cold.force.begin(), cold.force.end(), Vec4{});
     samples.cold.push_back(cold.solve(step).us);
-    if (SiconosProblem::available()) time_siconos(sequence, step, start, solver.force, samples);
+    solved.push_back({step, start, solver.force});
   }
+  if (!SiconosProblem::available()) return;
+  for (const SolvedStep& step : solved) time_siconos(sequence, step, samples);
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ struct SiconosFigures {
   std::size_t failed = 0;  ///< steps that neither of them solved
 };
 
-/// A count of frictional contacts, by thread CPU time, beside Siconos Numerics, in double precision, on the same
-/// problems, from the same start and to the same residual.
+/// A count of frictional contacts, by thread CPU time without that of reading the clock, beside Siconos Numerics, in
+/// double precision, on the same problems, from the same start and to the same residual.
 struct ContactFigures {
   std::size_t contacts = 0;
   float friction = 0;

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "runtime/hosted/thread_clock.hpp"
+#include "rt_tests/bench/thread_timer.hpp"
 #ifdef GREENLOOP_HAS_SICONOS
 #include <FrictionContactProblem.h>
 #include <Friction_cst.h>
@@ -84,9 +84,9 @@ SiconosProblem::Answer SiconosProblem::solve(bool newton, const std::vector<Vec4
   FrictionContactProblem problem{3, static_cast<int>(count_), matrix, free_.data(), friction_.data()};
   SolverOptions* const options = solver_options_create(newton ? SICONOS_FRICTION_3D_NSN_AC : SICONOS_FRICTION_3D_NSGS);
   options->dparam[SICONOS_DPARAM_TOL] = residual * std::sqrt(size) / of_free;
-  const std::int64_t begun = thread_nanoseconds();
+  const ThreadTimer timer;
   const int failed = fc3d_driver(&problem, reaction.data(), velocity.data(), options);
-  const double us = 1e-3 * static_cast<double>(thread_nanoseconds() - begun);
+  const double us = timer.us();
   solver_options_delete(options);
   matrix->matrix0 = nullptr;  // ours
   NM_clear(matrix);

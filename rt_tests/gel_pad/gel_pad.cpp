@@ -1,7 +1,9 @@
-// gel_pad PAD.gloop MIDDLE RIM LAYERS [FOLDER]: presses a ball, a cylinder and an edge into a model of a tactile
-// sensor's gel pad, as the loop does, and compares force and pressure with those of refined finite elements of so many
-// cells under the same law of contact. Draws maps of pressures and displacements into FOLDER. The pad:
-// `write_body pad 2 pad.mesh`, its scene offline/scene/examples/pad.toml.
+// gel_pad PAD.gloop [edge] MIDDLE RIM LAYERS [FOLDER]: presses a ball, a cylinder and an edge, or the edge alone, into
+// a model of a tactile sensor's gel pad, as the loop does, and compares force and pressure with those of refined finite
+// elements of so many cells under the same law of contact. gel_pad PAD.gloop edge FINE [FOLDER]: beside elements that
+// are finer where the edge lets go. Draws maps of pressures and displacements into FOLDER. The pads:
+// `write_body pad 2 pad.mesh` and `write_body edge_pad 2 edge_pad.mesh`, their scenes offline/scene/examples/pad.toml
+// and edge_pad.toml.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -9,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "offline/report/mask_figure.hpp"
 #include "offline/report/report.hpp"
@@ -51,10 +54,14 @@ offline::SvgCanvas map(const std::string& name, const char* unit, const SideFiel
 }
 
 constexpr const char* usage =
-    "usage: gel_pad PAD.gloop MIDDLE RIM LAYERS [FOLDER]\n\n"
-    "Presses a ball, a cylinder and an edge into a model of a gel pad, and compares force and pressure with those of\n"
-    "refined finite elements: MIDDLE cells across its middle, RIM beside it on each side, LAYERS in its thickness,\n"
-    "1 to 1000. Maps of pressures and displacements go into FOLDER.\n";
+    "usage: gel_pad PAD.gloop [edge] MIDDLE RIM LAYERS [FOLDER]\n"
+    "       gel_pad PAD.gloop edge FINE [FOLDER]\n\n"
+    "Presses a ball, a cylinder and an edge, or the edge alone, into a model of a gel pad, and compares force and\n"
+    "pressure with those of refined finite elements: MIDDLE cells across its middle, RIM beside it on each side, "
+    "LAYERS\n"
+    "in its thickness, 1 to 1000; or the cells of `write_body edge_pad` with 1/FINE of their size. Maps of pressures "
+    "and\n"
+    "displacements go into FOLDER.\n";
 
 int cells_of(const char* text) {
   constexpr int most = 1000;
@@ -65,28 +72,46 @@ int cells_of(const char* text) {
   return static_cast<int>(cells);
 }
 
-int run(char** argument, const char* folder) {
-  const ModelFile file = open_model_file(argument[1]);
+struct Comparison {
+  const char* model;
+  offline::testing::Planes cells;  // of the refined elements
+  std::vector<Indenter> pressed;
+  const char* folder;
+};
+
+Comparison comparison(int count, char** argument) {
+  const char* const model = argument[1];
+  const bool is_edge = std::string_view(argument[2]) == "edge";
+  char** const cells = argument + (is_edge ? 3 : 2);
+  const auto given = count - (cells - argument);  // cells and folder
+  if (given > 4 || given < 1 || (!is_edge && given < 3)) throw std::runtime_error(usage);
+  const std::vector<Indenter> pressed = is_edge ? std::vector{indenters().back()} : indenters();
+  if (given < 3)
+    return {model, offline::testing::edge_pad(cells_of(cells[0])), pressed, given == 2 ? cells[1] : nullptr};
+  return {model, offline::testing::gel_pad(cells_of(cells[0]), cells_of(cells[1]), cells_of(cells[2])), pressed,
+          given == 4 ? cells[3] : nullptr};
+}
+
+void run(const Comparison& of) {
+  const ModelFile file = open_model_file(of.model);
   const Model model = Model::open(file.bytes.span()).model;
-  const auto cells = offline::testing::gel_pad(cells_of(argument[2]), cells_of(argument[3]), cells_of(argument[4]));
-  const RefinedPad refined(quarter(cells), {file.view.info->young, file.view.info->poisson}, reach);
+  const RefinedPad refined(quarter(of.cells), {file.view.info->young, file.view.info->poisson}, reach);
   offline::Figure figure{"gel_pad", "A gel pad under indenters", "", {}, 3};
-  for (const Indenter& indenter : indenters()) {
+  for (const Indenter& indenter : of.pressed) {
     const PressedPad found = press_in_loop(model, indenter, steps);
     const Pressed expected = refined.press(indenter.shape, indenter.at(indenter.depth));
-    const Difference of = difference(found, expected);
+    const Difference off = difference(found, expected);
     std::printf(
         "%-8s %.2f mm deep: %.4f N on %u places (last change %.1e), refined %.4f N; "
         "force %+.2f %%, pressure %.2f %% RMS\n",
         indenter.name.data(), 1e3 * indenter.depth, found.force, found.contacts, found.settled, expected.force,
-        100 * of.force, 100 * of.pressure);
+        100 * off.force, 100 * off.pressure);
     const std::string name(indenter.name);
     figure.panels.push_back(map(name + ", pressure", "Pa", found.pressure));
     figure.panels.push_back(map(name + ", refined", "Pa", expected.pressure));
     figure.panels.push_back(map(name + ", depression", "m", found.down));
   }
-  if (folder != nullptr) offline::write_figures(folder, {figure});
-  return 0;
+  if (of.folder != nullptr) offline::write_figures(of.folder, {figure});
 }
 
 }  // namespace
@@ -94,14 +119,15 @@ int run(char** argument, const char* folder) {
 
 int main(int count, char** argument) {
   if (count == 2 && std::string_view(argument[1]) == "--help") return std::fputs(greenloop::gel_pad::usage, stdout) < 0;
-  if (count != 5 && count != 6) {
+  if (count < 4) {
     std::fputs(greenloop::gel_pad::usage, stderr);
     return 2;
   }
   try {
-    return greenloop::gel_pad::run(argument, count == 6 ? argument[5] : nullptr);
+    greenloop::gel_pad::run(greenloop::gel_pad::comparison(count, argument));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "gel_pad: %s\n", error.what());
     return 1;
   }
+  return 0;
 }

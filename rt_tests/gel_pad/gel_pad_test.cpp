@@ -62,8 +62,8 @@ TEST_CASE("a quarter of a pad is pressed as the whole is, but for the way its ce
 }
 
 TEST_CASE("a field between crossings is linear in triangles, and its areas integrate it") {
-  SideField field{{-3, -1, 0, 2}, Eigen::VectorXd(16)};
-  for (int i = 0; i < 16; ++i) field.value[i] = 1 + 2 * field.planes[i % 4] - 3 * field.planes[i / 4];
+  SideField field{{{{-3, -1, 0, 2}, {-3, -1, 0, 2}}}, Eigen::VectorXd(16)};
+  for (int i = 0; i < 16; ++i) field.value[i] = 1 + 2 * field.planes[0][i % 4] - 3 * field.planes[1][i / 4];
   CHECK(field.at(-2, 0.5) == doctest::Approx(-4.5));
   CHECK(field.at(1.9, 1) == doctest::Approx(1.8));
   CHECK(field.at(2, -3) == doctest::Approx(14));

@@ -119,10 +119,13 @@ RefinedPad::RefinedPad(const Planes& planes, const Material& material, double re
   const MeshEdges edges = offline::list_edges(mesh);
   const FreePoints free = points_above(mesh, edges, planes[2].front());
   const Eigen::SparseMatrix<double> read = upper_means(mesh, edges, free, planes[2].back());
-  const Eigen::VectorXd areas = crossing_areas(planes[0]);  // of the upper side's vertices, which come last
+  const Eigen::VectorXd areas =
+      crossing_areas({planes[0], planes[1]});  // of the upper side's vertices, which come last
   const std::size_t lower = mesh.vertices.size() - static_cast<std::size_t>(areas.size());
-  std::copy_if(planes[0].begin(), planes[0].end(), std::back_inserter(planes_),
-               [=](double x) { return std::abs(x) <= reach; });
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    std::copy_if(planes[axis].begin(), planes[axis].end(), std::back_inserter(planes_[axis]),
+                 [=](double x) { return std::abs(x) <= reach; });
+  }
   std::vector<Eigen::Triplet<double>> entries;  // of forces along each axis at each place
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const Vector3d& x = mesh.vertices[v];

@@ -26,7 +26,7 @@ class RefinedPad {
 
  private:
   bool is_quarter_;
-  std::vector<double> planes_;           // m, as far as a tool may touch
+  SidePlanes planes_;                    // as far as a tool may touch
   std::vector<Eigen::Vector3d> places_;  // m, their crossings
   std::vector<double> area_;             // m^2, that each place's force is spread over
   Eigen::MatrixXd compliance_;           // [3 places, 3 places] m/N

@@ -24,21 +24,22 @@ Cell cell_of(const std::vector<double>& planes, double x) {
 
 double SideField::at(double x, double y) const {
   if (is_quarter) x = std::abs(x), y = std::abs(y);
-  if (std::min(x, y) < planes.front() || std::max(x, y) > planes.back()) return 0;
-  const Cell across = cell_of(planes, x), along = cell_of(planes, y);
-  const auto side = static_cast<Index>(planes.size());
+  if (x < planes[0].front() || x > planes[0].back() || y < planes[1].front() || y > planes[1].back()) return 0;
+  const Cell across = cell_of(planes[0], x), along = cell_of(planes[1], y);
+  const auto side = static_cast<Index>(planes[0].size());
   const Index low = static_cast<Index>(across.index) + side * static_cast<Index>(along.index);
   const auto [less, more] = std::minmax(across.share, along.share);
   return (1 - more) * value[low] + (more - less) * value[across.share > along.share ? low + 1 : low + side] +
          less * value[low + side + 1];
 }
 
-Eigen::VectorXd crossing_areas(const std::vector<double>& planes) {
-  const auto side = static_cast<Index>(planes.size());
-  Eigen::VectorXd area = Eigen::VectorXd::Zero(side * side);
-  for (std::size_t j = 0; j + 1 < planes.size(); ++j) {
-    for (std::size_t i = 0; i + 1 < planes.size(); ++i) {
-      const double sixth = (planes[i + 1] - planes[i]) * (planes[j + 1] - planes[j]) / 6;
+Eigen::VectorXd crossing_areas(const SidePlanes& planes) {
+  const auto& [across, along] = planes;
+  const auto side = static_cast<Index>(across.size());
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(side * static_cast<Index>(along.size()));
+  for (std::size_t j = 0; j + 1 < along.size(); ++j) {
+    for (std::size_t i = 0; i + 1 < across.size(); ++i) {
+      const double sixth = (across[i + 1] - across[i]) * (along[j + 1] - along[j]) / 6;
       const Index low = static_cast<Index>(i) + side * static_cast<Index>(j);
       for (const Index of_one : {low + 1, low + side}) area[of_one] += sixth;
       for (const Index of_both : {low, low + side + 1}) area[of_both] += 2 * sixth;
@@ -49,7 +50,10 @@ Eigen::VectorXd crossing_areas(const std::vector<double>& planes) {
 
 Difference difference(const Pressed& found, const Pressed& expected) {
   constexpr int across = 401;
-  const double reach = std::max(found.pressure.planes.back(), expected.pressure.planes.back());
+  double reach = 0;
+  for (const SideField* field : {&found.pressure, &expected.pressure}) {
+    for (const std::vector<double>& planes : field->planes) reach = std::max(reach, planes.back());
+  }
   double off = 0, all = 0;
   for (int j = 0; j < across; ++j) {
     for (int i = 0; i < across; ++i) {

@@ -1,23 +1,27 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 namespace greenloop::gel_pad {
 
+/// m, along x and along y, each increasing, two or more.
+using SidePlanes = std::array<std::vector<double>, 2>;
+
 /// A quantity on the upper side of a pad: at the crossings of planes, linear in the triangles between them, each cell's
 /// diagonal along (1, 1), and 0 beyond.
 struct SideField {
-  std::vector<double> planes;  ///< m, along x and y alike, increasing, two or more
-  Eigen::VectorXd value;       ///< at crossing (i, j): entry i + j planes.size()
-  bool is_quarter = false;     ///< the planes begin at 0, and the other three quarters mirror this one
+  SidePlanes planes;
+  Eigen::VectorXd value;    ///< at crossing (i, j): entry i + j planes[0].size()
+  bool is_quarter = false;  ///< the planes begin at 0, and the other three quarters mirror this one
 
   [[nodiscard]] double at(double x, double y) const;
 };
 
 /// The integrals of the functions that are 1 at one crossing and 0 at the others, m^2: forces that are spread by these
 /// functions are integrals over the pressure that has force over area at each crossing.
-[[nodiscard]] Eigen::VectorXd crossing_areas(const std::vector<double>& planes);
+[[nodiscard]] Eigen::VectorXd crossing_areas(const SidePlanes& planes);
 
 /// A tool's force on the pad and the pressure along the pad's normal.
 struct Pressed {

@@ -18,8 +18,23 @@ struct ContactCompliance {
   [[nodiscard]] Block<3>& at(std::size_t i, std::size_t j) const noexcept { return column(j)[i]; }
 };
 
-/// Displacement of the point of a column by the forces of the `count` points before it. For the loop; linear in them.
-[[nodiscard]] Float4 gathered(const Block<3>* column, const Float4* force, std::uint32_t count) noexcept;
+/// Those of at most `most` points, in turn, that have a force: of candidates most have none. Apart, even and odd ones,
+/// whose sums do not wait for each other.
+class PushedPoints {
+ public:
+  static constexpr std::uint32_t most = 256;
+
+  /// i: larger than those before. For the loop, constant work.
+  void add(std::uint32_t i, const Float4& force) noexcept;
+
+  /// Displacement of the point of a column, which is behind them, by their forces. For the loop; linear in the points
+  /// that are pushed.
+  [[nodiscard]] Float4 gathered(const Block<3>* column, const Float4* force) const noexcept;
+
+ private:
+  std::uint8_t point_[2][most / 2 + 1];  ///< the one behind the last is written before it is known to be pushed
+  std::uint32_t count_[2] = {};
+};
 
 /// Adds to the displacements of the `count` points before that of a column what its force moves them by. For the loop;
 /// linear in them.

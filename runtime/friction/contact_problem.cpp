@@ -52,17 +52,21 @@ void ContactProblem::sweep() noexcept {
     behind_[j] = Float4{};
     scatter(compliance.column(j), force_[j], j, behind_);
   }
+  PushedPoints forwards;
   for (std::uint32_t j = 0; j < points_.count; ++j) {
-    before_[j] = gathered(compliance.column(j), force_, j);
+    before_[j] = forwards.gathered(compliance.column(j), force_);
     force_[j] = local_force(contact_[j], gap_[j] + (before_[j] + behind_[j]), multiplier_[j]);
+    forwards.add(j, force_[j]);
     behind_[j] = Float4{};
   }
   for (std::uint32_t j = points_.count; j-- > 0;) {
     force_[j] = local_force(contact_[j], gap_[j] + (before_[j] + behind_[j]), multiplier_[j]);
     scatter(compliance.column(j), force_[j], j, behind_);
   }
+  PushedPoints at_last;
   for (std::uint32_t i = 0; i < points_.count; ++i) {
-    const Float4 before = gathered(compliance.column(i), force_, i);
+    const Float4 before = at_last.gathered(compliance.column(i), force_);
+    at_last.add(i, force_[i]);
     displacement_[i] = gap_[i] + (before + behind_[i]) + product(compliance.at(i, i), force_[i]);
   }
 }

@@ -48,7 +48,7 @@ struct ContactAnswer {
 /// serves the other (Niethammer 1964).
 class ContactProblem {
  public:
-  static constexpr std::uint32_t most_candidates = 256;
+  static constexpr std::uint32_t most_candidates = PushedPoints::most;
 
   /// Arrays out of `arena`; null while it counts. candidates: 1 .. most_candidates. prices: of what `solve` counts.
   void carve(Arena& arena, std::uint32_t candidates, const Prices& prices = {}) noexcept;

@@ -11,18 +11,18 @@ Vec4 stored(const Eigen::Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
-/// Integrals over a square around `offset` of 1 / r^3 times x^2, y^2 and x y, and of x / r^2.
+/// Integrals over a rectangle around `offset` of 1 / r^3 times x^2, y^2 and x y, and of x / r^2.
 struct Integrals {
   double xx = 0, yy = 0, xy = 0, x = 0;
 };
 
-Integrals integrals(const Eigen::Vector2d& offset, double edge) {
+Integrals integrals(const Eigen::Vector2d& offset, const Eigen::Vector2d& edges) {
   Integrals sum;
   for (const double sx : {-0.5, 0.5}) {
     for (const double sy : {-0.5, 0.5}) {
       const double sign = sx * sy > 0 ? 1 : -1;
-      const double x = offset.x() + sx * edge;
-      const double y = offset.y() + sy * edge;
+      const double x = offset.x() + sx * edges.x();
+      const double y = offset.y() + sy * edges.y();
       const double r = std::hypot(x, y);
       sum.xx += sign * y * std::log(x + r);
       sum.yy += sign * x * std::log(y + r);
@@ -35,6 +35,18 @@ Integrals integrals(const Eigen::Vector2d& offset, double edge) {
 
 }  // namespace
 
+Eigen::Matrix3d HalfSpace::influence(const Eigen::Vector2d& offset, const Eigen::Vector2d& edges) const {
+  const Integrals of = integrals(offset, edges);
+  const Integrals turned = integrals({offset.y(), offset.x()}, {edges.y(), edges.x()});
+  const double inverse = of.xx + of.yy;
+  const double coupling = (1 - 2 * poisson) / 2;
+  Eigen::Matrix3d block;
+  block << (1 - poisson) * inverse + poisson * of.xx, poisson * of.xy, -coupling * of.x,  //
+      poisson * of.xy, (1 - poisson) * inverse + poisson * of.yy, -coupling * turned.x,   //
+      coupling * of.x, coupling * turned.x, (1 - poisson) * inverse;
+  return block / (2 * std::numbers::pi * shear * edges.prod());
+}
+
 Eigen::Vector2d HalfSpacePatch::place(std::uint32_t i) const {
   const double middle = (across - 1) / 2.0;
   const std::uint32_t row = i / across;
@@ -42,15 +54,7 @@ Eigen::Vector2d HalfSpacePatch::place(std::uint32_t i) const {
 }
 
 Eigen::Matrix3d HalfSpacePatch::influence(const Eigen::Vector2d& offset) const {
-  const Integrals of = integrals(offset, cell);
-  const Integrals turned = integrals({offset.y(), offset.x()}, cell);
-  const double inverse = of.xx + of.yy;
-  const double coupling = (1 - 2 * poisson) / 2;
-  Eigen::Matrix3d block;
-  block << (1 - poisson) * inverse + poisson * of.xx, poisson * of.xy, -coupling * of.x,  //
-      poisson * of.xy, (1 - poisson) * inverse + poisson * of.yy, -coupling * turned.x,   //
-      coupling * of.x, coupling * turned.x, (1 - poisson) * inverse;
-  return block / (2 * std::numbers::pi * shear * cell * cell);
+  return HalfSpace{shear, poisson}.influence(offset, {cell, cell});
 }
 
 ContactBench::ContactBench(std::uint32_t candidate_count)

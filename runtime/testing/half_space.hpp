@@ -9,8 +9,17 @@
 
 namespace greenloop {
 
-/// An elastic half-space z > 0 that is pressed on square cells of its surface: within each a force spreads evenly, and
-/// displacements are those of the cells' middles (Johnson, Contact Mechanics, sections 3.2, 3.6 and appendix 2).
+/// An elastic half-space z > 0 (Johnson, Contact Mechanics, sections 3.2, 3.6 and appendix 2).
+struct HalfSpace {
+  double shear;  ///< Pa
+  double poisson;
+
+  /// Displacement, `offset` away from its middle, per force that spreads evenly over a rectangle of the surface, m/N.
+  [[nodiscard]] Eigen::Matrix3d influence(const Eigen::Vector2d& offset, const Eigen::Vector2d& edges) const;
+};
+
+/// A half-space that is pressed on square cells of its surface: within each a force spreads evenly, and
+/// displacements are those of the cells' middles.
 struct HalfSpacePatch {
   std::uint32_t across;  ///< cells along x and y
   double cell;           ///< m, of an edge

@@ -30,12 +30,21 @@ constexpr Shape shapes[] = {
     {"handle", "a ball with a handle, 40, 160, 640, 2560, ... vertices", test::handle},
     {"web", "two lumps with a web between them", test::web},
 };
-constexpr int most_levels = 7, most_pad_levels = 3;
+constexpr int most_levels = 7;
 
-void write_pad(int levels, const char* file) {
-  namespace volume = greenloop::offline::testing;
-  greenloop::write_volume(file, volume::box(volume::gel_pad(6 << levels, 1 << levels, 1 << levels)));
-}
+namespace volume = greenloop::offline::testing;
+struct Pad {
+  std::string_view name, text;
+  int least_levels, most_levels;
+  volume::Planes (*planes)(int levels);
+};
+
+constexpr Pad pads[] = {
+    {"pad", "a gel pad of tetrahedra (.mesh, .msh, .vtk), 8, 16, 32, 64 cells across, for LEVELS 0 to 3", 0, 3,
+     [](int levels) { return volume::gel_pad(6 << levels, 1 << levels, 1 << levels); }},
+    {"edge_pad", "the same, finer under an edge along y, 40 or 80 cells across, for LEVELS 2 or 3", 2, 3,
+     [](int levels) { return volume::edge_pad(levels - 1); }},
+};
 
 int usage(std::ostream& to) {
   to << "usage: write_body NAME LEVELS FILE\n\nWrites a generated surface of 12, 42, 162, 642, 2562, 10242, ... "
@@ -43,7 +52,7 @@ int usage(std::ostream& to) {
         "(LEVELS 0 to "
      << most_levels << ") to FILE\n(.off, .obj, .stl or .ply). NAME is one of\n\n";
   for (const Shape& shape : shapes) to << "  " << shape.name << '\t' << shape.text << '\n';
-  to << "  pad\ta gel pad of tetrahedra (.mesh, .msh, .vtk), 8, 16, 32, 64 cells across, for LEVELS 0 to 3\n";
+  for (const Pad& pad : pads) to << "  " << pad.name << '\t' << pad.text << '\n';
   to << "\nScenes for them: offline/scene/examples.\n";
   return &to == &std::cerr ? 1 : 0;
 }
@@ -58,12 +67,14 @@ int main(int count, char** arguments) {
   int levels = -1;
   const char* end = arguments[2] + std::strlen(arguments[2]);
   const auto read = std::from_chars(arguments[2], end, levels);
-  const bool is_pad = std::string_view(arguments[1]) == "pad";
-  if (is_pad ? levels > most_pad_levels : shape == std::end(shapes)) return usage(std::cerr);
-  if (read.ptr != end || levels < 0 || levels > most_levels) return usage(std::cerr);
+  const Pad* pad = std::find_if(std::begin(pads), std::end(pads), [&](const Pad& p) { return p.name == arguments[1]; });
+  const bool is_pad = pad != std::end(pads);
+  if (!is_pad && shape == std::end(shapes)) return usage(std::cerr);
+  const int least = is_pad ? pad->least_levels : 0, most = is_pad ? pad->most_levels : most_levels;
+  if (read.ptr != end || levels < least || levels > most) return usage(std::cerr);
   try {
     if (is_pad) {
-      write_pad(levels, arguments[3]);
+      greenloop::write_volume(arguments[3], volume::box(pad->planes(levels)));
       return 0;
     }
     const greenloop::SemiRegularMesh body = shape->make(levels);

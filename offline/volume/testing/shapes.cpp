@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -127,32 +128,75 @@ TetrahedralMesh box(const Planes& planes) {
   return mesh;
 }
 
-Planes gel_pad(int middle, int rim, int layers) {
-  constexpr double half_middle = 4e-3, half = 10e-3, height = 3e-3, lowest_over_highest = 4;
-  const double even = 2 * half_middle / middle;
+namespace {
+
+// planes from 0 to pieces of so many even cells each
+struct Piece {
+  double end;
+  int cells;
+};
+
+std::vector<double> even_planes(std::initializer_list<Piece> pieces) {
+  std::vector<double> planes{0};
+  for (const Piece& piece : pieces) {
+    const double begin = planes.back();
+    for (int i = 1; i <= piece.cells; ++i) planes.push_back(begin + (piece.end - begin) * i / piece.cells);
+  }
+  return planes;
+}
+
+// goes on with cells that grow by the same factor
+void add_growing(double end, int cells, std::vector<double>& planes) {
+  const double even = planes.back() - planes[planes.size() - 2];
   const auto reach = [&](double factor) {
     double length = 0;
-    for (int i = 1; i <= rim; ++i) length += even * std::pow(factor, i);
+    for (int i = 1; i <= cells; ++i) length += even * std::pow(factor, i);
     return length;
   };
+  const double way = end - planes.back();
   double low = 1e-3, high = 1e3;  // of the factor
   for (int i = 0; i < 100; ++i) {
     const double between = std::sqrt(low * high);
-    (reach(between) < half - half_middle ? low : high) = between;
+    (reach(between) < way ? low : high) = between;
   }
-  std::vector<double> across{0};  // from the axis to the side
-  for (int i = 1; i <= middle / 2; ++i) across.push_back(i * even);
-  for (int i = 1; i <= rim; ++i) across.push_back(across.back() + even * std::pow(low, i));
-  across.back() = half;
-  Planes planes;
-  for (std::size_t i = across.size() - 1; i > 0; --i) planes[0].push_back(-across[i]);
-  planes[0].insert(planes[0].end(), across.begin(), across.end());
-  planes[1] = planes[0];
+  for (int i = 1; i <= cells; ++i) planes.push_back(planes.back() + even * std::pow(low, i));
+  planes.back() = end;
+}
+
+std::vector<double> mirrored(const std::vector<double>& from_axis) {
+  std::vector<double> planes;
+  for (std::size_t i = from_axis.size() - 1; i > 0; --i) planes.push_back(-from_axis[i]);
+  planes.insert(planes.end(), from_axis.begin(), from_axis.end());
+  return planes;
+}
+
+constexpr double half_middle = 4e-3, half_pad = 10e-3;
+
+std::vector<double> pad_layers(int layers) {
+  constexpr double height = 3e-3, lowest_over_highest = 4;
   const double thinner = std::pow(lowest_over_highest, -1.0 / layers);
   const double sum = (1 - 1 / lowest_over_highest) / (1 - thinner);
-  for (int i = 0; i <= layers; ++i) planes[2].push_back(height * (1 - std::pow(thinner, i)) / (1 - thinner) / sum);
-  planes[2].back() = height;
+  std::vector<double> planes;
+  for (int i = 0; i <= layers; ++i) planes.push_back(height * (1 - std::pow(thinner, i)) / (1 - thinner) / sum);
+  planes.back() = height;
   return planes;
+}
+
+}  // namespace
+
+Planes gel_pad(int middle, int rim, int layers) {
+  std::vector<double> across = even_planes({{half_middle, middle / 2}});
+  add_growing(half_pad, rim, across);
+  return {mirrored(across), mirrored(across), pad_layers(layers)};
+}
+
+Planes edge_pad(int fine) {
+  constexpr double beside = 1e-3, end_begins = 2e-3, end_ends = 10e-3 / 3;
+  std::vector<double> across = even_planes({{beside, 6 * fine}, {half_middle, 9 * fine}});
+  add_growing(half_pad, 5 * fine, across);
+  std::vector<double> along = even_planes({{end_begins, 4 * fine}, {end_ends, 8 * fine}, {half_middle, 2 * fine}});
+  add_growing(half_pad, 6 * fine, along);
+  return {mirrored(across), mirrored(along), pad_layers(4 * fine)};
 }
 
 TetrahedralMesh shell(int levels, int layers, double inner, double outer) {

@@ -30,6 +30,11 @@ using Planes = std::array<std::vector<double>, 3>;
 /// the one before by the same factor towards the rim and the lower side.
 [[nodiscard]] Planes gel_pad(int middle, int rim, int layers);
 
+/// The same pad for an edge along y, 5 mm long and of 1 mm radius, with cells finer where it lets go: `fine` times 20
+/// cells on either side of the axis along x and along y, and 4 along z. Over `fine`, they are 1/6 mm beside the edge
+/// and at its ends, 1/2 mm along its middle and 1/3 mm elsewhere within 4 mm of the axis.
+[[nodiscard]] Planes edge_pad(int fine);
+
 /// The ball shell between `inner` and `outer` radius: `layers` layers of a sphere split `levels` times, each prism cut
 /// into three tetrahedra; layer radii grow geometrically. The inner sphere's vertices come first.
 [[nodiscard]] TetrahedralMesh shell(int levels, int layers, double inner, double outer);
