@@ -68,7 +68,8 @@ TEST_CASE("a drag is drawn and judged") {
   CHECK(has(with(trace_of(50, 1100), shown), "The run missed its budget."));
   CHECK(message_of([&] { (void)with("time,force\n0,1\n", shown); }).find("displacement") != std::string::npos);
   CHECK(message_of([&] { (void)with(trace_of(0, 1), shown); }).find("no cycle") != std::string::npos);
-  CHECK(message_of([&] { (void)with(trace_of(9, 1), shown + 1); }).find("take a snapshot of this model") != std::string::npos);
+  CHECK(message_of([&] { (void)with(trace_of(9, 1), shown + 1); }).find("take a snapshot of this model") !=
+        std::string::npos);
   CHECK(message_of([&] {
           (void)make_elastic_report(beam(),
                                     {.model = "beam.gloop", .trace = {}, .snapshot = {}, .build = "build.json"});
