@@ -102,10 +102,13 @@ void predict(ElasticBody& body, std::span<const Multigrid::Hold> holds) {
   }
 }
 
-/// Sets external forces; returns the sum of squares of them and of what each vertex weighs, N^2.
+/// Sets external forces; returns the sum of squares of them and of what each vertex weighs, N^2. What acts on a vertex
+/// that the model holds goes into its support.
 double set_loads(ElasticBody& body, const Multigrid::Inputs& inputs) {
   for (Float4& force : body.force) force = Float4{};
-  for (const Multigrid::Load& load : inputs.loads) body.force[load.vertex] += float4(load.force);
+  for (const Multigrid::Load& load : inputs.loads) {
+    if (load.vertex < body.free()) body.force[load.vertex] += float4(load.force);
+  }
   const float* const own = body.view.info->gravity;
   body.gravity = inputs.gravity != nullptr ? float4(*inputs.gravity) : Float4{own[0], own[1], own[2], 0.0F};
   double sum = 0;
@@ -129,9 +132,23 @@ bool is_sound(const ElasticBody& body) {
   return std::isfinite(farthest);
 }
 
+void keep_frames(ElasticBody& body) {
+  if (body.measure != StrainMeasure::corotational) return;
+  for (std::size_t g = 0; g < body.groups.size(); ++g) body.last_quaternion[g] = body.quaternion[g];
+}
+
+/// Back to the last state, at rest, whose frames are not those that were tried.
 void stop(ElasticBody& body) {
   for (Float4& v : body.state.velocity) v = Float4{};
   for (Float4& a : body.state.acceleration) a = Float4{};
+  if (body.measure == StrainMeasure::green) {
+    find_frames(body.measure, body.groups, body.state.displacement.data(), body.quaternion, body.frame);
+  }
+  if (body.measure != StrainMeasure::corotational) return;
+  for (std::size_t g = 0; g < body.groups.size(); ++g) {
+    body.quaternion[g] = body.last_quaternion[g];
+    body.frame[g] = matrix_of(body.quaternion[g]);
+  }
 }
 
 void take_over(ElasticBody& body) {
@@ -147,6 +164,12 @@ struct Balance {
   std::uint32_t cycles = 0, passes = 0;
   std::uint64_t work = 0;
 };
+
+/// Not finite where one of the two is not. squares: of forces, N^2.
+double relative_residual(double square, double largest_square) {
+  if (!std::isfinite(largest_square) || !std::isfinite(square)) return std::numeric_limits<double>::infinity();
+  return largest_square > 0 ? std::sqrt(square / largest_square) : 0;
+}
 
 /// Of a pass with one cycle, along the last acceleration first, and of the residual behind it.
 std::uint64_t least_balance_work(const MultigridView& view) {
@@ -165,7 +188,7 @@ Balance balance(ElasticBody& body, double loads, float tolerance, std::uint64_t 
     if (balance.passes == 0) first = now.moving;
     const double largest = std::max(first, std::max(loads, now.held));
     const double goal = relative * largest;
-    balance.residual = largest > 0 ? std::sqrt(now.moving / largest) : 0;
+    balance.residual = relative_residual(now.moving, largest);
     const bool first_pass = balance.passes == 0;
     const std::uint64_t start = pass_work(body.view) + (first_pass ? product_work(body.view) : 0);
     const bool fits = balance.work + start + iteration + residual <= work;
@@ -236,6 +259,7 @@ Multigrid::StepReport Multigrid::step(const Inputs& inputs, Budget budget, const
   report.refused = refusal.input;
   if (!answered(report.status)) return report;
 
+  keep_frames(body);
   predict(body, inputs.holds);
   const double loads = set_loads(body, inputs);
   const Balance found = balance(body, loads, body.tolerance, budget.work - fixed);

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "formats/write/aligned_bytes.hpp"
 #include "formats/write/describe.hpp"
 #include "runtime/multigrid.hpp"
 
@@ -52,12 +53,23 @@ Json matters_of(const MultigridView& view) {
   return matters;
 }
 
+/// That the first step from rest under the body's weight takes, within the tolerance or as far as rounding lets it.
+std::uint32_t cycles_of(const Model& model) {
+  constexpr std::uint64_t most_cycles = 50;
+  constexpr Multigrid::Limits limits{.max_loads = 0, .max_holds = 0};
+  const Multigrid::Requirement need = Multigrid::required(model, limits);
+  AlignedBytes memory(need.bytes);
+  Multigrid body = Multigrid::create(model, limits, {memory.data(), memory.size()}).body;
+  return body.step({}, {need.least_work + most_cycles * need.cycle_work}, {}).cycles;
+}
+
 }  // namespace
 
 Json elastic_inspection(const ModelFile& model, const Json& provenance) {
   const MultigridView& view = model.view.multigrid;
   const layout::MultigridInfo& info = *view.info;
-  const Multigrid::Requirement need = Multigrid::required(Model::open(model.bytes.span()).model, {});
+  const Model opened = Model::open(model.bytes.span()).model;
+  const Multigrid::Requirement need = Multigrid::required(opened, {});
   return {{"kind", "multigrid"},
           {"version", fmt::format("{}.{}", model.view.header->major, model.view.header->minor)},
           {"problem", problem_name(model.view.problem)},
@@ -75,6 +87,7 @@ Json elastic_inspection(const ModelFile& model, const Json& provenance) {
           {"numerical_damping", info.numerical_damping},
           {"gravity", info.gravity},
           {"arena_bytes", need.bytes},
+          {"cycles", cycles_of(opened)},
           {"step_work",
            {{"least", need.least_work},
             {"cycle", need.cycle_work},
@@ -98,8 +111,10 @@ void print_elastic_table(const std::filesystem::path& file, const Json& found, s
       fmt::format("mass {:.3g} 1/s, stiffness {:.3g} s, numerical {:.3g}", found["mass_damping"].get<double>(),
                   found["stiffness_damping"].get<double>(), found["numerical_damping"].get<double>()));
   const Json& work = found["step_work"];
-  row("step", fmt::format("at least {} units, {} for each cycle more; arena {} bytes", work["least"].dump(),
-                          work["cycle"].dump(), found["arena_bytes"].dump()));
+  row("step",
+      fmt::format("at least {} units, {} for each cycle more; the first one under its weight takes {} "
+                  "cycles; arena {} bytes",
+                  work["least"].dump(), work["cycle"].dump(), found["cycles"].dump(), found["arena_bytes"].dump()));
   row("bytes", found["bytes"].dump());
   fmt::print(out, "\n  {:<8}{:>10}{:>12}{:>12}{:>12}\n", "grid", "vertices", "tetrahedra", "blocks", "bytes");
   std::size_t g = 0;

@@ -9,7 +9,7 @@
 namespace greenloop::offline {
 
 /// What a multigrid model holds, for `inspect --json`: its kind, grids (levels, finest first), tetrahedra, materials,
-/// time step and the work of a step. Work: constant.
+/// time step, the work of a step and the cycles of a first one under the body's weight. Work: linear in the model.
 [[nodiscard]] nlohmann::ordered_json elastic_inspection(const ModelFile& model,
                                                         const nlohmann::ordered_json& provenance);
 

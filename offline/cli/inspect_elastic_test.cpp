@@ -37,6 +37,8 @@ TEST_CASE("inspect: a multigrid model's grids, body and work") {
   CHECK(levels[2]["nodes"] == 2);
   CHECK(levels[2]["bytes"] == 21 * 8);
   CHECK(json["step_work"]["least"] > json["step_work"]["cycle"]);
+  CHECK(json["cycles"] >= 1);
+  CHECK(json["cycles"] <= 50);
   const auto one = nlohmann::json::parse(inspected({.cells = 1, .grids = 1}, true));
   CHECK(one["levels"].size() == 1);
   CHECK(one["levels"][0]["tetrahedra"] == 6);

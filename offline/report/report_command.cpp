@@ -17,6 +17,7 @@
 #include "formats/output/streams.hpp"
 #include "formats/write/model_file.hpp"
 #include "offline/report/axis.hpp"
+#include "offline/report/elastic_report.hpp"
 #include "offline/report/motion_report.hpp"
 #include "offline/report/report.hpp"
 
@@ -72,6 +73,12 @@ void write_report(const Options& options, CommandFiles files, const Report& repo
   if (!options.figures.empty()) write_figures(options.figures, report.figures);
 }
 
+Report report_of(const ModelFile& file, const ReportInputs& inputs) {
+  if (file.view.problem == layout::Problem::impulse_response) return make_motion_report(file, inputs);
+  if (file.view.problem == layout::Problem::multigrid) return make_elastic_report(file, inputs);
+  return make_report(file, inputs);
+}
+
 void run(const Options& options) {
   const std::string output = options.output.empty()
                                  ? std::filesystem::path(options.model).replace_extension(".html").string()
@@ -82,10 +89,6 @@ void run(const Options& options) {
   const ModelFile file = open_model_file(options.model);
   const std::string first = options.traces.empty() ? "" : options.traces.front();
   const auto more = options.traces.begin() + (options.traces.empty() ? 0 : 1);
-  const bool motion = file.view.problem == layout::Problem::impulse_response;
-  if (file.view.problem == layout::Problem::multigrid) {
-    require_problem(file.view, layout::Problem::elastostatic, options.model);
-  }
   const ReportInputs inputs{.model = options.model,
                             .trace = given(first),
                             .snapshot = given(options.snapshot),
@@ -94,7 +97,7 @@ void run(const Options& options) {
                             .stability = given(options.stability),
                             .provenance = options.provenance,
                             .mask = options.mask};
-  const Report report = motion ? make_motion_report(file, inputs) : make_report(file, inputs);
+  const Report report = report_of(file, inputs);
   write_report(options, files, report);
   options.json ? print_json(output, report) : print_text(output, report);
 }

@@ -41,5 +41,5 @@ downwards runtime loop.hpp constraint.hpp vec.hpp light.hpp model.hpp mask.hpp s
   recorder.hpp recorder hosted
 downwards offline progress.hpp single_threaded_blas.hpp surface remesh wrap volume multigrid sources scene simulate reduce appearance compress pipeline report figures cli
 downwards offline/compress wavelet encode measure search
-downwards sim_hw guard body messages device transport control_loop motion session
+downwards sim_hw guard body messages device transport control_loop drag motion session
 exit $status

@@ -1,5 +1,5 @@
-// greenloop-stress: random and adversarial contacts on a model, or impulses on its motions, every step checked against
-// what the runtime declares.
+// greenloop-stress: random and adversarial contacts on a model, impulses on its motions, or loads and holds on a
+// multigrid model, every step checked against what the runtime declares.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,12 +23,15 @@
 #include "rt_tests/harness/loaded_driver.hpp"
 #include "rt_tests/harness/prices_file.hpp"
 #include "rt_tests/harness/time_of.hpp"
+#include "rt_tests/stress/elastic_stress.hpp"
 #include "rt_tests/stress/impulse_stress.hpp"
 #include "rt_tests/stress/stress_report.hpp"
 #include "rt_tests/stress/tool_stress.hpp"
 
 namespace {
 
+using greenloop::ElasticScriptKind;
+using greenloop::ElasticStressReport;
 using greenloop::ElastostaticDriver;
 using greenloop::ImpulseScriptKind;
 using greenloop::ImpulseStressReport;
@@ -51,17 +54,18 @@ struct Arguments {
   std::string prices;
 };
 
-// all names of scripts, of contacts, tools and impulses
+// all names of scripts, of any model
 std::vector<std::string> script_names() {
   std::vector<std::string> names(greenloop::contact_script_names.begin(), greenloop::contact_script_names.end());
   names.insert(names.end(), greenloop::tool_script_names.begin(), greenloop::tool_script_names.end());
   names.insert(names.end(), greenloop::impulse_script_names.begin(), greenloop::impulse_script_names.end());
+  names.insert(names.end(), greenloop::elastic_script_names.begin(), greenloop::elastic_script_names.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
-// the script that was asked for, among those of contacts, tools or impulses; none: all of them
+// the script that was asked for, among those of a kind of model; none: all of them
 template <class Kind, class Names>
 std::optional<Kind> script_of(const std::string& script, const Names& names, const char* others) {
   if (script.empty()) return std::nullopt;
@@ -252,6 +256,41 @@ ImpulseStressReport stress_motions(const greenloop::Model& model, const Argument
   return report;
 }
 
+// the options for a multigrid model; throws std::runtime_error for those that others have
+greenloop::ElasticStressOptions elastic_options(const Arguments& arguments) {
+  const greenloop::StressOptions& asked = arguments.options;
+  if (arguments.tools || arguments.loads || asked.contacts > 0 || !arguments.prices.empty() || arguments.rate > 0) {
+    throw std::runtime_error(arguments.model +
+                             ": multigrid models have no --tools, --loads, --contacts, --prices or --rate");
+  }
+  return {.cycles = asked.cycles,
+          .seed = asked.seed,
+          .script = script_of<ElasticScriptKind>(arguments.script, greenloop::elastic_script_names,
+                                                 "contacts, tools or impulses, not of multigrid models"),
+          .budget = asked.budget,
+          .histogram_bins = asked.histogram_bins,
+          .fault = asked.fault};
+}
+
+ElasticStressReport stress_elastic(const greenloop::Model& model, const Arguments& arguments) {
+  ElasticStressReport report{.model = arguments.model, .options = elastic_options(arguments)};
+  const greenloop::ElasticStressOptions& options = report.options;
+  report.rate = 1 / model.view().multigrid.info->time_step;
+  greenloop::offline::ProgressBar bar(arguments.json);
+  run_with_progress(report, bar, [&] { return greenloop::run_elastic_stress(model, options); });
+  report.time = greenloop::judge_times(report.result.times, report.rate, arguments.share > 0 ? arguments.share : 1,
+                                       arguments.judge_time);
+  if (arguments.count_instructions) {
+    std::vector<std::string> command = listing(arguments);
+    if (options.script) command.insert(command.end(), {"--script", name(*options.script)});
+    if (options.budget > 0) command.insert(command.end(), {"--budget", std::to_string(options.budget)});
+    bar.begin("instructions");
+    report.predicted = count_instructions("Multigrid", command);
+    bar.end(fmt::format("of {} steps", report.predicted->all.steps));
+  }
+  return report;
+}
+
 template <class Report>
 int hand_out(const Report& report, bool as_json) {
   if (as_json) {
@@ -300,6 +339,15 @@ int run(const Arguments& arguments) {
     report.open_ms = measure_opening();
     return hand_out(report, arguments.json);
   }
+  if (opened.model.problem() == greenloop::layout::Problem::multigrid) {
+    if (arguments.list_steps) {
+      greenloop::write_steps(greenloop::run_elastic_plainly(opened.model, elastic_options(arguments)), std::cout);
+      return 0;
+    }
+    ElasticStressReport report = stress_elastic(opened.model, arguments);
+    report.open_ms = measure_opening();
+    return hand_out(report, arguments.json);
+  }
   greenloop::require_problem(opened.model.view(), greenloop::layout::Problem::elastostatic, arguments.model);
   if (arguments.list_steps) {
     const auto options = options_for(opened.model, arguments);
@@ -318,8 +366,8 @@ int run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Random and adversarial contacts on a model, or impulses on its motions; every step is checked against its "
-      "declared work.",
+      "Random and adversarial contacts on a model, impulses on its motions, or loads and holds on a multigrid model; "
+      "every step is checked against its declared work.",
       "greenloop-stress");
   Arguments arguments;
   arguments.options.contacts = 0;

@@ -77,6 +77,7 @@ ElasticBody* place_elastic_body(Arena& arena, const MultigridView& view, std::ui
   placed.groups = take<TetrahedronGroup>(arena, groups_of(view));
   placed.frame = take<Matrix4>(arena, placed.groups.size());
   placed.quaternion = take<Quaternion4>(arena, placed.groups.size());
+  placed.last_quaternion = take<Quaternion4>(arena, placed.groups.size());
   placed.vertex_quaternion = take<Float4>(arena, info.free);
   placed.turned = take<Float4>(arena, info.free);
   placed.state = take_state(arena, info.vertices);
@@ -122,11 +123,12 @@ void begin_elastic_body(ElasticBody& body) noexcept {
 namespace {
 
 // what pieces take, in instructions
-/// Of four tetrahedra, by the measure of strain: their frames, forces and turns.
+/// Of four tetrahedra, by the measure of strain: their frames, forces and turns, and the frames that a step keeps, to
+/// go back to.
 struct GroupUnits {
-  std::uint64_t frame, force, turn;
+  std::uint64_t frame, force, turn, kept;
 };
-constexpr GroupUnits group_units[] = {{0, 1080, 0}, {880, 1200, 460}, {255, 1180, 460}};
+constexpr GroupUnits group_units[] = {{0, 1080, 0, 0}, {880, 1200, 460, 80}, {255, 1180, 460, 255}};
 constexpr std::uint64_t product_units = 750, stress_units = 560;
 constexpr std::uint64_t moved_vertex_units = 60, met_vertex_units = 95, turned_vertex_units = 95,
                         stepped_vertex_units = 110;
@@ -174,7 +176,7 @@ std::uint64_t stress_work(const MultigridView& view) noexcept {
 }
 
 std::uint64_t state_work(const MultigridView& view, std::uint32_t loads, std::uint32_t holds) noexcept {
-  return step_units + stepped_vertex_units * view.info->vertices +
+  return step_units + units_of(view).kept * groups_of(view) + stepped_vertex_units * view.info->vertices +
          input_units * (std::uint64_t{loads} + std::uint64_t{2} * holds);
 }
 

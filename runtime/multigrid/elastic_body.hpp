@@ -24,6 +24,7 @@ struct ElasticBody {
   std::span<TetrahedronGroup> groups;
   std::span<Matrix4> frame;                     ///< [groups]
   std::span<Quaternion4> quaternion;            ///< [groups], of `frame`'s rotations
+  std::span<Quaternion4> last_quaternion;       ///< [groups], of the last step's state
   std::span<Float4> vertex_quaternion, turned;  ///< [free]
   ElasticState state, next;                     ///< of the last step, and of the one that is being found
   std::span<Float4> force;                      ///< [vertices] external

@@ -14,6 +14,7 @@
 #include "formats/output/output_paths.hpp"
 #include "formats/output/program.hpp"
 #include "formats/output/streams.hpp"
+#include "sim_hw/session/drag_session.hpp"
 #include "sim_hw/session/interruption.hpp"
 #include "sim_hw/session/loaded_model.hpp"
 #include "sim_hw/session/motion_session.hpp"
@@ -24,7 +25,7 @@
 namespace {
 
 struct Outputs {
-  std::string script;  // of motions alone: "impulses"
+  std::string script;  // as it was named
   std::string trace, snapshot, stability;
   std::size_t stability_steps = 8;
   bool json = false, judge_time = false;
@@ -59,12 +60,14 @@ greenloop::Transport read_transport(const std::string& name) {
   return name == "udpm" ? Transport::udpm : name == "memq" ? Transport::memq : Transport::automatic;
 }
 
+// scripts of one kind of model alone
 constexpr const char* impulses = "impulses";
+constexpr const char* drag = "drag";
 
-// of the hands, and of motions
 std::vector<std::string> script_choices() {
   std::vector<std::string> names = all_of(greenloop::script_names);
   names.emplace_back(impulses);
+  names.emplace_back(drag);
   return names;
 }
 
@@ -80,11 +83,11 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options, std::string&
          "--script",
          [&options, &script](const std::string& name) {
            script = name;
-           if (name != impulses) {
+           if (name != impulses && name != drag) {
              options.script = static_cast<greenloop::Script>(place_of(name, greenloop::script_names));
            }
          },
-         "What the hands do (default: all), or impulses, for a model of motions")
+         "What the hands do (default: all); impulses, for a model of motions; drag, for a multigrid model")
       ->check(CLI::IsMember(script_choices()));
   app.add_option("--friction", options.friction, "Coulomb's coefficient between tools and body")
       ->capture_default_str()
@@ -124,7 +127,8 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options, std::string&
          "udpm: two processes in a network namespace; memq: one; auto (default): udpm where permitted")
       ->check(CLI::IsMember({"auto", "udpm", "memq"}));
   app.add_option("--field", options.field_every,
-                 "The displacement of the whole body every N cycles (default: 1, of motions 60 times a second)")
+                 "The displacement of the whole body every N cycles (default: 1, of motions and multigrid models 60 "
+                 "times a second)")
       ->check(CLI::PositiveNumber);
 }
 
@@ -200,16 +204,20 @@ int hand_out(const greenloop::SessionOptions& options, const Result& result, con
   return verdict.passed() ? 0 : 1;
 }
 
-// throws std::runtime_error for what motions have not
-void require_motion_options(const CLI::App& app, const greenloop::SessionOptions& options, const Outputs& outputs) {
-  if (!outputs.script.empty() && outputs.script != impulses) {
-    throw std::runtime_error(options.model.string() + ": --script " + outputs.script +
-                             ": a model of motions has impulses alone");
+// throws std::runtime_error for another script than the one there is, and for options that go with contacts
+void require_own_options(const CLI::App& app, const greenloop::SessionOptions& options, const Outputs& outputs,
+                         const std::string& model, const std::string& script, std::vector<const char*> other_options) {
+  if (!outputs.script.empty() && outputs.script != script) {
+    throw std::runtime_error(options.model.string() + ": --script " + outputs.script + ": " + model + " has " + script +
+                             " alone");
   }
-  for (const char* const option : {"--friction", "--tools", "--passive", "--hand", "--gain", "--delay", "--fast-rate",
-                                   "--snapshot", "--stability"}) {
+  for (const char* const option :
+       {"--friction", "--tools", "--passive", "--hand", "--gain", "--delay", "--fast-rate", "--stability"}) {
+    other_options.push_back(option);
+  }
+  for (const char* const option : other_options) {
     if (app.get_option(option)->count() > 0) {
-      throw std::runtime_error(options.model.string() + ": " + option + ": a model of motions is not touched");
+      throw std::runtime_error(options.model.string() + ": " + option + ": not for " + model);
     }
   }
 }
@@ -222,15 +230,34 @@ int run_motions(const greenloop::SessionOptions& options, const Outputs& outputs
   return hand_out(options, result, verdict, outputs.json);
 }
 
+int run_drag(const greenloop::SessionOptions& options, const Outputs& outputs) {
+  if (outputs.script.empty()) {
+    throw std::runtime_error(options.model.string() + ": a multigrid model has the script drag: give --script drag");
+  }
+  greenloop::await_interruption();
+  const greenloop::DragResult result = greenloop::run_drag_session(options);
+  const greenloop::DragVerdict verdict = greenloop::judge(result, outputs.judge_time);
+  if (!outputs.trace.empty()) result.log.write_trace(outputs.trace, 1 / result.rate, result.budget.work);
+  if (!outputs.snapshot.empty()) result.log.write_snapshot(outputs.snapshot);
+  return hand_out(options, result, verdict, outputs.json);
+}
+
 int run(const CLI::App& app, greenloop::SessionOptions options, const Outputs& outputs) {
   require_outputs(options, outputs);
   options.keep_records = !outputs.trace.empty();
-  if (greenloop::problem_of(options.model) == greenloop::layout::Problem::impulse_response) {
-    require_motion_options(app, options, outputs);
+  const greenloop::layout::Problem problem = greenloop::problem_of(options.model);
+  if (problem == greenloop::layout::Problem::impulse_response) {
+    require_own_options(app, options, outputs, "a model of motions", impulses, {"--snapshot"});
     return run_motions(options, outputs);
   }
-  if (outputs.script == impulses) {
-    throw std::runtime_error(options.model.string() + ": --script impulses: this is no model of motions");
+  if (problem == greenloop::layout::Problem::multigrid) {
+    require_own_options(app, options, outputs, "a multigrid model", drag, {"--rate"});
+    return run_drag(options, outputs);
+  }
+  for (const char* const script : {impulses, drag}) {
+    if (outputs.script != script) continue;
+    throw std::runtime_error(options.model.string() + ": --script " + script + ": this is no " +
+                             (script == drag ? "multigrid model" : "model of motions"));
   }
   if (!outputs.stability.empty()) return map_stability(options, outputs);
   greenloop::await_interruption();

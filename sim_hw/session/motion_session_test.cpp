@@ -129,7 +129,7 @@ TEST_CASE("what motions have not is refused by name, and impulses are for motion
   };
   CHECK(refusal({"--script", "press"}).find("--script press: a model of motions has impulses alone") !=
         std::string::npos);
-  CHECK(refusal({"--hand", "absent"}).find("--hand: a model of motions is not touched") != std::string::npos);
+  CHECK(refusal({"--hand", "absent"}).find("--hand: not for a model of motions") != std::string::npos);
   CHECK(refusal({"--script", "impulses"}, "sphere.gloop").find("this is no model of motions") != std::string::npos);
 }
 

@@ -15,6 +15,8 @@ constexpr const char* state_name = "DEVICE_STATE";
 constexpr const char* command_name = "LOOP_COMMAND";
 constexpr const char* impulse_name = "IMPULSE_STATE";
 constexpr const char* motion_name = "MOTION_COMMAND";
+constexpr const char* drag_name = "DRAG_STATE";
+constexpr const char* dragged_name = "DRAG_COMMAND";
 
 template <typename Packet>
 void publish(lcm_t* lcm, const char* name, const Packet& packet) {
@@ -69,10 +71,22 @@ void Channel::on_command(std::function<void(const MotionCommand&)> receive) {
   lcm_subscribe(lcm_.get(), motion_name, deliver<messages::motion_command, MotionCommand>, &receive_motion_);
 }
 
+void Channel::on_state(std::function<void(const DragState&)> receive) {
+  receive_drag_ = std::move(receive);
+  lcm_subscribe(lcm_.get(), drag_name, deliver<messages::drag_state, DragState>, &receive_drag_);
+}
+
+void Channel::on_command(std::function<void(const DragCommand&)> receive) {
+  receive_dragged_ = std::move(receive);
+  lcm_subscribe(lcm_.get(), dragged_name, deliver<messages::drag_command, DragCommand>, &receive_dragged_);
+}
+
 void Channel::send(const DeviceState& state) { publish(lcm_.get(), state_name, to_packet(state)); }
 void Channel::send(const LoopCommand& command) { publish(lcm_.get(), command_name, to_packet(command)); }
 void Channel::send(const ImpulseState& state) { publish(lcm_.get(), impulse_name, to_packet(state)); }
 void Channel::send(const MotionCommand& command) { publish(lcm_.get(), motion_name, to_packet(command)); }
+void Channel::send(const DragState& state) { publish(lcm_.get(), drag_name, to_packet(state)); }
+void Channel::send(const DragCommand& command) { publish(lcm_.get(), dragged_name, to_packet(command)); }
 
 bool Channel::receive(int milliseconds) {
   errno = 0;

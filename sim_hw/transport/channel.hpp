@@ -7,6 +7,8 @@
 #include <string>
 
 #include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/drag_command.hpp"
+#include "sim_hw/messages/drag_state.hpp"
 #include "sim_hw/messages/impulse_state.hpp"
 #include "sim_hw/messages/loop_command.hpp"
 #include "sim_hw/messages/motion_command.hpp"
@@ -29,10 +31,14 @@ class Channel {
   void on_command(std::function<void(const LoopCommand&)> receive);
   void on_state(std::function<void(const ImpulseState&)> receive);
   void on_command(std::function<void(const MotionCommand&)> receive);
+  void on_state(std::function<void(const DragState&)> receive);
+  void on_command(std::function<void(const DragCommand&)> receive);
   void send(const DeviceState& state);
   void send(const LoopCommand& command);
   void send(const ImpulseState& state);
   void send(const MotionCommand& command);
+  void send(const DragState& state);
+  void send(const DragCommand& command);
 
   /// Waits for one message at most `milliseconds` and passes it on. False if none came.
   bool receive(int milliseconds);
@@ -46,6 +52,8 @@ class Channel {
   std::function<void(const LoopCommand&)> receive_command_;
   std::function<void(const ImpulseState&)> receive_impulse_;
   std::function<void(const MotionCommand&)> receive_motion_;
+  std::function<void(const DragState&)> receive_drag_;
+  std::function<void(const DragCommand&)> receive_dragged_;
   std::unique_ptr<lcm_t, Destroy> lcm_;
 };
 

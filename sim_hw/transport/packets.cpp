@@ -112,6 +112,27 @@ messages::motion_command to_packet(const MotionCommand& command) {
   return packet;
 }
 
+messages::drag_state to_packet(const DragState& state) {
+  messages::drag_state packet{};
+  packet.cycle = state.cycle;
+  packet.vertex = state.vertex;
+  std::copy(std::begin(state.travel), std::end(state.travel), packet.travel);
+  return packet;
+}
+
+messages::drag_command to_packet(const DragCommand& command) {
+  messages::drag_command packet{};
+  packet.cycle = command.cycle;
+  packet.work = command.work;
+  packet.budget = command.budget;
+  packet.status = command.status;
+  packet.cycles = command.cycles;
+  packet.residual = command.residual;
+  std::copy(std::begin(command.force), std::end(command.force), packet.force);
+  packet.digest = command.digest;
+  return packet;
+}
+
 std::optional<ImpulseState> from_packet(const messages::impulse_state& packet) {
   return ImpulseState{packet.cycle, packet.impulse};
 }
@@ -129,6 +150,21 @@ std::optional<MotionCommand> from_packet(const messages::motion_command& packet)
                         .num_modes = static_cast<std::uint32_t>(packet.num_modes)};
   std::copy(packet.coordinate.begin(), packet.coordinate.end(), command.coordinate);
   return command;
+}
+
+std::optional<DragState> from_packet(const messages::drag_state& packet) {
+  return DragState{packet.cycle, packet.vertex, {packet.travel[0], packet.travel[1], packet.travel[2]}};
+}
+
+std::optional<DragCommand> from_packet(const messages::drag_command& packet) {
+  return DragCommand{.cycle = packet.cycle,
+                     .work = packet.work,
+                     .budget = packet.budget,
+                     .status = packet.status,
+                     .cycles = packet.cycles,
+                     .residual = packet.residual,
+                     .force = {packet.force[0], packet.force[1], packet.force[2]},
+                     .digest = packet.digest};
 }
 
 }  // namespace greenloop

@@ -3,10 +3,14 @@
 #include <optional>
 
 #include "greenloop/messages/device_state.hpp"
+#include "greenloop/messages/drag_command.hpp"
+#include "greenloop/messages/drag_state.hpp"
 #include "greenloop/messages/impulse_state.hpp"
 #include "greenloop/messages/loop_command.hpp"
 #include "greenloop/messages/motion_command.hpp"
 #include "sim_hw/messages/device_state.hpp"
+#include "sim_hw/messages/drag_command.hpp"
+#include "sim_hw/messages/drag_state.hpp"
 #include "sim_hw/messages/impulse_state.hpp"
 #include "sim_hw/messages/loop_command.hpp"
 #include "sim_hw/messages/motion_command.hpp"
@@ -20,6 +24,8 @@ namespace greenloop {
 [[nodiscard]] messages::loop_command to_packet(const LoopCommand& command);
 [[nodiscard]] messages::impulse_state to_packet(const ImpulseState& state);
 [[nodiscard]] messages::motion_command to_packet(const MotionCommand& command);
+[[nodiscard]] messages::drag_state to_packet(const DragState& state);
+[[nodiscard]] messages::drag_command to_packet(const DragCommand& command);
 
 /// None if it has more tools than max_tools, or fewer than none.
 [[nodiscard]] std::optional<DeviceState> from_packet(const messages::device_state& packet);
@@ -32,5 +38,11 @@ namespace greenloop {
 
 /// None if it has more modes than layout::most_modes, or fewer than none.
 [[nodiscard]] std::optional<MotionCommand> from_packet(const messages::motion_command& packet);
+
+/// Any; what vertex it names is the loop's to judge.
+[[nodiscard]] std::optional<DragState> from_packet(const messages::drag_state& packet);
+
+/// Any.
+[[nodiscard]] std::optional<DragCommand> from_packet(const messages::drag_command& packet);
 
 }  // namespace greenloop
