@@ -86,6 +86,8 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options, std::string&
          },
          "What the hands do (default: all), or impulses, for a model of motions")
       ->check(CLI::IsMember(script_choices()));
+  app.add_option("--motions", options.motions,
+                 "A model of motions of the same surface, .gloop: the body vibrates while it is touched");
   app.add_option("--friction", options.friction, "Coulomb's coefficient between tools and body")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
@@ -160,6 +162,7 @@ void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs
 
 void require_outputs(const greenloop::SessionOptions& options, const Outputs& outputs) {
   greenloop::CommandFiles files{.inputs = {{"the model", options.model}}, .outputs = {}};
+  if (!options.motions.empty()) files.inputs.push_back({"the motions", options.motions});
   if (!outputs.trace.empty()) files.outputs.push_back({"the trace", outputs.trace});
   if (!outputs.stability.empty()) files.outputs.push_back({"the stability map", outputs.stability});
   if (!outputs.snapshot.empty()) files.outputs.push_back({"the snapshot", outputs.snapshot});
@@ -206,8 +209,8 @@ void require_motion_options(const CLI::App& app, const greenloop::SessionOptions
     throw std::runtime_error(options.model.string() + ": --script " + outputs.script +
                              ": a model of motions has impulses alone");
   }
-  for (const char* const option : {"--friction", "--tools", "--passive", "--hand", "--gain", "--delay", "--fast-rate",
-                                   "--snapshot", "--stability"}) {
+  for (const char* const option : {"--motions", "--friction", "--tools", "--passive", "--hand", "--gain", "--delay",
+                                   "--fast-rate", "--snapshot", "--stability"}) {
     if (app.get_option(option)->count() > 0) {
       throw std::runtime_error(options.model.string() + ": " + option + ": a model of motions is not touched");
     }
@@ -231,6 +234,9 @@ int run(const CLI::App& app, greenloop::SessionOptions options, const Outputs& o
   }
   if (outputs.script == impulses) {
     throw std::runtime_error(options.model.string() + ": --script impulses: this is no model of motions");
+  }
+  if (!outputs.stability.empty() && !options.motions.empty()) {
+    throw std::runtime_error("--stability: it maps a body that stands still; leave --motions out");
   }
   if (!outputs.stability.empty()) return map_stability(options, outputs);
   greenloop::await_interruption();
