@@ -3,8 +3,8 @@
 namespace greenloop {
 
 ImpulseDevice::ImpulseDevice(const ImpulseDeviceSetup& setup)
-    : setup_(setup), arrival_(setup.faults), script_(setup.impulses, setup.rate, setup.seed) {
-  state_.impulse = script_.next(state_.cycle);
+    : setup_(setup), arrival_(setup.faults), schedule_(setup.impulses, setup.rate, setup.seed) {
+  state_.impulse = schedule_.next(state_.cycle);
 }
 
 void ImpulseDevice::apply(const MotionCommand& command) {
@@ -16,7 +16,7 @@ void ImpulseDevice::apply(const MotionCommand& command) {
   summary_.digest = command.digest;
   ++summary_.cycles;
   ++state_.cycle;
-  state_.impulse = script_.next(state_.cycle);
+  state_.impulse = schedule_.next(state_.cycle);
 }
 
 }  // namespace greenloop

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "sim_hw/device/command_arrival.hpp"
-#include "sim_hw/device/impulse_script.hpp"
+#include "sim_hw/device/impulse_schedule.hpp"
 #include "sim_hw/messages/impulse_state.hpp"
 #include "sim_hw/messages/motion_command.hpp"
 
@@ -17,7 +17,7 @@ struct ImpulseDeviceSetup {
   InjectedFaults faults;
 };
 
-/// Gives a scene of motions the impulses of a script. It advances one cycle per command.
+/// Gives a scene of motions the impulses of a schedule. It advances one cycle per command.
 class ImpulseDevice {
  public:
   using State = ImpulseState;
@@ -38,7 +38,7 @@ class ImpulseDevice {
  private:
   ImpulseDeviceSetup setup_;
   CommandArrival arrival_;
-  ImpulseScript script_;
+  ImpulseSchedule schedule_;
   ImpulseState state_;
   LinkSummary summary_;
 };

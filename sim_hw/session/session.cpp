@@ -107,7 +107,7 @@ SessionResult run_session(const SessionOptions& options) {
   const double device_rate = static_cast<double>(fast) * result.rate;
   if (fast > 1 && motions) throw std::runtime_error("--fast-rate: a local model knows no motions between steps");
   DeviceSetup setup = device_setup(options, device_rate, surface, *model.view().info);
-  if (motions) setup.impulses = ImpulseScript(motions->impulses(), device_rate);
+  if (motions) setup.impulses = ImpulseSchedule(motions->impulses(), device_rate);
   HapticDevice device(setup);
   result.tools = device.state().num_tools;
   if (fast > 1 && result.tools > LocalModel::most_tools) {

@@ -1,15 +1,15 @@
-#include "sim_hw/device/impulse_script.hpp"
+#include "sim_hw/device/impulse_schedule.hpp"
 
 #include <algorithm>
 
 namespace greenloop {
 
-std::uint32_t ImpulseScript::below(std::uint32_t bound) {
+std::uint32_t ImpulseSchedule::below(std::uint32_t bound) {
   random_ = random_ * 6364136223846793005U + 1442695040888963407U;
   return static_cast<std::uint32_t>((random_ >> 33U) * bound >> 31U);
 }
 
-std::int32_t ImpulseScript::next(std::int64_t cycle) {
+std::int32_t ImpulseSchedule::next(std::int64_t cycle) {
   if (impulses_ == 0 || cycle < due_) return none;
   const auto impulse = static_cast<std::int32_t>(below(20) == 0 ? impulses_ : below(impulses_));
   if (burst_ > 0) {

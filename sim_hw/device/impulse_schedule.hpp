@@ -7,14 +7,14 @@ namespace greenloop {
 /// A person who pushes a scene of motions: an impulse every third of a second or so, now and then several in a row,
 /// while the last still dies out; one in twenty is none of the palette, and whether one may follow is not asked. The
 /// same in every run by its seed.
-class ImpulseScript {
+class ImpulseSchedule {
  public:
   static constexpr std::int32_t none = -1;
 
   /// Of no impulse.
-  ImpulseScript() = default;
+  ImpulseSchedule() = default;
   /// impulses: of the palette, at least 1; rate: Hz.
-  ImpulseScript(std::uint32_t impulses, double rate, std::uint64_t seed = 1)
+  ImpulseSchedule(std::uint32_t impulses, double rate, std::uint64_t seed = 1)
       : impulses_(impulses), rate_(rate), random_(2 * seed + 1) {}
 
   /// What is given in a cycle, or `none`; to be asked of 0, 1, 2, ... once each.
