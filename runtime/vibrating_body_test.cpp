@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -23,7 +24,7 @@ ImpulseResponseData motion_of(const TestModel& touched, std::uint32_t further = 
   ImpulseResponseData data = synthetic_motion({.vertices = nodes + further, .modes = 6, .alternating = true});
   for (std::uint32_t i = 0; i < nodes; ++i) {
     const float* const x = node_record(touched.view(), i).position;
-    std::copy_n(x, 3, data.shape.begin() + 3 * (further + nodes - 1 - i));
+    std::copy_n(x, 3, data.shape.begin() + std::ptrdiff_t{3} * (further + nodes - 1 - i));
   }
   for (std::uint32_t i = 0; i < 3 * further; ++i) data.shape[i] = 10;
   return data;
@@ -248,7 +249,7 @@ TEST_CASE("the C functions give the same bits") {
     std::size_t nodes = 0, tools = 0;
     const float* const u = greenloop_vibrating_body_displacement(created.body, &nodes);
     REQUIRE(nodes == vibrating.body.displacement().size());
-    for (std::size_t i = 0; i < nodes; ++i) REQUIRE(u[4 * i + 2] == vibrating.body.displacement()[i].z);
+    for (std::size_t i = 0; i < nodes; ++i) REQUIRE(u[std::size_t{4} * i + 2] == vibrating.body.displacement()[i].z);
     REQUIRE(greenloop_vibrating_body_offset(created.body, &nodes)[0] == vibrating.body.offset()[0].x);
     const auto* felt = greenloop_contact_body_tools(greenloop_vibrating_body_contact(created.body), &tools);
     REQUIRE(felt[0].force[2] == vibrating.body.contact().tools()[0].force.z);
