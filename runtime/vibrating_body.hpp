@@ -41,9 +41,9 @@ class VibratingBody {
   [[nodiscard]] static Requirement required(const Model& touched, const Model& moving, const Limits& limits) noexcept;
 
   /// Carves `memory` with the routine that `required` counts with. Refuses, besides what the two bodies refuse,
-  /// mismatched_models: a node of `touched` has no vertex of `moving` at its place, to 1e-5 of the diagonal of its
-  /// bounding box; further vertices are allowed. The bytes of both models and `memory` must outlive the body. Start-up;
-  /// work: n log n in the vertices.
+  /// mismatched_models: a node of `touched` has no vertex of `moving` at rest at its place, to 1e-3 of the diagonal of
+  /// its bounding box; further vertices are allowed. The bytes of both models and `memory` must outlive the body.
+  /// Start-up; work: n log n in the vertices.
   [[nodiscard]] static Created create(const Model& touched, const Model& moving, const Limits& limits,
                                       std::span<std::byte> memory) noexcept;
 
@@ -57,7 +57,7 @@ class VibratingBody {
 
   [[nodiscard]] ContactBody& contact() noexcept;  ///< for its answers; its steps and `carry` are this one's
   [[nodiscard]] const ImpulseResponse& motion() const noexcept;  ///< for `may_follow`
-  /// [nodes] m, x y z 0, as of the last step: of the motion alone, and the sum of that and the contacts'.
+  /// [nodes] m, x y z 0, as of the last step: from rest, of the motion alone, and the sum of that and the contacts'.
   [[nodiscard]] std::span<const Vec4> offset() const noexcept;
   [[nodiscard]] std::span<const Vec4> displacement() const noexcept;
 
