@@ -243,13 +243,13 @@ TEST_CASE("every code has a text of its own") {
   for (int rule = GREENLOOP_RULE_OK; rule <= GREENLOOP_RULE_INCONSISTENT; ++rule) {
     texts.insert(greenloop_rule_text(static_cast<greenloop_rule>(rule)));
   }
-  for (int error = GREENLOOP_CREATE_OK; error <= GREENLOOP_CREATE_UNSUPPORTED_MODEL; ++error) {
+  for (int error = GREENLOOP_CREATE_OK; error <= GREENLOOP_CREATE_MISMATCHED_MODELS; ++error) {
     texts.insert(greenloop_create_error_text(static_cast<greenloop_create_error>(error)));
   }
   for (int status = GREENLOOP_OK; status <= GREENLOOP_HELD_ILLEGAL_IMPULSE; ++status) {
     texts.insert(greenloop_status_text(static_cast<greenloop_status>(status)));
   }
-  CHECK(texts.size() == (GREENLOOP_RULE_INCONSISTENT + 1) + (GREENLOOP_CREATE_UNSUPPORTED_MODEL + 1) +
+  CHECK(texts.size() == (GREENLOOP_RULE_INCONSISTENT + 1) + (GREENLOOP_CREATE_MISMATCHED_MODELS + 1) +
                             (GREENLOOP_HELD_ILLEGAL_IMPULSE + 1));
   CHECK(std::string(greenloop_rule_text(static_cast<greenloop_rule>(GREENLOOP_RULE_INCONSISTENT + 1))) == "unknown");
   greenloop_model none;

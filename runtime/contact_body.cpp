@@ -184,9 +184,22 @@ std::uint64_t most_touching_work(const TouchedBody& body, std::span<const Tool> 
   const std::uint64_t contacts = body.max_contacts, whole = body.search.find_work(body.deformed, tools);
   std::uint64_t points = 0;
   for (const Tool& tool : tools) points += tool.shape.check() == Shape::Error::none ? tool.shape.point_count() : 0;
-  return body.deformed.update_work() + (whole < body.search_work ? whole : body.search_work) +
+  const std::uint64_t carrying = body.carried != nullptr ? body.nodes * carried_price : 0;
+  return carrying + body.deformed.update_work() + (whole < body.search_work ? whole : body.search_work) +
          tools.size() * tool_price + contacts * contact_price +
          most_choosing(contacts, CandidateSearch::most_places * points);
+}
+
+// Displacements and what the surface is carried by. False: one is not finite.
+bool add_offset(const TouchedBody& body) {
+  Vec4 zero;  // not a number where one was not finite
+  for (std::uint32_t i = 0; i < body.nodes; ++i) {
+    const Vec4 &u = body.displacement[i], &offset = body.offset[i];
+    const Vec4 sum{u.x + offset.x, u.y + offset.y, u.z + offset.z, u.w + offset.w};
+    body.carried[i] = sum;
+    zero = {zero.x + 0 * sum.x, zero.y + 0 * sum.y, zero.z + 0 * sum.z, zero.w + 0 * sum.w};
+  }
+  return zero.x == 0 && zero.y == 0 && zero.z == 0 && zero.w == 0;
 }
 
 ContactBody::StepReport held(Status status) {
@@ -203,9 +216,11 @@ ContactBody::StepReport ContactBody::step(std::span<const ToolInput> tools, cons
   TouchedBody& body = *body_;
   if (tools.size() > body.max_tools) return held(Status::held_out_of_range);
   if (budget.work < body.least_work) return held(Status::held_over_budget);
+  const bool is_carried = !body.offset.empty();
+  if (is_carried && !add_offset(body)) return held(Status::held_not_finite);
   const std::span<const Tool> shapes = put_tools(tools, body);
-  std::uint64_t work = tools.size() * tool_price;
-  body.deformed.update({body.displacement, body.nodes}, work);
+  std::uint64_t work = tools.size() * tool_price + (is_carried ? body.nodes * carried_price : 0);
+  body.deformed.update({is_carried ? body.carried : body.displacement, body.nodes}, work);
   const CandidateSearch::Found found = body.search.find(body.deformed, shapes, work, work + body.search_work);
   for (std::uint32_t t = 0; t < tools.size(); ++t) {
     body.last_placement[t] = body.placement[t];
@@ -284,6 +299,14 @@ void ContactBody::forget(std::uint32_t tool) noexcept {
 void ContactBody::surface_friction(std::span<const float> factor) noexcept {
   if (factor.empty() || factor.size() == body_->nodes) body_->factor = factor;
 }
+
+bool ContactBody::carry(std::span<const Vec4> offset) noexcept {
+  const bool fits = offset.empty() || (body_->carried != nullptr && offset.size() == body_->nodes);
+  if (fits) body_->offset = offset;
+  return fits;
+}
+
+const Surface& ContactBody::surface() const noexcept { return body_->surface; }
 
 std::uint64_t ContactBody::local_model(bool turns, float length, LocalModel& model) noexcept {
   TouchedBody& body = *body_;

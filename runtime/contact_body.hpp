@@ -10,6 +10,7 @@
 #include "runtime/local_model.hpp"
 #include "runtime/loop.hpp"
 #include "runtime/model.hpp"
+#include "runtime/surface.hpp"
 #include "runtime/vec.hpp"
 
 namespace greenloop {
@@ -30,6 +31,7 @@ class ContactBody {
     double rigid_stiffness = 0;     ///< N/m, of places that cannot move; 0: what the model's material has over 1 mm
     std::uint64_t search_work = 0;  ///< units that looking for contacts may take: 0 is what suffices for max_contacts
                                     ///< of them and tools that do not leap, of no more than about ten faces
+    bool carried = false;           ///< whether the surface may be carried: `carry`
   };
 
   /// One step's tool.
@@ -141,6 +143,16 @@ class ContactBody {
   /// between steps. Empty: 1 everywhere; ignored if there are not as many as nodes. One that is negative or not finite
   /// is refused by the steps in which a tool may touch there, as a tool's own. For the loop; constant work.
   void surface_friction(std::span<const float> factor) noexcept;
+
+  /// The surface at rest moves by itself: to where the model has it and `offset`, [nodes] m, x y z 0. Tools touch it
+  /// there, and what it moves by between two steps is motion against them, as their own is. It is read in every step
+  /// until the next call; the memory is the caller's, who may change it between steps. Empty: it stands still again.
+  /// False, and nothing changes: there are not as many as nodes, or Limits::carried is false. Steps with one that is
+  /// not finite are refused: held_not_finite. For the loop; constant work.
+  bool carry(std::span<const Vec4> offset) noexcept;
+
+  /// The surface at rest, of the finest level; in the body's memory. Constant work.
+  [[nodiscard]] const Surface& surface() const noexcept;
 
   /// How the tools' forces and torques follow their poses between this step and the next (docs/touching.md, "A faster
   /// loop"). turns: false: poses do not turn meanwhile, which is half of the work. length: m, above 0, what a turn

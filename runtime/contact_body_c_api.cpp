@@ -4,6 +4,7 @@
 #include <new>
 #include <type_traits>
 
+#include "runtime/c_body_values.hpp"
 #include "runtime/c_values.hpp"
 #include "runtime/contact_body.hpp"
 #include "runtime/greenloop_contact.h"
@@ -81,45 +82,12 @@ Shape shape_of(const greenloop_shape& shape) {
   return Shape::polyhedron({});
 }
 
-ContactBody::ToolInput tool_of(const greenloop_tool& tool) {
-  const double *const x = tool.position, *const q = tool.quaternion;
-  return {{shape_of(tool.shape), {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}}}, tool.friction, tool.compliance};
-}
-
-// The tools of a step; of too many one more than any body takes, so that it refuses them.
-struct Tools {
-  static constexpr std::size_t most = 16;
-
-  Tools(const greenloop_tool* tools, std::size_t tool_count) : count(tool_count <= most ? tool_count : most + 1) {
-    for (std::size_t t = 0; t < count; ++t) tool[t] = tool_of(tools[t]);
-  }
-  [[nodiscard]] std::span<const ContactBody::ToolInput> all() const { return {tool, count}; }
-
-  std::size_t count;
-  ContactBody::ToolInput tool[most + 1];
-};
-
-ContactBody::Limits touched_limits_of(const greenloop_contact_body_limits& limits) {
-  ContactBody::Limits same;
-  same.elastostatic = limits_of(limits.elastostatic);
-  same.max_tools = limits.max_tools == 0 ? same.max_tools : limits.max_tools;
-  same.max_points = limits.max_points == 0 ? same.max_points : limits.max_points;
-  same.margin = limits.margin;
-  same.rigid_stiffness = limits.rigid_stiffness;
-  same.search_work = limits.search_work;
-  return same;
-}
-
 ContactBody touched_in(const greenloop_contact_body* body) {
   return std::bit_cast<ContactBody>(reinterpret_cast<const TouchedBody*>(body));
 }
 
 const LocalModel& model_at(const greenloop_local_model* model) {
   return *std::launder(reinterpret_cast<const LocalModel*>(model));
-}
-
-Elastostatic::Loads acting(const greenloop_loads* loads) {
-  return loads == nullptr ? Elastostatic::Loads{} : loads_of(*loads);
 }
 
 greenloop_unilateral_report push_report_of(const Elastostatic::UnilateralReport& report) {
@@ -149,6 +117,40 @@ constexpr const char* tool_fault_texts[] = {
 };
 
 }  // namespace
+
+ContactBody::ToolInput tool_of(const greenloop_tool& tool) noexcept {
+  const double *const x = tool.position, *const q = tool.quaternion;
+  return {{shape_of(tool.shape), {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}}}, tool.friction, tool.compliance};
+}
+
+ContactBody::Limits touched_limits_of(const greenloop_contact_body_limits& limits) noexcept {
+  ContactBody::Limits same;
+  same.elastostatic = limits_of(limits.elastostatic);
+  same.max_tools = limits.max_tools == 0 ? same.max_tools : limits.max_tools;
+  same.max_points = limits.max_points == 0 ? same.max_points : limits.max_points;
+  same.margin = limits.margin;
+  same.rigid_stiffness = limits.rigid_stiffness;
+  same.search_work = limits.search_work;
+  same.carried = limits.carried != 0;
+  return same;
+}
+
+Elastostatic::Loads acting(const greenloop_loads* loads) noexcept {
+  return loads == nullptr ? Elastostatic::Loads{} : loads_of(*loads);
+}
+
+greenloop_contact_body_report touch_report_of(const ContactBody::StepReport& report) noexcept {
+  const ContactBody::Place& place = report.left_out_place;
+  return {push_report_of(static_cast<const Elastostatic::UnilateralReport&>(report)),
+          report.touching_work,
+          report.left_out,
+          report.deepest_left_out,
+          place.tool,
+          {place.node[0], place.node[1], place.node[2]},
+          {place.weight[0], place.weight[1], place.weight[2]},
+          report.unfinished};
+}
+
 }  // namespace greenloop
 
 using namespace greenloop;
@@ -210,15 +212,7 @@ uint64_t greenloop_contact_body_touching_work(const greenloop_contact_body* body
 greenloop_contact_body_report greenloop_contact_body_step(greenloop_contact_body* body, const greenloop_tool* tools,
                                                           size_t count, const greenloop_loads* loads, uint64_t work) {
   const ContactBody::StepReport report = touched_in(body).step(Tools(tools, count).all(), acting(loads), {work});
-  const ContactBody::Place& place = report.left_out_place;
-  return {push_report_of(static_cast<const Elastostatic::UnilateralReport&>(report)),
-          report.touching_work,
-          report.left_out,
-          report.deepest_left_out,
-          place.tool,
-          {place.node[0], place.node[1], place.node[2]},
-          {place.weight[0], place.weight[1], place.weight[2]},
-          report.unfinished};
+  return touch_report_of(report);
 }
 
 const greenloop_tool_answer* greenloop_contact_body_tools(const greenloop_contact_body* body, size_t* count) {
@@ -252,6 +246,11 @@ void greenloop_contact_body_forget(greenloop_contact_body* body, uint32_t tool) 
 
 void greenloop_contact_body_surface_friction(greenloop_contact_body* body, const float* factor, size_t nodes) {
   touched_in(body).surface_friction({factor, factor == nullptr ? 0 : nodes});
+}
+
+int greenloop_contact_body_carry(greenloop_contact_body* body, const float* offset, size_t nodes) {
+  const auto* const first = reinterpret_cast<const Vec4*>(offset);
+  return touched_in(body).carry({first, offset == nullptr ? 0 : nodes}) ? 1 : 0;
 }
 
 uint64_t greenloop_contact_body_local_model(greenloop_contact_body* body, uint8_t turns, float length,

@@ -75,7 +75,8 @@ typedef enum greenloop_create_error {
   GREENLOOP_CREATE_ARENA_TOO_SMALL,
   GREENLOOP_CREATE_ARENA_MISALIGNED,
   GREENLOOP_CREATE_BAD_LIMITS,
-  GREENLOOP_CREATE_UNSUPPORTED_MODEL
+  GREENLOOP_CREATE_UNSUPPORTED_MODEL,
+  GREENLOOP_CREATE_MISMATCHED_MODELS
 } greenloop_create_error;
 
 /* What came of a step. On GREENLOOP_OK and GREENLOOP_COARSER the buffers hold the answer; on any other nothing was

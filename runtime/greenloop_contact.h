@@ -158,6 +158,7 @@ typedef struct greenloop_contact_body_limits {
   double margin;          /* m, how near the surface is looked at; 0: a quarter of its mean edge length */
   double rigid_stiffness; /* N/m, of places that cannot move; 0: what the model's material has over 1 mm */
   uint64_t search_work;   /* units that looking for contacts may take; 0: what usually suffices */
+  int carried;            /* 1: greenloop_contact_body_carry may be called */
 } greenloop_contact_body_limits;
 
 typedef struct greenloop_contact_body_requirement {
@@ -217,6 +218,11 @@ void greenloop_contact_body_forget(greenloop_contact_body* body, uint32_t tool);
 /* Factors on the tools' coefficients of friction, of each node, 0 or more, read in every step until the next call; the
  * memory is the caller's, who may change them between steps. Null: 1 everywhere. For the loop. */
 void greenloop_contact_body_surface_friction(greenloop_contact_body* body, const float* factor, size_t nodes);
+
+/* The surface at rest moves by itself, by 4 floats per node [m], x y z 0, read in every step until the next call; the
+ * memory is the caller's. Null: it stands still. 1; or 0, and nothing changes, with another number of nodes than the
+ * model's or without greenloop_contact_body_limits.carried. For the loop. */
+int greenloop_contact_body_carry(greenloop_contact_body* body, const float* offset, size_t nodes);
 
 /* ---- A faster loop, and a passive one. ---- */
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "runtime/c_body_values.hpp"
 #include "runtime/c_values.hpp"
 #include "runtime/greenloop_impulse.h"
 #include "runtime/impulse_response.hpp"
@@ -18,10 +19,6 @@ ImpulseResponse moving_in(const greenloop_impulse_response* body) {
   return std::bit_cast<ImpulseResponse>(reinterpret_cast<const MovingBody*>(body));
 }
 
-ImpulseResponse::Limits moving_limits_of(const greenloop_impulse_response_limits& limits) {
-  return {limits.rate, limits.stretch == 0 ? 1.0F : limits.stretch, limits.blend_rate};
-}
-
 std::span<float> floats(float* first, std::uint32_t count) { return {first, first == nullptr ? 0 : count}; }
 
 std::span<Vec3> vectors(float* first, std::uint32_t count) {
@@ -34,6 +31,27 @@ const layout::ImpulseInfo* info_of(const greenloop_model* model) {
 }
 
 }  // namespace
+
+ImpulseResponse::Limits moving_limits_of(const greenloop_impulse_response_limits& limits) noexcept {
+  return {limits.rate, limits.stretch == 0 ? 1.0F : limits.stretch, limits.blend_rate};
+}
+
+greenloop_impulse_response_report motion_report_of(const ImpulseResponse::StepReport& report) noexcept {
+  return {static_cast<greenloop_status>(report.status),
+          report.work,
+          report.orbit,
+          report.row,
+          report.impulse,
+          report.modes,
+          report.planes,
+          report.truncation_error,
+          report.distance,
+          report.blend,
+          report.at_rest ? 1 : 0,
+          report.transfer_modes,
+          report.transfer_error};
+}
+
 }  // namespace greenloop
 
 using namespace greenloop;
@@ -94,17 +112,5 @@ greenloop_impulse_response_report greenloop_impulse_response_step(greenloop_impu
                                               vectors(buffers.colour, buffers.vertices),
                                               reinterpret_cast<const Light*>(buffers.light)};
   const ImpulseResponse::StepReport report = moving_in(body).step(impulse, {work}, response);
-  return {static_cast<greenloop_status>(report.status),
-          report.work,
-          report.orbit,
-          report.row,
-          report.impulse,
-          report.modes,
-          report.planes,
-          report.truncation_error,
-          report.distance,
-          report.blend,
-          report.at_rest ? 1 : 0,
-          report.transfer_modes,
-          report.transfer_error};
+  return motion_report_of(report);
 }

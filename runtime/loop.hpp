@@ -64,6 +64,7 @@ enum class CreateError : std::uint8_t {
   arena_misaligned,
   bad_limits,
   unsupported_model,  ///< of another problem, or beyond what the solver holds: see its `create`
+  mismatched_models,  ///< of two models: they are not of the same surface
 };
 
 /// What `create` says of the memory it was given.

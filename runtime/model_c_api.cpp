@@ -39,7 +39,8 @@ static_assert(same(GREENLOOP_CREATE_OK, CreateError::none) &&
               same(GREENLOOP_CREATE_ARENA_TOO_SMALL, CreateError::arena_too_small) &&
               same(GREENLOOP_CREATE_ARENA_MISALIGNED, CreateError::arena_misaligned) &&
               same(GREENLOOP_CREATE_BAD_LIMITS, CreateError::bad_limits) &&
-              same(GREENLOOP_CREATE_UNSUPPORTED_MODEL, CreateError::unsupported_model));
+              same(GREENLOOP_CREATE_UNSUPPORTED_MODEL, CreateError::unsupported_model) &&
+              same(GREENLOOP_CREATE_MISMATCHED_MODELS, CreateError::mismatched_models));
 static_assert(same(GREENLOOP_OK, Status::ok) && same(GREENLOOP_COARSER, Status::coarser) &&
               same(GREENLOOP_HELD_NOT_FINITE, Status::held_not_finite) &&
               same(GREENLOOP_HELD_OUT_OF_RANGE, Status::held_out_of_range) &&
@@ -72,6 +73,7 @@ constexpr const char* create_error_texts[] = {
     "the arena is not 64-byte aligned",
     "the limits are out of range: 1..4096 contacts, 1..1024 cached factors, at most 256 cycles of a glide",
     "the model is of another problem, not of a subdivided triangulation, too large, or a force reaches too much of it",
+    "the two models are not of the same surface: a node of one has no vertex of the other at its place",
 };
 
 constexpr const char* status_texts[] = {

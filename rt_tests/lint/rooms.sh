@@ -37,7 +37,7 @@ downwards() {  # downwards FOLDER ROOM...
 }
 downwards formats layout layout.hpp view view.hpp stored_blocks.hpp ready verify.hpp verify output write transport mesh store trajectory
 downwards runtime loop.hpp constraint.hpp vec.hpp light.hpp model.hpp mask.hpp stiffness.hpp price_list.h prices.hpp local_model.hpp memory algebra wavelet compliance factor friction elastostatic.hpp \
-  elastostatic impulse_response.hpp impulse_response multigrid.hpp multigrid surface.hpp surface finer_surface.hpp display bound_mesh.hpp look.hpp contact contact_body.hpp contact_body relief.hpp \
+  elastostatic impulse_response.hpp impulse_response multigrid.hpp multigrid surface.hpp surface finer_surface.hpp display bound_mesh.hpp look.hpp contact contact_body.hpp contact_body vibrating_body.hpp relief.hpp \
   recorder.hpp recorder hosted
 downwards offline progress.hpp single_threaded_blas.hpp surface remesh wrap volume multigrid sources scene simulate reduce appearance compress pipeline report figures cli
 downwards offline/compress wavelet encode measure search

@@ -49,6 +49,7 @@ TouchingWork touching_work_of(const Model& model, const ContactBody::Limits& lim
   work.whole =
       surface.update_work() + work.search + limits.max_tools * tool_price + contacts * contact_price +
       most_choosing(contacts, std::uint64_t{CandidateSearch::most_places} * limits.max_tools * limits.max_points);
+  if (limits.carried) work.whole += model.node_count() * carried_price;
   return work;
 }
 
@@ -78,6 +79,7 @@ void carve_arrays(Arena& arena, const Model& model, const ContactBody::Limits& l
   body.answered = arena.take<ContactBody::Contact>(body.max_contacts);
   body.tool_answer = arena.take<ContactBody::ToolAnswer>(limits.max_tools);
   body.displacement = arena.take_zeroed<Vec4>(body.nodes);
+  if (limits.carried) body.carried = arena.take<Vec4>(body.nodes);
   body.grips.carve(arena, body.max_contacts);
 }
 

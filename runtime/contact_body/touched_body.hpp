@@ -31,6 +31,7 @@ struct TouchedBody {
   Placement* last_placement = nullptr;      ///< [max_tools] of the step before, after its answer
   Double3* sag = nullptr;                   ///< [max_tools] m, of the last answer
   std::span<const float> factor;            ///< [nodes] on coefficients of friction, or empty
+  std::span<const Vec4> offset;             ///< [nodes] m, that the surface is carried by, or empty
   ToolPoint* point = nullptr;               ///< [max_contacts] of the last answer
   Candidate* candidate = nullptr;           ///< [max_contacts] of this step, by their keys
   UnilateralContact* contact = nullptr;     ///< [max_contacts] the same
@@ -53,6 +54,7 @@ struct TouchedBody {
   ContactBody::ToolAnswer* tool_answer = nullptr;  ///< [max_tools]
   std::uint32_t tool_count = 0;
   Vec4* displacement = nullptr;  ///< [nodes] m
+  Vec4* carried = nullptr;       ///< [nodes] m, offset and displacement; null: it is not carried
   Grips grips;
 };
 

@@ -37,9 +37,18 @@ void ControlLoop::cycle(const DeviceState& state) noexcept {
   if (state.cycle == setup_.overrun_cycle) {
     overrun();
   } else {
-    report_ = body_->step(tools(), loads_, budget_);
+    report_ = step(budget_);
   }
   keep();
+}
+
+/// Of the body, and of its motions if it has some; work of both.
+ContactBody::StepReport ControlLoop::step(Budget budget) noexcept {
+  if (setup_.vibrating == nullptr) return body_->step(tools(), loads_, budget);
+  VibratingBody::StepReport report = setup_.vibrating->step(impulse_, tools(), loads_, budget);
+  motion_ = report.motion;
+  report.contact.work = report.work;
+  return report.contact;
 }
 
 /// What the cycles until the next step go by.
@@ -81,6 +90,7 @@ void ControlLoop::refer() noexcept {
 /// False, with the tools as they were, if a number is not finite.
 bool ControlLoop::read(const DeviceState& state) noexcept {
   cycle_ = state.cycle;
+  impulse_ = static_cast<std::uint32_t>(state.impulse);  // -1 is no_impulse
   const double scale = norm({state.origin[0], state.origin[1], state.origin[2]}) + std::abs(state.resolution) +
                        norm({state.gravity[0], state.gravity[1], state.gravity[2]});
   if (!(scale < largest_place)) return false;
@@ -109,7 +119,7 @@ void ControlLoop::overrun() noexcept {
   constexpr Budget unlimited{std::numeric_limits<std::uint64_t>::max() / 2};
   std::uint64_t work = 0;
   do {
-    report_ = body_->step(tools(), loads_, unlimited);
+    report_ = step(unlimited);
     work += std::max<std::uint64_t>(report_.work, 1);
   } while (work <= budget_.work);
   report_.work = work;

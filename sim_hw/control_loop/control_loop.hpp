@@ -6,6 +6,7 @@
 
 #include "runtime/algebra/fnv1a.hpp"
 #include "runtime/contact_body.hpp"
+#include "runtime/vibrating_body.hpp"
 #include "sim_hw/messages/device_state.hpp"
 #include "sim_hw/messages/loop_command.hpp"
 
@@ -20,9 +21,10 @@ struct LoopSetup {
   Budget starved{};         ///< of every fourth thousand cycles instead; 0: they are as the others
   std::int64_t fast = 1;    ///< the body is stepped in every so-manieth cycle; in the others its local model is
                             ///< evaluated, of at most LocalModel::most_tools tools
-  ContactBody* reference = nullptr;  ///< another body, which refer() steps in every cycle
-  std::int64_t field_every = 1;      ///< the displacement of the whole body is rendered in every so-manieth cycle
-  std::int64_t overrun_cycle = -1;   ///< negative control: this cycle spends more than its budget; -1: none does
+  VibratingBody* vibrating = nullptr;  ///< that the body is the contacts of, which is then given the impulses, too
+  ContactBody* reference = nullptr;    ///< another body, which refer() steps in every cycle
+  std::int64_t field_every = 1;        ///< the displacement of the whole body is rendered in every so-manieth cycle
+  std::int64_t overrun_cycle = -1;     ///< negative control: this cycle spends more than its budget; -1: none does
 };
 
 /// The loop proper: what happens between the newest state of the device and the command that answers it.
@@ -65,13 +67,19 @@ class ControlLoop {
   /// Units that finding what touches the last cycle's tools takes at most.
   [[nodiscard]] std::uint64_t touching_bound() const noexcept { return body_->touching_work(tools()); }
   [[nodiscard]] const ContactBody::Energy& energy() const noexcept { return body_->energy(); }
-  /// [nodes] m, as of the last cycle that was answered.
-  [[nodiscard]] std::span<const Vec4> field() const noexcept { return body_->displacement(); }
+  /// [nodes] m, as of the last cycle that was answered, motions and all.
+  [[nodiscard]] std::span<const Vec4> field() const noexcept {
+    return setup_.vibrating != nullptr ? setup_.vibrating->displacement() : body_->displacement();
+  }
+  /// Of a vibrating body, else as nothing moves.
+  [[nodiscard]] const ImpulseResponse::StepReport& motion() const noexcept { return motion_; }
+  [[nodiscard]] std::uint32_t impulse() const noexcept { return impulse_; }  ///< of the last cycle, or no_impulse
   [[nodiscard]] bool field_is_new() const noexcept { return field_is_new_; }
   [[nodiscard]] const LoopSetup& setup() const noexcept { return setup_; }
 
  private:
   [[nodiscard]] bool read(const DeviceState& state) noexcept;
+  [[nodiscard]] ContactBody::StepReport step(Budget budget) noexcept;
   void keep() noexcept;
   void follow() noexcept;
   void overrun() noexcept;
@@ -90,6 +98,8 @@ class ControlLoop {
   std::int64_t cycle_ = 0;
   bool field_is_new_ = false;
   ContactBody::StepReport report_;
+  ImpulseResponse::StepReport motion_;
+  std::uint32_t impulse_ = ImpulseResponse::no_impulse;
   Fnv1a digest_;
 };
 

@@ -47,6 +47,19 @@ void RunTally::add(const CycleRecord& record) noexcept {
   ++cycles;
 }
 
+void MotionsGiven::add(const ControlLoop& loop) noexcept {
+  const VibratingBody* const body = loop.setup().vibrating;
+  if (body == nullptr) return;
+  const Status status = loop.motion().status;
+  illegal += status == Status::held_illegal_impulse ? 1 : 0;
+  unknown += status == Status::held_out_of_range ? 1 : 0;
+  followed += answered(status) && loop.impulse() != ImpulseResponse::no_impulse ? 1 : 0;
+  coarser += status == Status::coarser ? 1 : 0;
+  for (const Vec4& u : body->offset()) {
+    offset = std::max(offset, norm({static_cast<double>(u.x), static_cast<double>(u.y), static_cast<double>(u.z)}));
+  }
+}
+
 RunLog::RunLog(std::size_t cycles, std::size_t nodes, bool keep) : largest_field_(4 * nodes) {
   records_.reserve(keep ? cycles : 0);
   cpu_us_.reserve(cycles);
@@ -74,6 +87,7 @@ void RunLog::add(const ControlLoop& loop, std::int64_t cycle, double cpu_us) noe
   }
   record.touching_bound = loop.touching_bound();
   tally_.add(record);
+  tally_.motions.add(loop);
   compare(loop);
   cpu_us_.push_back(static_cast<float>(cpu_us));
   if (records_.size() < records_.capacity()) records_.push_back(record);

@@ -53,6 +53,15 @@ struct FastLoop {
   [[nodiscard]] static double relative(double squares, double of) { return of > 0 ? std::sqrt(squares / of) : 0; }
 };
 
+/// What the motions of a vibrating body come to.
+struct MotionsGiven {
+  std::int64_t followed = 0, illegal = 0, unknown = 0;  ///< impulses; the last two were refused
+  std::int64_t coarser = 0;                             ///< cycles by fewer modes than the model has
+  double offset = 0;                                    ///< m, the farthest that a node moved by them
+
+  void add(const ControlLoop& loop) noexcept;
+};
+
 /// What all cycles of a run come to; a miss is a cycle that was CycleRecord::missed.
 struct RunTally : CycleTally {
   std::int64_t contact_cycles = 0;
@@ -68,6 +77,7 @@ struct RunTally : CycleTally {
   double handled = 0;                ///< J, the tools' work, in or out, summed over the cycles
   std::array<std::int64_t, layout::max_levels> at_level{};  ///< cycles by constraint level
   FastLoop fast;
+  MotionsGiven motions;
 
   void add(const CycleRecord& record) noexcept;
 };

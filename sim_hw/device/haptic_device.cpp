@@ -106,6 +106,7 @@ void HapticDevice::measure() {
           static_cast<std::int16_t>(encoder_counts(target.quaternion[i] * ToolState::unit, 1));
     }
   }
+  state_.impulse = setup_.impulses.next(state_.cycle);
   const Double3 gravity = setup_.gravity.at(time);
   state_.gravity[0] = gravity.x;
   state_.gravity[1] = gravity.y;

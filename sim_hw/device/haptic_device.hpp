@@ -8,6 +8,7 @@
 #include "sim_hw/body/body_surface.hpp"
 #include "sim_hw/device/command_arrival.hpp"
 #include "sim_hw/device/hand.hpp"
+#include "sim_hw/device/impulse_schedule.hpp"
 #include "sim_hw/device/motion_script.hpp"
 #include "sim_hw/device/script.hpp"
 #include "sim_hw/messages/device_state.hpp"
@@ -62,6 +63,7 @@ struct DeviceSetup {
   std::int64_t delay = 0;  ///< cycles that a command is rendered later than its own
   EnergyTank::Settings tank{.enabled = false};
   Tilt gravity;
+  ImpulseSchedule impulses;  ///< that the body's motions are given
 };
 
 /// A simulated haptic device: hands that pull its handles along a script, encoders, and motors that render the

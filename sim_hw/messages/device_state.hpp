@@ -21,6 +21,7 @@ struct DeviceState {
   double resolution = 0;        ///< m of the body per encoder count
   double origin[3] = {};        ///< m, where all counts are zero, in the frame of the body
   double gravity[3] = {};       ///< m/s^2, in the frame of the body
+  std::int32_t impulse = -1;    ///< of the palette of the body's motions, by its number; -1: none
   std::uint32_t num_tools = 0;  ///< 0..max_tools
   ToolState tools[max_tools] = {};
 };

@@ -1,30 +1,10 @@
 #include "sim_hw/motion/impulse_device.hpp"
 
-#include <algorithm>
-
 namespace greenloop {
 
 ImpulseDevice::ImpulseDevice(const ImpulseDeviceSetup& setup)
-    : setup_(setup), arrival_(setup.faults), random_(2 * setup.seed + 1) {
-  draw();
-}
-
-std::uint32_t ImpulseDevice::below(std::uint32_t bound) {
-  random_ = random_ * 6364136223846793005U + 1442695040888963407U;
-  return static_cast<std::uint32_t>((random_ >> 33U) * bound >> 31U);
-}
-
-void ImpulseDevice::draw() {
-  state_.impulse = -1;
-  if (state_.cycle < next_) return;
-  state_.impulse = static_cast<std::int32_t>(below(20) == 0 ? setup_.impulses : below(setup_.impulses));
-  if (burst_ > 0) {
-    --burst_;
-  } else if (below(6) == 0) {
-    burst_ = 3 + below(5);
-  }
-  const double apart = (burst_ > 0 ? 0.002 : 0.1) + (burst_ > 0 ? 0.02 : 0.5) * below(1U << 16U) * 0x1p-16;
-  next_ = state_.cycle + std::max<std::int64_t>(1, static_cast<std::int64_t>(apart * setup_.rate));
+    : setup_(setup), arrival_(setup.faults), schedule_(setup.impulses, setup.rate, setup.seed) {
+  state_.impulse = schedule_.next(state_.cycle);
 }
 
 void ImpulseDevice::apply(const MotionCommand& command) {
@@ -36,7 +16,7 @@ void ImpulseDevice::apply(const MotionCommand& command) {
   summary_.digest = command.digest;
   ++summary_.cycles;
   ++state_.cycle;
-  draw();
+  state_.impulse = schedule_.next(state_.cycle);
 }
 
 }  // namespace greenloop

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "sim_hw/device/command_arrival.hpp"
+#include "sim_hw/device/impulse_schedule.hpp"
 #include "sim_hw/messages/impulse_state.hpp"
 #include "sim_hw/messages/motion_command.hpp"
 
@@ -16,9 +17,7 @@ struct ImpulseDeviceSetup {
   InjectedFaults faults;
 };
 
-/// A person who pushes a scene of motions: an impulse every third of a second or so, now and then several in a row,
-/// while the last still dies out; one in twenty is none of the palette, and whether one may follow is not asked. The
-/// same in every run by its seed. It advances one cycle per command.
+/// Gives a scene of motions the impulses of a schedule. It advances one cycle per command.
 class ImpulseDevice {
  public:
   using State = ImpulseState;
@@ -37,14 +36,9 @@ class ImpulseDevice {
   [[nodiscard]] LinkSummary& summary() { return summary_; }
 
  private:
-  [[nodiscard]] std::uint32_t below(std::uint32_t bound);
-  void draw();
-
   ImpulseDeviceSetup setup_;
   CommandArrival arrival_;
-  std::uint64_t random_;
-  std::int64_t next_ = 0;    ///< cycle of the next impulse
-  std::uint32_t burst_ = 0;  ///< impulses that follow it in a row
+  ImpulseSchedule schedule_;
   ImpulseState state_;
   LinkSummary summary_;
 };

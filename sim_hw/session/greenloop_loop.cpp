@@ -89,6 +89,8 @@ void declare_run(CLI::App& app, greenloop::SessionOptions& options, std::string&
          },
          "What the hands do (default: all); impulses, for a model of motions; drag, for a multigrid model")
       ->check(CLI::IsMember(script_choices()));
+  app.add_option("--motions", options.motions,
+                 "A model of motions of the same surface, .gloop: the body vibrates while it is touched");
   app.add_option("--friction", options.friction, "Coulomb's coefficient between tools and body")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
@@ -164,6 +166,7 @@ void declare(CLI::App& app, greenloop::SessionOptions& options, Outputs& outputs
 
 void require_outputs(const greenloop::SessionOptions& options, const Outputs& outputs) {
   greenloop::CommandFiles files{.inputs = {{"the model", options.model}}, .outputs = {}};
+  if (!options.motions.empty()) files.inputs.push_back({"the motions", options.motions});
   if (!outputs.trace.empty()) files.outputs.push_back({"the trace", outputs.trace});
   if (!outputs.stability.empty()) files.outputs.push_back({"the stability map", outputs.stability});
   if (!outputs.snapshot.empty()) files.outputs.push_back({"the snapshot", outputs.snapshot});
@@ -212,7 +215,7 @@ void require_own_options(const CLI::App& app, const greenloop::SessionOptions& o
                              " alone");
   }
   for (const char* const option :
-       {"--friction", "--tools", "--passive", "--hand", "--gain", "--delay", "--fast-rate", "--stability"}) {
+       {"--motions", "--friction", "--tools", "--passive", "--hand", "--gain", "--delay", "--fast-rate", "--stability"}) {
     other_options.push_back(option);
   }
   for (const char* const option : other_options) {
@@ -258,6 +261,9 @@ int run(const CLI::App& app, greenloop::SessionOptions options, const Outputs& o
     if (outputs.script != script) continue;
     throw std::runtime_error(options.model.string() + ": --script " + script + ": this is no " +
                              (script == drag ? "multigrid model" : "model of motions"));
+  }
+  if (!outputs.stability.empty() && !options.motions.empty()) {
+    throw std::runtime_error("--stability: it maps a body that stands still; leave --motions out");
   }
   if (!outputs.stability.empty()) return map_stability(options, outputs);
   greenloop::await_interruption();

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,6 +12,8 @@
 #include "formats/testing/synthetic_model.hpp"
 #include "formats/testing/synthetic_motion.hpp"
 #include "formats/testing/temporary_folder.hpp"
+#include "runtime/model.hpp"
+#include "runtime/wavelet/domain.hpp"
 #include "sim_hw/session/testing/program_run.hpp"
 
 namespace greenloop {
@@ -131,6 +135,55 @@ TEST_CASE("what motions have not is refused by name, and impulses are for motion
         std::string::npos);
   CHECK(refusal({"--hand", "absent"}).find("--hand: not for a model of motions") != std::string::npos);
   CHECK(refusal({"--script", "impulses"}, "sphere.gloop").find("this is no model of motions") != std::string::npos);
+}
+
+/// Motions of the sphere's nodes.
+void write_vibration(const std::string& file) {
+  const ModelData sphere = synthetic_model({.levels = 2});
+  const AlignedBytes bytes(encode(sphere));
+  const auto opened = Model::open(bytes.span());
+  REQUIRE(opened);
+  const std::uint32_t nodes = opened.model.node_count();
+  ImpulseResponseData data = synthetic_motion({.vertices = nodes, .modes = 6, .alternating = true});
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    std::copy_n(node_record(opened.model.view(), i).position, 3, data.shape.begin() + std::ptrdiff_t{3} * i);
+  }
+  write_file(file, encode(data));
+}
+
+TEST_CASE("a body that vibrates is pressed and slid along: every cycle holds, impulses come with the tools' places") {
+  const std::string motions = workspace().file("vibration.gloop");
+  write_vibration(motions);
+  const auto run = [&](Words more, int expected = 0) {
+    more.insert(more.end(), {"--motions", motions, "--script", "slide", "--friction", "0.4", "--json"});
+    const ProgramRun ran = run_text(more, "sphere.gloop");
+    INFO(ran.output << ran.errors);
+    REQUIRE(ran.exit_status == expected);
+    return nlohmann::json::parse(ran.output);
+  };
+  const auto one = run({"--transport", "memq"}), two = run({});
+  CHECK(one["verdict"] == "HELD");
+  CHECK(one["misses"] == 0);
+  CHECK(one["allocations"] == 0);
+  CHECK(one["contact_cycles"] > 100);
+  CHECK(one["worst_work"] <= one["budget_work"]);
+  CHECK(one["impulses"] > 3);
+  CHECK(one["refused"]["illegal"] > 0);
+  CHECK(one["motions"]["offset_max"] > 0);
+  CHECK(one["motions"]["coarser"] == 0);
+  CHECK(one["energy"]["dissipated"] > 0);
+  CHECK(one["tools"].size() == 1);
+  CHECK((two["processes"] == 2 || two.contains("reason")));
+  CHECK(two["digest"] == one["digest"]);
+  const auto still = nlohmann::json::parse(
+      run_text({"--script", "slide", "--friction", "0.4", "--transport", "memq", "--json"}, "sphere.gloop").output);
+  CHECK(still["digest"] != one["digest"]);
+  const auto starved = run({"--transport", "memq", "--budget", one["least_work"].dump()});
+  CHECK(starved["misses"] == 0);
+  CHECK(starved["motions"]["coarser"] > 0);
+  const ProgramRun other = run_text({"--motions", workspace().file("motion.gloop")}, "sphere.gloop");
+  CHECK(other.exit_status == 1);
+  CHECK(other.errors.find("--motions: not of the same surface") != std::string::npos);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sim_hw/session/agreement.hpp"
 #include "sim_hw/session/hosted_contact_body.hpp"
 #include "sim_hw/session/loaded_model.hpp"
+#include "sim_hw/session/motions.hpp"
 
 namespace greenloop {
 namespace {
@@ -87,22 +88,26 @@ double coupling_compliance(const SessionOptions& options, const DeviceSetup& set
 SessionResult run_session(const SessionOptions& options) {
   const LoadedModel loaded = load_model(options.model);
   const Model& model = loaded.model;
-  const Agreement agreement = agree(options, model);
+  SessionResult result;
+  const Elastostatic::Intent intent = Elastostatic::intended(model);
+  result.rate = rate_of(options, intent);
+  std::optional<Motions> motions;
+  if (!options.motions.empty()) motions.emplace(options.motions, result.rate);
+  const Agreement agreement = motions ? motions->agree(options, model) : agree(options, model);
   const bool gravity = model.view().has_gravity();
   if (options.script == Script::tilt && !gravity) {
     throw std::runtime_error(options.model.string() + ": --script tilt: the model knows no gravity; build it from a " +
                              "scene with gravity = true");
   }
-  SessionResult result;
-  const Elastostatic::Intent intent = Elastostatic::intended(model);
-  result.rate = rate_of(options, intent);
   result.share = options.share.value_or(intent.share);
   result.least_work = agreement.least_work;
   result.budget = agreement.budget;
   const BodySurface surface = body_surface(model);
   const std::int64_t fast = steps_between(options, result.rate);
   const double device_rate = static_cast<double>(fast) * result.rate;
-  const DeviceSetup setup = device_setup(options, device_rate, surface, *model.view().info);
+  if (fast > 1 && motions) throw std::runtime_error("--fast-rate: a local model knows no motions between steps");
+  DeviceSetup setup = device_setup(options, device_rate, surface, *model.view().info);
+  if (motions) setup.impulses = ImpulseSchedule(motions->impulses(), device_rate);
   HapticDevice device(setup);
   result.tools = device.state().num_tools;
   if (fast > 1 && result.tools > LocalModel::most_tools) {
@@ -112,20 +117,26 @@ SessionResult run_session(const SessionOptions& options) {
   result.cycles_asked = setup.cycles;
   result.log = RunLog(static_cast<std::size_t>(result.cycles_asked), model.node_count(), options.keep_records);
 
-  HostedContactBody body(model, agreement.limits);
-  std::optional<HostedContactBody> reference;
+  std::optional<HostedContactBody> body, reference;
+  if (motions) {
+    motions->create(model, agreement.limits);
+  } else {
+    body.emplace(model, agreement.limits);
+  }
   if (fast > 1) reference.emplace(model, agreement.limits);
   const Budget tenth{std::max(result.budget.work / 10, agreement.least_work)};
-  ControlLoop loop(body.body(), {.probe_radius = probe_size(surface).radius,
-                                 .friction = options.friction,
-                                 .compliance = coupling_compliance(options, setup),
-                                 .gravity = gravity,
-                                 .budget = result.budget,
-                                 .starved = options.script == Script::random ? tenth : Budget{},
-                                 .fast = fast,
-                                 .reference = reference ? &reference->body() : nullptr,
-                                 .field_every = options.field_every.value_or(1),
-                                 .overrun_cycle = options.overrun_cycle});
+  ControlLoop loop(motions ? motions->body().contact() : body->body(),
+                   {.probe_radius = probe_size(surface).radius,
+                    .friction = options.friction,
+                    .compliance = coupling_compliance(options, setup),
+                    .gravity = gravity,
+                    .budget = result.budget,
+                    .starved = options.script == Script::random ? tenth : Budget{},
+                    .fast = fast,
+                    .vibrating = motions ? &motions->body() : nullptr,
+                    .reference = reference ? &reference->body() : nullptr,
+                    .field_every = options.field_every.value_or(1),
+                    .overrun_cycle = options.overrun_cycle});
   choose_transport(options.transport, result);
   run_link(device, loop, result.log, result);
   result.device = device.summary();

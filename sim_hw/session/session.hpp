@@ -22,8 +22,9 @@ inline constexpr double least_rate = 100, most_rate = 1e5;  // Hz; the hand's in
 
 struct SessionOptions {
   std::filesystem::path model;
-  double seconds = 10;          ///< s of virtual time, > 0
-  std::optional<double> rate;   ///< Hz, least_rate or more; else the model's
+  std::filesystem::path motions;  ///< of the same surface: the body vibrates; empty: it does not
+  double seconds = 10;            ///< s of virtual time, > 0
+  std::optional<double> rate;     ///< Hz, least_rate or more; else the model's
   std::optional<double> share;  ///< of a period that a cycle's processor time may take, above 0 and at most 1; else the
                                 ///< model's
   Script script = Script::all;

@@ -129,6 +129,12 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
       {"processes", result.processes},
       {"retransmits", result.device.retransmits},
   };
+  if (!options.motions.empty()) {
+    const MotionsGiven& motions = verdict.motions;
+    json["impulses"] = motions.followed;
+    json["refused"] = {{"illegal", motions.illegal}, {"unknown", motions.unknown}};
+    json["motions"] = {{"coarser", motions.coarser}, {"offset_max", motions.offset}};
+  }
   if (options.fast_rate) json["fast"] = fast_json(verdict.fast, *options.fast_rate);
   if (result.interruption != 0) json["interrupted_by"] = result.interruption;
   if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
@@ -157,6 +163,11 @@ std::string to_text(const SessionOptions& options, const SessionResult& result, 
                         *options.fast_rate, fast.in_range, fast.cycles,
                         100 * FastLoop::relative(fast.error_square, fast.square),
                         100 * FastLoop::relative(fast.held_square, fast.square));
+  }
+  if (!options.motions.empty()) {
+    const MotionsGiven& motions = verdict.motions;
+    text += fmt::format("  motions    {} impulses, {} refused; the surface moved by at most {:.3g} m\n",
+                        motions.followed, motions.illegal + motions.unknown, motions.offset);
   }
   text += work_line(result, verdict);
   text += fmt::format("  levels     {}\n", levels_text(verdict));

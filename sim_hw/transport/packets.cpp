@@ -16,6 +16,7 @@ messages::device_state to_packet(const DeviceState& state) {
   packet.resolution = state.resolution;
   std::copy(std::begin(state.origin), std::end(state.origin), packet.origin);
   std::copy(std::begin(state.gravity), std::end(state.gravity), packet.gravity);
+  packet.impulse = state.impulse;
   packet.num_tools = static_cast<std::int32_t>(state.num_tools);
   packet.tools.resize(state.num_tools);
   for (std::uint32_t t = 0; t < state.num_tools; ++t) {
@@ -57,6 +58,7 @@ std::optional<DeviceState> from_packet(const messages::device_state& packet) {
   DeviceState state{.cycle = packet.cycle, .resolution = packet.resolution};
   std::copy(std::begin(packet.origin), std::end(packet.origin), state.origin);
   std::copy(std::begin(packet.gravity), std::end(packet.gravity), state.gravity);
+  state.impulse = packet.impulse;
   state.num_tools = static_cast<std::uint32_t>(packet.num_tools);
   for (std::uint32_t t = 0; t < state.num_tools; ++t) {
     std::copy_n(packet.tools[t].position, 3, state.tools[t].position);

@@ -27,6 +27,7 @@ DeviceState state_of(std::uint32_t tools) {
     const auto number = static_cast<std::int16_t>(t);
     state.tools[t] = {{100 + number, -number, INT32_MAX}, {ToolState::unit, number, INT16_MIN, 3}};
   }
+  state.impulse = 3;
   return state;
 }
 
@@ -37,6 +38,7 @@ TEST_CASE("a state of any number of tools arrives as it was sent") {
     REQUIRE(arrived);
     CHECK(arrived->cycle == 77);
     CHECK(arrived->resolution == 1e-5);
+    CHECK(arrived->impulse == 3);
     CHECK(std::equal(std::begin(state.origin), std::end(state.origin), arrived->origin));
     CHECK(std::equal(std::begin(state.gravity), std::end(state.gravity), arrived->gravity));
     REQUIRE(arrived->num_tools == tools);
