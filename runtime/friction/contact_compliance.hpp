@@ -19,7 +19,7 @@ struct ContactCompliance {
 };
 
 /// Those of at most `most` points, in turn, that have a force: of candidates most have none. Apart, even and odd ones,
-/// whose sums do not wait for each other.
+/// whose sums do not wait for each other. Targets without vectors, whose prices hold for any contacts, take all points.
 class PushedPoints {
  public:
   static constexpr std::uint32_t most = 256;

@@ -202,7 +202,7 @@ Float4 sticking_force(const FrictionContact& contact, Float4 displacement) noexc
 
 Float4 natural_map(const FrictionContact& contact, Float4 displacement, Float4 force) noexcept {
   const float gap = dot3(contact.normal, displacement);
-  if (gap >= 0 && dot3(force, force) == 0) return Float4{};
+  if (has_vectors && gap >= 0 && dot3(force, force) == 0) return Float4{};
   const Float4 tangent = displacement - splat(gap) * contact.normal;
   const float lifted = contact.friction * std::sqrt(dot3(tangent, tangent));
   const Float4 moved = displacement + splat(lifted) * contact.normal;
