@@ -151,6 +151,7 @@ Figure displaced_figure(const std::string& name, const std::string& title, const
 std::vector<Point> convergence_of(const Model& model) {
   constexpr std::uint64_t most_cycles = 16;
   std::vector<Point> points;
+  points.reserve(most_cycles);
   for (std::uint64_t cycles = 1; cycles <= most_cycles; ++cycles) {
     RestingBody resting(model);
     const Budget budget{resting.need.least_work + (cycles - 1) * resting.need.cycle_work};
@@ -168,6 +169,7 @@ Figure convergence_figure(const std::vector<Point>& points) {
   Figure figure{"convergence", title, caption, {}};
   if (points.empty()) return figure;
   std::vector<double> residuals;
+  residuals.reserve(points.size());
   for (const Point& point : points) residuals.push_back(point.y);
   const PanelFrame frame = panel_frame(false, {});
   SvgCanvas canvas(panel_width, frame.height, title, caption, panel_text);
