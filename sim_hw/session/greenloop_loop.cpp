@@ -214,8 +214,8 @@ void require_own_options(const CLI::App& app, const greenloop::SessionOptions& o
     throw std::runtime_error(options.model.string() + ": --script " + outputs.script + ": " + model + " has " + script +
                              " alone");
   }
-  for (const char* const option :
-       {"--motions", "--friction", "--tools", "--passive", "--hand", "--gain", "--delay", "--fast-rate", "--stability"}) {
+  for (const char* const option : {"--motions", "--friction", "--tools", "--passive", "--hand", "--gain", "--delay",
+                                   "--fast-rate", "--stability"}) {
     other_options.push_back(option);
   }
   for (const char* const option : other_options) {
