@@ -158,15 +158,16 @@ int main(int argc, char** argv) {
   }
   const std::uint64_t answers = counts.ok + counts.coarser;
   std::printf(
-      "%llu cycles of %u tetrahedra at 1 kHz, least work %llu, a cycle %llu units: %llu within the tolerance, %llu "
+      "%llu cycles of %u tetrahedra at 1 kHz, arena %zu bytes, least work %llu, a cycle %llu units: %llu within the "
+      "tolerance, %llu "
       "short of budget, %llu refused; residual %.1e on average, %.1e at worst; farthest %.3f m, %llu not finite or "
       "too far, %llu beyond the budget, %llu answers to rubbish; digest %016llx\n%s\n",
-      static_cast<unsigned long long>(steps), view.info->tetrahedra, static_cast<unsigned long long>(need.least_work),
-      static_cast<unsigned long long>(need.cycle_work), static_cast<unsigned long long>(counts.ok),
-      static_cast<unsigned long long>(counts.coarser), static_cast<unsigned long long>(counts.refused),
-      counts.residual / static_cast<double>(answers), counts.worst_residual, static_cast<double>(counts.farthest),
-      static_cast<unsigned long long>(counts.overflows), static_cast<unsigned long long>(counts.over_budget),
-      static_cast<unsigned long long>(counts.answered_rubbish), static_cast<unsigned long long>(digest.value()),
-      counts.held() ? "HELD" : "VIOLATED");
+      static_cast<unsigned long long>(steps), view.info->tetrahedra, need.bytes,
+      static_cast<unsigned long long>(need.least_work), static_cast<unsigned long long>(need.cycle_work),
+      static_cast<unsigned long long>(counts.ok), static_cast<unsigned long long>(counts.coarser),
+      static_cast<unsigned long long>(counts.refused), counts.residual / static_cast<double>(answers),
+      counts.worst_residual, static_cast<double>(counts.farthest), static_cast<unsigned long long>(counts.overflows),
+      static_cast<unsigned long long>(counts.over_budget), static_cast<unsigned long long>(counts.answered_rubbish),
+      static_cast<unsigned long long>(digest.value()), counts.held() ? "HELD" : "VIOLATED");
   return counts.held() ? 0 : 1;
 }

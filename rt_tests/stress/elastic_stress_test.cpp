@@ -99,7 +99,7 @@ TEST_CASE("the report of a multigrid model has the keys of the others") {
                           "wrong_answers",
                           "allocations",
                           "locks",
-                          "system_calls",
+                          "syscalls",
                           "minor_faults",
                           "statuses",
                           "multigrid"}) {
