@@ -95,7 +95,7 @@ class ContactBody {
   struct StepReport : Elastostatic::UnilateralReport {
     std::uint64_t touching_work = 0;  ///< units of `work` that finding what touches took
     std::uint32_t left_out = 0;       ///< places that may touch, but for which there was no room: the deepest were kept
-    double deepest_left_out = 0;      ///< m, depth of the deepest of these
+    double deepest_left_out = 0;      ///< m, depth of the deepest of these, negative if not inside of a tool
     Place left_out_place;             ///< which is there; none: nothing was left out
     std::uint32_t unfinished = 0;     ///< tools that search_work did not suffice for: what is nearest was looked at
   };

@@ -178,7 +178,7 @@ typedef struct greenloop_contact_body_report {
   greenloop_unilateral_report contact;
   uint64_t touching_work;  /* what finding contacts took of the work */
   uint32_t left_out;       /* places that may touch, but for which there was no room: the deepest were kept */
-  double deepest_left_out; /* m, depth of the deepest of these */
+  double deepest_left_out; /* m, depth of the deepest of these, negative if not inside of a tool */
   /* The deepest of these, as a greenloop_touch says it; the tool is UINT32_MAX if nothing was left out. */
   uint32_t left_out_tool, left_out_node[3];
   double left_out_weight[3];

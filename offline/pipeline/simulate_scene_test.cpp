@@ -34,6 +34,7 @@ axis = "y"
 [simulate]
 time_step = "20 ms"
 level = 0
+sampling = "coverage"
 stiffness_damping = "5 ms"
 mass_damping = "4 1/s"
 rest = "1 mm"
