@@ -156,16 +156,6 @@ bool is_finite(const Response& response) {
          std::all_of(response.stress.begin(), response.stress.end(), [](float s) { return std::isfinite(s); });
 }
 
-// visit(kind, cycles) of the scripts that share the cycles
-template <class Visit>
-void visit_kinds(const ElasticStressOptions& options, Visit visit) {
-  const std::size_t kinds = options.script ? 1 : elastic_script_names.size();
-  for (std::size_t k = 0; k < kinds; ++k) {
-    const std::uint64_t share = options.cycles / kinds + (k < options.cycles % kinds ? 1 : 0);
-    if (share > 0) visit(options.script.value_or(static_cast<ElasticScriptKind>(k)), share);
-  }
-}
-
 class ElasticStressRun {
  public:
   ElasticStressRun(const Model& model, const ElasticStressOptions& options)
@@ -183,7 +173,8 @@ class ElasticStressRun {
       const ElasticCycle& cycle = warm_up.next(tried_.displacement);
       static_cast<void>(tried_.body.step(inputs_of(cycle), cycle.budget, tried_.response(cycle)));
     }
-    visit_kinds(options_, [this](ElasticScriptKind kind, std::uint64_t cycles) { run_script(kind, cycles); });
+    visit_kinds(options_, elastic_script_names,
+                [this](ElasticScriptKind kind, std::uint64_t cycles) { run_script(kind, cycles); });
     result_.digest = digest_.value();
     return result_;
   }
@@ -288,13 +279,7 @@ class ElasticStressRun {
     ElasticCounts& counts = script_.counts;
     ++counts.by_status[static_cast<std::size_t>(report.status)];
     if (!answered(report.status)) return;
-    const auto share = [](std::uint64_t work, std::uint64_t of) {
-      return of > 0 ? static_cast<double>(work) / static_cast<double>(of) : 0;
-    };
-    if (share(report.work, cycle.budget.work) >= share(counts.worst_work, counts.declared_work)) {
-      counts.worst_work = report.work;
-      counts.declared_work = cycle.budget.work;
-    }
+    counts.spend(report.work, cycle.budget.work);
     counts.multigrid_cycles += report.cycles;
     counts.residual_sum += static_cast<double>(report.residual);
     counts.residual = std::max(counts.residual, static_cast<double>(report.residual));
@@ -303,7 +288,7 @@ class ElasticStressRun {
   const Model* model_;
   ElasticStressOptions options_;
   Body tried_, twin_;
-  ElasticScriptResult script_;
+  ScriptOutcome<ElasticScriptKind, ElasticCounts> script_;
   ElasticStressResult result_;
   FastDigest script_digest_, digest_;
   GuardedSteps guarded_{options_.fault};
@@ -324,14 +309,8 @@ double ElasticCounts::mean_residual() const {
 }
 
 void ElasticCounts::add(const ElasticCounts& other) {
-  for (std::size_t i = 0; i < statuses; ++i) by_status[i] += other.by_status[i];
+  StepCounts::add(other);
   multigrid_cycles += other.multigrid_cycles;
-  // as shares: products of unlimited budgets would not fit
-  if (static_cast<double>(other.worst_work) * static_cast<double>(declared_work) >=
-      static_cast<double>(worst_work) * static_cast<double>(other.declared_work)) {
-    worst_work = other.worst_work;
-    declared_work = other.declared_work;
-  }
   residual_sum += other.residual_sum;
   residual = std::max(residual, other.residual);
   farthest = std::max(farthest, other.farthest);
@@ -350,7 +329,7 @@ std::vector<ReportedStep> run_elastic_plainly(const Model& model, const ElasticS
     if (answered(report.status)) body.follow(cycle);
     steps.push_back(reported(cycle, report));
   };
-  visit_kinds(options, [&](ElasticScriptKind kind, std::uint64_t cycles) {
+  visit_kinds(options, elastic_script_names, [&](ElasticScriptKind kind, std::uint64_t cycles) {
     body.renew();
     ElasticStressScript script(view, options.limits, body.need, kind, options.seed);
     for (std::uint64_t i = 0; i < cycles; ++i) {

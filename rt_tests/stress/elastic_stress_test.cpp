@@ -20,8 +20,8 @@ TEST_CASE("loads and holds on a multigrid model: nothing is violated, whatever t
     CAPTURE(static_cast<int>(strain));
     const Beam beam(strain);
     const ElasticStressResult result = run_elastic_stress(beam.model, {.cycles = 12000});
-    CAPTURE(result.first_violation.value_or(FirstElasticViolation{}).what);
-    CAPTURE(result.first_violation.value_or(FirstElasticViolation{}).cycle);
+    CAPTURE(result.first_violation.value_or(ScriptViolation<ElasticScriptKind>{}).what);
+    CAPTURE(result.first_violation.value_or(ScriptViolation<ElasticScriptKind>{}).cycle);
     CHECK(result.held());
     CHECK(result.cycles == 12000);
     REQUIRE(result.scripts.size() == elastic_script_names.size());

@@ -219,6 +219,19 @@ ToolStressReport stress_tools(const greenloop::Model& model, const Arguments& ar
   return report;
 }
 
+// instructions of the steps of `body`, of the report's scripts; with --rate only where it was given
+template <class Report>
+void count_scripts(Report& report, const char* body, const Arguments& arguments, greenloop::offline::ProgressBar& bar) {
+  std::vector<std::string> command = listing(arguments);
+  const auto& options = report.options;
+  if (options.script) command.insert(command.end(), {"--script", name(*options.script)});
+  if (options.budget > 0) command.insert(command.end(), {"--budget", std::to_string(options.budget)});
+  if (arguments.rate > 0) command.insert(command.end(), {"--rate", fmt::format("{}", arguments.rate)});
+  bar.begin("instructions");
+  report.predicted = count_instructions(body, command);
+  bar.end(fmt::format("of {} steps", report.predicted->all.steps));
+}
+
 // the options for motions; throws std::runtime_error for those that contacts alone have
 greenloop::ImpulseStressOptions motion_options(const Arguments& arguments) {
   const greenloop::StressOptions& asked = arguments.options;
@@ -244,15 +257,7 @@ ImpulseStressReport stress_motions(const greenloop::Model& model, const Argument
   run_with_progress(report, bar, [&] { return greenloop::run_impulse_stress(model, options); });
   report.time = greenloop::judge_times(report.result.times, report.rate, arguments.share > 0 ? arguments.share : 1,
                                        arguments.judge_time);
-  if (arguments.count_instructions) {
-    std::vector<std::string> command = listing(arguments);
-    if (options.script) command.insert(command.end(), {"--script", name(*options.script)});
-    if (options.budget > 0) command.insert(command.end(), {"--budget", std::to_string(options.budget)});
-    if (rate > 0) command.insert(command.end(), {"--rate", fmt::format("{}", arguments.rate)});
-    bar.begin("instructions");
-    report.predicted = count_instructions("ImpulseResponse", command);
-    bar.end(fmt::format("of {} steps", report.predicted->all.steps));
-  }
+  if (arguments.count_instructions) count_scripts(report, "ImpulseResponse", arguments, bar);
   return report;
 }
 
@@ -280,14 +285,7 @@ ElasticStressReport stress_elastic(const greenloop::Model& model, const Argument
   run_with_progress(report, bar, [&] { return greenloop::run_elastic_stress(model, options); });
   report.time = greenloop::judge_times(report.result.times, report.rate, arguments.share > 0 ? arguments.share : 1,
                                        arguments.judge_time);
-  if (arguments.count_instructions) {
-    std::vector<std::string> command = listing(arguments);
-    if (options.script) command.insert(command.end(), {"--script", name(*options.script)});
-    if (options.budget > 0) command.insert(command.end(), {"--budget", std::to_string(options.budget)});
-    bar.begin("instructions");
-    report.predicted = count_instructions("Multigrid", command);
-    bar.end(fmt::format("of {} steps", report.predicted->all.steps));
-  }
+  if (arguments.count_instructions) count_scripts(report, "Multigrid", arguments, bar);
   return report;
 }
 

@@ -101,16 +101,6 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
 }
 
-// visit(kind, cycles) of the scripts that share the cycles
-template <class Visit>
-void visit_kinds(const ImpulseStressOptions& options, Visit visit) {
-  const std::size_t kinds = options.script ? 1 : impulse_script_names.size();
-  for (std::size_t k = 0; k < kinds; ++k) {
-    const std::uint64_t share = options.cycles / kinds + (k < options.cycles % kinds ? 1 : 0);
-    if (share > 0) visit(options.script.value_or(static_cast<ImpulseScriptKind>(k)), share);
-  }
-}
-
 class ImpulseStressRun {
  public:
   ImpulseStressRun(const Model& model, const ImpulseStressOptions& options)
@@ -129,7 +119,8 @@ class ImpulseStressRun {
       const Cycle cycle = warm_up.next(tried_.body);
       static_cast<void>(tried_.body.step(cycle.impulse, cycle.budget, tried_.response(cycle)));
     }
-    visit_kinds(options_, [this](ImpulseScriptKind kind, std::uint64_t cycles) { run_script(kind, cycles); });
+    visit_kinds(options_, impulse_script_names,
+                [this](ImpulseScriptKind kind, std::uint64_t cycles) { run_script(kind, cycles); });
     result_.digest = digest_.value();
     return result_;
   }
@@ -232,10 +223,7 @@ class ImpulseStressRun {
   void count(const Cycle& cycle, const StepReport& report) {
     ImpulseCounts& counts = script_.counts;
     ++counts.by_status[static_cast<std::size_t>(report.status)];
-    if (report.work * counts.declared_work >= counts.worst_work * tried_.need.worst_work) {
-      counts.worst_work = report.work;
-      counts.declared_work = tried_.need.worst_work;
-    }
+    counts.spend(report.work, tried_.need.worst_work);
     if (!answered(report.status)) return;
     const bool entered = cycle.impulse != no_impulse;
     counts.entered += entered ? 1 : 0;
@@ -250,7 +238,7 @@ class ImpulseStressRun {
   Body tried_, twin_;
   double bound_ = 0;  // m^2
   float blend_ = 0;   // of the last answered step
-  ImpulseScriptResult script_;
+  ScriptOutcome<ImpulseScriptKind, ImpulseCounts> script_;
   ImpulseStressResult result_;
   FastDigest script_digest_, digest_;
   GuardedSteps guarded_{options_.fault};
@@ -267,14 +255,10 @@ ReportedStep reported(const Cycle& cycle, const StepReport& report) {
 }  // namespace
 
 void ImpulseCounts::add(const ImpulseCounts& other) {
-  for (std::size_t i = 0; i < statuses; ++i) by_status[i] += other.by_status[i];
+  StepCounts::add(other);
   entered += other.entered;
   blending += other.blending;
   continued += other.continued;
-  if (other.worst_work * declared_work >= worst_work * other.declared_work) {
-    worst_work = other.worst_work;
-    declared_work = other.declared_work;
-  }
   most_blend = std::max(most_blend, other.most_blend);
   most_energy = std::max(most_energy, other.most_energy);
   most_energy_share = std::max(most_energy_share, other.most_energy_share);
@@ -290,7 +274,7 @@ std::vector<ReportedStep> run_impulses_plainly(const Model& model, const Impulse
   const auto step = [&](const Cycle& cycle) {
     steps.push_back(reported(cycle, body.body.step(cycle.impulse, cycle.budget, body.response(cycle))));
   };
-  visit_kinds(options, [&](ImpulseScriptKind kind, std::uint64_t cycles) {
+  visit_kinds(options, impulse_script_names, [&](ImpulseScriptKind kind, std::uint64_t cycles) {
     body.renew(options.limits);
     ImpulseStressScript script(model, body.need, kind, options.seed);
     for (std::uint64_t i = 0; i < cycles; ++i) {

@@ -15,7 +15,8 @@ ImpulseStressResult stress(const SyntheticMotion& motion, const ImpulseStressOpt
   return run_impulse_stress(Model::open(file.bytes.span()).model, options);
 }
 
-const ImpulseScriptResult& result_of(const ImpulseStressResult& result, ImpulseScriptKind kind) {
+const ScriptOutcome<ImpulseScriptKind, ImpulseCounts>& result_of(const ImpulseStressResult& result,
+                                                                 ImpulseScriptKind kind) {
   return *std::find_if(result.scripts.begin(), result.scripts.end(), [kind](auto& s) { return s.kind == kind; });
 }
 

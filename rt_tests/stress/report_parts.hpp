@@ -32,16 +32,25 @@ void add_violations(const Violations& violations, bool watches_system_calls, nlo
 /// To standard output, where it is so.
 void print_if_unwatched(bool watches_system_calls);
 
-/// {script, cycle, what, seed, replay}; first: a FirstToolViolation or FirstImpulseViolation.
-template <class First>
-[[nodiscard]] nlohmann::json violation_json(const First& first, std::uint64_t seed, const std::string& replay) {
+/// Where something was violated first.
+template <class Kind>
+struct ScriptViolation {
+  Kind script{};
+  std::uint64_t cycle = 0;  ///< of the script, from 0 on
+  std::string what;
+};
+
+/// {script, cycle, what, seed, replay}
+template <class Kind>
+[[nodiscard]] nlohmann::json violation_json(const ScriptViolation<Kind>& first, std::uint64_t seed,
+                                            const std::string& replay) {
   return {
       {"script", name(first.script)}, {"cycle", first.cycle}, {"what", first.what}, {"seed", seed}, {"replay", replay}};
 }
 
 /// The same in two lines to standard output.
-template <class First>
-void print_violation(const First& first, std::uint64_t seed, const std::string& replay) {
+template <class Kind>
+void print_violation(const ScriptViolation<Kind>& first, std::uint64_t seed, const std::string& replay) {
   fmt::print("first in script {}, seed {}, cycle {}: {}; again with\n  {}\n", name(first.script), seed, first.cycle,
              first.what, replay);
 }

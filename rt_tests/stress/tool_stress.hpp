@@ -11,6 +11,7 @@
 #include "rt_tests/harness/tool_script.hpp"
 #include "rt_tests/harness/touching_checks.hpp"
 #include "rt_tests/stress/guarded_steps.hpp"
+#include "rt_tests/stress/report_parts.hpp"
 #include "runtime/model.hpp"
 #include "sim_hw/guard/time_histogram.hpp"
 #include "sim_hw/guard/time_verdict.hpp"
@@ -51,20 +52,13 @@ struct ToolScriptResult {
   std::uint64_t digest = 0;  ///< of every step's outcome
 };
 
-/// Where something was violated first.
-struct FirstToolViolation {
-  ToolScriptKind script = ToolScriptKind::wander;
-  std::uint64_t cycle = 0;  ///< of the script, from 0 on
-  std::string what;
-};
-
 struct ToolStressResult {
   std::uint64_t cycles = 0;
   std::vector<ToolScriptResult> scripts;
   ToolCounts counts;  ///< of all scripts
   Violations violations;
   bool watches_system_calls = false;  ///< false: this kernel cannot tell
-  std::optional<FirstToolViolation> first_violation;
+  std::optional<ScriptViolation<ToolScriptKind>> first_violation;
   ContactBody::Requirement declared;
   std::uint64_t digest = 0;  ///< of the scripts' digests
   double create_ms = 0;      ///< of `create`, thread CPU time
