@@ -79,21 +79,9 @@ DragVerdict judge(const DragResult& result, bool judge_time) {
 }
 
 nlohmann::ordered_json to_json(const SessionOptions& options, const DragResult& result, const DragVerdict& verdict) {
-  nlohmann::ordered_json json{
-      {"passed", verdict.passed()},
-      {"verdict", verdict.held ? "HELD" : "VIOLATED"},
-      {"time_verdict", verdict.time.word()},
-      {"script", "drag"},
-      {"seconds", options.seconds},
-      {"rate", result.rate},
-      {"cycles", verdict.cycles},
-      {"misses", verdict.misses},
-      {"late", result.device.late},
-      {"late_injected", result.device.late_injected},
-      {"stopped", result.device.stopped},
-      {"budget_work", result.budget.work},
-      {"least_work", result.least_work},
-      {"worst_work", verdict.worst_work},
+  nlohmann::ordered_json json = opening_json(verdict.passed(), verdict.held, verdict.time, "drag", options.seconds,
+                                             result, result.device, verdict);
+  json.update(nlohmann::ordered_json{
       {"digest", digest_text(result)},
       {"allocations", result.allocations},
       {"tetrahedra", result.tetrahedra},
@@ -111,13 +99,9 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const DragResult& 
         {"kinetic_end", verdict.kinetic_left},
         {"elastic_max", verdict.elastic},
         {"gain_max", verdict.gain}}},
-      {"time", nlohmann::json(verdict.time)},
-      {"transport", result.transport},
-      {"processes", result.processes},
-      {"retransmits", result.device.retransmits},
-  };
-  if (result.interruption != 0) json["interrupted_by"] = result.interruption;
-  if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
+  });
+  add_transport(verdict.time, result, result.device, json);
+  add_reasons(result, json);
   return json;
 }
 

@@ -83,21 +83,9 @@ MotionVerdict judge(const MotionResult& result, bool judge_time) {
 
 nlohmann::ordered_json to_json(const SessionOptions& options, const MotionResult& result,
                                const MotionVerdict& verdict) {
-  nlohmann::ordered_json json{
-      {"passed", verdict.passed()},
-      {"verdict", verdict.held ? "HELD" : "VIOLATED"},
-      {"time_verdict", verdict.time.word()},
-      {"script", "impulses"},
-      {"seconds", options.seconds},
-      {"rate", result.rate},
-      {"cycles", verdict.cycles},
-      {"misses", verdict.misses},
-      {"late", result.device.late},
-      {"late_injected", result.device.late_injected},
-      {"stopped", result.device.stopped},
-      {"budget_work", result.budget.work},
-      {"least_work", result.least_work},
-      {"worst_work", verdict.worst_work},
+  nlohmann::ordered_json json = opening_json(verdict.passed(), verdict.held, verdict.time, "impulses", options.seconds,
+                                             result, result.device, verdict);
+  json.update(nlohmann::ordered_json{
       {"digest", digest_text(result)},
       {"allocations", result.allocations},
       {"impulses", verdict.entered},
@@ -120,13 +108,9 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const MotionResult
       {"blend_max", verdict.blend},
       {"energy_max", verdict.energy},
       {"energy_bound", square(result.bounds.state.reach())},
-      {"time", nlohmann::json(verdict.time)},
-      {"transport", result.transport},
-      {"processes", result.processes},
-      {"retransmits", result.device.retransmits},
-  };
-  if (result.interruption != 0) json["interrupted_by"] = result.interruption;
-  if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
+  });
+  add_transport(verdict.time, result, result.device, json);
+  add_reasons(result, json);
   return json;
 }
 

@@ -21,6 +21,38 @@ std::string digest_text(const LinkResult& result) {
   return fmt::format("{:016x}", static_cast<std::uint64_t>(result.loop_digest));
 }
 
+nlohmann::ordered_json opening_json(bool passed, bool held, const TimeVerdict& time, std::string_view script,
+                                    double seconds, const LinkResult& result, const LinkSummary& device,
+                                    const CycleTally& tally) {
+  return {{"passed", passed},
+          {"verdict", held ? "HELD" : "VIOLATED"},
+          {"time_verdict", time.word()},
+          {"script", script},
+          {"seconds", seconds},
+          {"rate", result.rate},
+          {"cycles", tally.cycles},
+          {"misses", tally.misses},
+          {"late", device.late},
+          {"late_injected", device.late_injected},
+          {"stopped", device.stopped},
+          {"budget_work", result.budget.work},
+          {"least_work", result.least_work},
+          {"worst_work", tally.worst_work}};
+}
+
+void add_transport(const TimeVerdict& time, const LinkResult& result, const LinkSummary& device,
+                   nlohmann::ordered_json& json) {
+  json["time"] = nlohmann::json(time);
+  json["transport"] = result.transport;
+  json["processes"] = result.processes;
+  json["retransmits"] = device.retransmits;
+}
+
+void add_reasons(const LinkResult& result, nlohmann::ordered_json& json) {
+  if (result.interruption != 0) json["interrupted_by"] = result.interruption;
+  if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
+}
+
 std::string headline(bool held, const LinkResult& result, const LinkSummary& device, const CycleTally& tally) {
   return fmt::format("{}: {} of {} cycles at {} Hz, {} misses, {} late, {} allocations\n", held ? "HELD" : "VIOLATED",
                      tally.cycles, result.cycles_asked, result.rate, tally.misses, device.late, result.allocations);

@@ -76,21 +76,10 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
   nlohmann::ordered_json levels = nlohmann::ordered_json::array();
   for (const auto& [level, cycles] : verdict.levels_used) levels.push_back({{"level", level}, {"cycles", cycles}});
   const DeviceSummary& device = result.device;
-  nlohmann::ordered_json json{
-      {"passed", verdict.passed()},
-      {"verdict", verdict.held ? "HELD" : "VIOLATED"},
-      {"time_verdict", verdict.time.word()},
-      {"script", script_names[static_cast<std::size_t>(options.script)]},
-      {"seconds", options.seconds},
-      {"rate", result.rate},
-      {"cycles", verdict.cycles},
-      {"misses", verdict.misses},
-      {"late", result.device.late},
-      {"late_injected", result.device.late_injected},
-      {"stopped", result.device.stopped},
-      {"budget_work", result.budget.work},
-      {"least_work", result.least_work},
-      {"worst_work", verdict.worst_work},
+  nlohmann::ordered_json json =
+      opening_json(verdict.passed(), verdict.held, verdict.time, script_names[static_cast<std::size_t>(options.script)],
+                   options.seconds, result, result.device, verdict);
+  json.update(nlohmann::ordered_json{
       {"levels_used", levels},
       {"digest", digest_text(result)},
       {"allocations", result.allocations},
@@ -124,11 +113,8 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
         {"median", verdict.step_us.median},
         {"p99", verdict.step_us.p99},
         {"max", verdict.step_us.max}}},
-      {"time", nlohmann::json(verdict.time)},
-      {"transport", result.transport},
-      {"processes", result.processes},
-      {"retransmits", result.device.retransmits},
-  };
+  });
+  add_transport(verdict.time, result, result.device, json);
   if (!options.motions.empty()) {
     const MotionsGiven& motions = verdict.motions;
     json["impulses"] = motions.followed;
@@ -136,8 +122,7 @@ nlohmann::ordered_json to_json(const SessionOptions& options, const SessionResul
     json["motions"] = {{"coarser", motions.coarser}, {"offset_max", motions.offset}};
   }
   if (options.fast_rate) json["fast"] = fast_json(verdict.fast, *options.fast_rate);
-  if (result.interruption != 0) json["interrupted_by"] = result.interruption;
-  if (!result.transport_reason.empty()) json["reason"] = result.transport_reason;
+  add_reasons(result, json);
   return json;
 }
 
